@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+# What every target of this tree has in common: language level, warnings, where programs land, and
+# how a test is declared.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+
+find_program(ROBDEF_CCACHE ccache)
+if(ROBDEF_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${ROBDEF_CCACHE})
+  set(CMAKE_C_COMPILER_LAUNCHER ${ROBDEF_CCACHE})
+endif()
+
+find_package(Threads REQUIRED)
+
+# Warnings for our own sources and for generated code alike.
+add_library(robdef_warnings INTERFACE)
+target_compile_options(robdef_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+  $<$<BOOL:${ROBDEF_WERROR}>:-Werror>)
+
+# robdef_library(NAME SOURCES... [DEPENDS targets...])
+# A static library of one folder. Includes are written from the root of the tree.
+function(robdef_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS")
+  add_library(${name} STATIC ${arg_SOURCES})
+  target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+  target_link_libraries(${name} PRIVATE robdef_warnings PUBLIC ${arg_DEPENDS})
+endfunction()
+
+# robdef_test(NAME SOURCES... [DEPENDS targets...] [ENVIRONMENT KEY=VALUE...])
+# A GoogleTest program; each of its tests is a test of CTest.
+function(robdef_test name)
+  if(NOT ROBDEF_TESTS)
+    return()
+  endif()
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS;ENVIRONMENT")
+  add_executable(${name} ${arg_SOURCES})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE robdef_warnings ${arg_DEPENDS} GTest::gmock GTest::gtest_main)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+  include(GoogleTest)
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60
+    PROPERTIES TIMEOUT 120 ENVIRONMENT "${arg_ENVIRONMENT}")
+endfunction()
