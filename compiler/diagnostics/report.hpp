@@ -23,8 +23,8 @@ enum class Severity { error, warning };
 /// What codes.def says about one code.
 struct CodeEntry {
   Code code;
-  std::string_view name;         ///< `R0203`
-  std::string_view rule;         ///< rule id of the language description, `V12`
+  std::string_view name;  ///< `R0203`
+  std::string_view rule;  ///< rule id of the language description, `V12`
   Severity severity;
   std::string_view summary;      ///< one line, for lists
   std::string_view explanation;  ///< paragraphs for `robdef explain`
@@ -33,6 +33,8 @@ struct CodeEntry {
 /// All codes in the order of codes.def.
 const std::vector<CodeEntry>& code_entries();
 const CodeEntry& entry_of(Code code);
+/// The entry of `R0203`, or null for a name that is not a code.
+const CodeEntry* find_code(std::string_view name);
 
 /// A span with what to say about it.
 struct Label {
@@ -83,6 +85,7 @@ class Report {
   void silence(Code warning);
 
   [[nodiscard]] bool has_errors() const { return errors_ > 0; }
+  /// As added, so a repeated one counts again.
   [[nodiscard]] std::size_t errors() const { return errors_; }
   /// All findings by file (in load order) and place; the same code at the same span appears once.
   [[nodiscard]] std::vector<const Diagnostic*> sorted() const;

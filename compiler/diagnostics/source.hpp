@@ -13,6 +13,10 @@ namespace robdef {
 /// Which of the loaded files a span lies in: an index into Sources.
 enum class SourceId : std::uint32_t {};
 
+/// The three bytes that some editors put before the first character. They are no text: columns and
+/// Source::line leave them out.
+inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
 /// A piece of source text as half-open byte offsets. An empty span marks a place between bytes.
 struct Span {
   SourceId source{};
@@ -31,7 +35,8 @@ struct Position {
 };
 
 /// One file's text and the offsets of its lines. The text is exactly what was read, byte order
-/// mark and line ends included, because a service sends its definition as it was written.
+/// mark and line ends included, because a service sends its definition as it was written. At most
+/// 4 GiB, the reach of a span.
 class Source {
  public:
   Source(std::string name, std::string text);

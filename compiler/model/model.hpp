@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <variant>
 #include <vector>
 
@@ -43,6 +44,8 @@ enum class Primitive : std::uint16_t {
 
 /// The word of the language: `double`, `int32`, ...
 std::string_view name_of(Primitive primitive);
+/// Nothing for a word that is no primitive.
+std::optional<Primitive> primitive_of(std::string_view word);
 /// Bytes of one item on the wire: 8 for double, 1 for string and bool, 0 for void.
 std::size_t size_of(Primitive primitive);
 /// Codes 1-10 and 12-14: what may stand in arrays, pods, namedarrays and memories.
@@ -52,6 +55,15 @@ using ast::ArrayForm;
 using ast::ContainerForm;
 using ast::MemberKind;
 using ast::RecordKind;
+
+/// `{list}`, `{int32}`, ...; empty for none.
+std::string_view text_of(ContainerForm container);
+/// As it would be written, without needless zeros at the end: `0.10`, `0.9.2`.
+std::string text_of(const ast::Version& version);
+/// The keyword: `struct`, `pod` or `namedarray`.
+std::string_view name_of(RecordKind kind);
+/// The keyword: `property`, `function`, ...
+std::string_view name_of(MemberKind kind);
 
 struct VarValue {};   ///< `varvalue`
 struct VarObject {};  ///< `varobject`, objref only
@@ -68,17 +80,23 @@ struct Type {
   ContainerForm container = ContainerForm::none;
   Span span;
 
-  /// Product of the dimensions of fixed_length, maximum_length and fixed_shape; 1 for a scalar.
+  /// Product of the dimensions of fixed_length, maximum_length and fixed_shape; 1 for a scalar, 0
+  /// where there is no limit. Products beyond 64 bits become the largest number.
   [[nodiscard]] std::uint64_t element_count() const;
   [[nodiscard]] bool is_void() const;
   /// The type as it would be written with qualified names: `conformance.types.Stats{list}`.
   [[nodiscard]] std::string text() const;
+  /// Array and container as written behind the base: `[3-]{list}`.
+  [[nodiscard]] std::string suffix() const;
+  /// Same base, array form, dimensions and container; where a base is Unknown, nothing is compared.
+  [[nodiscard]] bool is_same_as(const Type& other) const;
 };
 
 /// A constant's value. Integers are kept exactly (negative values of unsigned types wrap, Q13).
 struct StructValueField {
   std::string field;
-  const struct Constant* constant = nullptr;
+  const struct Constant* constant = nullptr;  ///< of the same scope
+  Span span;                                  ///< of the field name
 };
 using Number = std::variant<std::int64_t, std::uint64_t, double>;
 using ConstantValue =
@@ -90,6 +108,8 @@ struct Constant {
   Type type;
   bool is_struct = false;
   ConstantValue value;
+  ast::ConstantValue written;  ///< the literal: evaluate reads it, print repeats its numbers
+  bool is_option = false;      ///< in the old spelling `option constant`
   std::string documentation;
   Span span;  ///< of the name
 };
@@ -104,7 +124,8 @@ struct Exception {
 struct EnumValue {
   std::string name;
   std::int32_t value = 0;
-  bool is_hexadecimal = false;
+  bool is_hexadecimal = false;                ///< inherited by values without a number
+  std::optional<ast::NumberLiteral> written;  ///< absent: the previous plus one
   std::string documentation;
   Span span;
 };
@@ -121,7 +142,11 @@ struct Enum {
 struct Modifier {
   std::string name;
   std::vector<std::string> arguments;
+  std::vector<Span> argument_spans;
   Span span;
+
+  /// Same name and arguments, wherever they stand.
+  [[nodiscard]] bool is_same_as(const Modifier& other) const;
 };
 
 struct Field {
@@ -139,6 +164,7 @@ struct Record {
   const Definition* definition = nullptr;
   std::vector<Constant> constants;
   std::vector<Field> fields;
+  std::vector<std::string> options;  ///< as in Definition
   std::string documentation;
   Span span;
 
@@ -200,19 +226,22 @@ struct Member {
 struct Object {
   std::string name;
   const Definition* definition = nullptr;
-  std::vector<const Object*> implements;
+  std::vector<const Object*> implements;  ///< in order, each once
+  std::vector<Span> implements_spans;     ///< of the names, one for each of `implements`
   std::vector<Constant> constants;
   std::vector<Member> members;
+  std::vector<std::string> options;  ///< as in Definition
   std::string documentation;
   Span span;
 
   [[nodiscard]] std::string qualified_name() const;
 };
 
+/// A name of `using`, for whatever kind of declaration.
 struct Alias {
   std::string name;
   std::string qualified_name;
-  Span span;
+  Span span;  ///< of the alias: the name after `as`, or the last part of the qualified name
 };
 
 /// A declaration in the order of the file.
@@ -229,6 +258,7 @@ struct Definition {
   std::string documentation;
   ast::VersionSpelling version_spelling = ast::VersionSpelling::none;
   ast::Version version;
+  Span version_span;
   std::vector<const Definition*> imports;  ///< direct, in order, each once
   std::vector<Alias> aliases;
   std::vector<Constant> constants;
@@ -237,6 +267,8 @@ struct Definition {
   std::vector<Record> records;
   std::vector<Object> objects;
   std::vector<Declaration> declarations;
+  /// Texts of the `option` lines but those that became a version or a constant.
+  std::vector<std::string> options;
   Span span;  ///< of the service name
 };
 
@@ -249,10 +281,12 @@ class Model {
   }
   /// nullptr when there is none of that name.
   [[nodiscard]] const Definition* find(std::string_view name) const;
-  Definition& add();
+  /// A new, empty definition at the end. Of several with one name, find() sees the first.
+  Definition& add(std::string name);
 
  private:
   std::vector<std::unique_ptr<Definition>> definitions_;
+  std::unordered_map<std::string_view, const Definition*> by_name_;
 };
 
 }  // namespace robdef::model

@@ -25,12 +25,12 @@ struct Name {
 using Documentation = std::string;
 
 enum class ArrayForm {
-  none,           ///< scalar
-  any_length,     ///< `[]`
-  fixed_length,   ///< `[n]`
-  maximum_length, ///< `[n-]`
-  any_shape,      ///< `[*]`
-  fixed_shape,    ///< `[m,n,...]` or `[n,]`
+  none,            ///< scalar
+  any_length,      ///< `[]`
+  fixed_length,    ///< `[n]`
+  maximum_length,  ///< `[n-]`
+  any_shape,       ///< `[*]`
+  fixed_shape,     ///< `[m,n,...]` or `[n,]`
 };
 
 enum class ContainerForm { none, list, int32_map, string_map, generator };
@@ -171,6 +171,7 @@ struct Object {
 struct Import {
   Name name;
   Span span;
+  bool is_reported = false;  ///< something was found and is reported as unfit; nothing is loaded
 };
 
 /// `using a.b.C [as D]`

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/diagnostics/report.hpp"
+#include "compiler/model/model.hpp"
+
+/// Every C++ name in generated code is made here.
+namespace robdef::cpp {
+
+/// A word of C++, one of its alternative tokens, or a macro of a standard header.
+bool is_reserved(std::string_view word);
+/// The name itself, with `_` behind it when it is reserved.
+std::string identifier(std::string_view name);
+
+/// `experimental::mount` for experimental.mount.
+std::string namespace_of(std::string_view service);
+/// `experimental/mount`
+std::string path_of(std::string_view service);
+/// `::experimental::mount::Angles`
+std::string qualified(const model::Definition& definition, std::string_view identifier);
+
+/// Names of the classes that are made for an object.
+std::string stub_name(const model::Object& object);
+std::string skeleton_name(const model::Object& object);
+std::string default_name(const model::Object& object);
+/// Objects without properties have nothing to store, and no Default class.
+bool has_default(const model::Object& object);
+
+/// `rr_type_Angles` and so on: what generated code defines besides the user's names. The word
+/// behind `rr_` says what it is, so that no two names can meet.
+std::string table_name(std::string_view what, std::string_view name);
+
+/// The names of one definition's namespace, and how they are seen from inside its classes.
+class Names {
+ public:
+  /// Takes all names of the definition. Reports R0901 for two that are one in C++, and R0903 for
+  /// those that had to be changed.
+  Names(const model::Definition& definition, const model::Model& model, Report& report);
+
+  [[nodiscard]] const model::Definition& definition() const { return *definition_; }
+
+  /// A type as it is written in this definition's namespace: by its own name, by an alias of
+  /// `using`, or with its whole path. `hidden` are names of the class around it.
+  [[nodiscard]] std::string type(const model::Record& record,
+                                 const std::set<std::string>& hidden) const;
+  [[nodiscard]] std::string type(const model::Enum& enumeration,
+                                 const std::set<std::string>& hidden) const;
+  /// A class that belongs to an object: `suffix` is Stub or Skeleton.
+  [[nodiscard]] std::string object_class(const model::Object& object, std::string_view class_name,
+                                         const std::set<std::string>& hidden) const;
+
+  /// A parameter or local variable: changed where it would hide a name of the namespace, is
+  /// reserved, begins like ours, or is taken; then it is taken.
+  [[nodiscard]] std::string local(std::string_view name, std::set<std::string>& taken) const;
+
+ private:
+  void add(const std::string& name, Span span, std::string_view what, Report& report);
+  void add_declarations(Report& report);
+  void check_inner_namespaces(const model::Model& model, Report& report);
+  [[nodiscard]] std::string type_of(const model::Definition& definition, const std::string& name,
+                                    const std::set<std::string>& hidden) const;
+
+  const model::Definition* definition_;
+  std::map<std::string, Span, std::less<>> taken_;
+  std::map<std::string, std::string, std::less<>> aliases_;  ///< by qualified robdef name
+};
+
+/// Names of the fields and constants of a record. Reports R0903.
+class RecordNames {
+ public:
+  RecordNames(const model::Record& record, Report& report);
+  /// Of a field or constant.
+  [[nodiscard]] const std::string& of(std::string_view name) const;
+  /// All of them: what types inside must not be mistaken for.
+  [[nodiscard]] const std::set<std::string>& hidden() const { return hidden_; }
+
+ private:
+  std::map<std::string, std::string, std::less<>> names_;
+  std::set<std::string> hidden_;
+};
+
+/// A member's name in the classes of its object: members named like one of them get a `_` too.
+std::string member_name(const model::Object& object, std::string_view name);
+/// Names that members of the object and of all that it implements have inside its classes.
+std::set<std::string> names_inside(const model::Object& object);
+/// Reports R0903 for the members of an object.
+void report_renamed_members(const model::Object& object, Report& report);
+
+}  // namespace robdef::cpp

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// The view of an object: its classes and tables.
+#include <algorithm>
+#include <utility>
+
+#include "compiler/backends/cpp/layout.hpp"
+#include "compiler/backends/cpp/view_parts.hpp"
+#include "compiler/backends/words.hpp"
+
+namespace robdef::cpp {
+namespace {
+
+/// The first sentence is ours, the rest the definition's.
+std::vector<std::string> class_doc(const std::string& sentence, const std::string& documentation,
+                                   const std::string& left_out) {
+  std::string text = sentence;
+  if (!documentation.empty()) text += "\n\n" + documentation;
+  if (!left_out.empty()) text += "\n\n" + left_out;
+  return doc_lines(text, 0);
+}
+
+std::string left_out_text(const std::vector<MemberView>& members) {
+  std::vector<std::string> names;
+  for (const MemberView& member : members) {
+    if (member.is_served) continue;
+    names.push_back((member.is_generator ? "generator" : member.kind) + " " + member.wire_name);
+  }
+  if (names.empty()) return "";
+  return "Left out, because this runtime does not serve them yet: " + join(names, ", ") + ".";
+}
+
+void make_docs(ObjectView& view, const model::Object& object) {
+  const std::string left_out = left_out_text(view.members);
+  const std::string& name = object.name;
+  view.stub_doc = class_doc("A " + name + " on another node.", object.documentation, left_out);
+  view.skeleton_doc =
+      class_doc("Serves one " + name + ": derive from it and implement its members.",
+                object.documentation, left_out);
+  view.default_doc = class_doc(
+      "A " + name +
+          " that stores the values of its properties. Functions and objrefs fail until they are "
+          "overridden.",
+      "", "");
+}
+
+void make_bases(ObjectView& view, const model::Object& object, const Context& context) {
+  std::vector<std::string> stubs;
+  std::vector<std::string> skeletons;
+  for (const model::Object* base : object.implements) {
+    const bool is_own = base->definition == object.definition;
+    view.implements.push_back(
+        {.wire_name = is_own ? base->name : base->qualified_name(),
+         .stub = context.names.object_class(*base, stub_name(*base), {}),
+         .skeleton = context.names.object_class(*base, skeleton_name(*base), {})});
+    stubs.push_back("public virtual " + view.implements.back().stub);
+    skeletons.push_back("public virtual " + view.implements.back().skeleton);
+  }
+  view.has_implements = !view.implements.empty();
+  if (!view.has_implements) {
+    stubs.emplace_back("public virtual ::rr::Stub");
+    skeletons.emplace_back("public virtual ::rr::Skeleton");
+  }
+  view.stub_head = class_head(view.stub, stubs);
+  view.skeleton_head = class_head(view.skeleton, skeletons);
+  view.default_head = class_head(view.default_class, {"public " + view.skeleton});
+}
+
+void make_names(ObjectView& view, const model::Object& object) {
+  view.wire_name = object.qualified_name();
+  view.short_name = object.name;
+  view.name = identifier(object.name);
+  view.stub = stub_name(object);
+  view.skeleton = skeleton_name(object);
+  view.default_class = default_name(object);
+  view.qualified_stub = qualified(*object.definition, view.stub);
+  view.qualified_skeleton = qualified(*object.definition, view.skeleton);
+  view.qualified_default = qualified(*object.definition, view.default_class);
+  view.has_default = has_default(object);
+  view.table = table_name("object", object.name);
+  view.member_table = table_name("members", object.name);
+  view.implements_table = table_name("implements", object.name);
+  view.parameter_tables = table_name("parameters", object.name);
+}
+
+void make_counts(ObjectView& view) {
+  const auto has = [&](auto is_wanted) {
+    return std::ranges::any_of(view.members, [&](const MemberView& member) {
+      return member.is_served && is_wanted(member);
+    });
+  };
+  view.has_members = has([](const MemberView&) { return true; });
+  view.has_parameters = has([](const MemberView& member) { return member.has_parameters; });
+  view.has_calls =
+      has([](const MemberView& member) { return member.is_property || member.is_function; });
+  view.has_objrefs = has([](const MemberView& member) { return member.is_objref; });
+  view.member_count = std::to_string(std::ranges::count_if(
+      view.members, [](const MemberView& member) { return member.is_served; }));
+}
+
+void make_dispatch(ObjectView& view) {
+  const auto type_of = [&](const std::string& class_name) {
+    return definition({.before = "const ",
+                       .result = "::rr::ObjectType&",
+                       .name = class_name + "::rr_object_type",
+                       .parameters = {},
+                       .after = " const"},
+                      "return " + view.table + ";", 0);
+  };
+  view.stub_type = type_of(view.stub);
+  view.skeleton_type = type_of(view.skeleton);
+  const std::string member = "::std::size_t";
+  const auto named = [](const std::string& type, const char* name, bool is_used) {
+    return is_used ? type + " " + name : type;
+  };
+  view.dispatch_head =
+      opening({.result = "void",
+               .name = view.skeleton + "::rr_dispatch",
+               .parameters = {named(member, "rr_member", view.has_calls),
+                              named("::rr::Request&", "rr_request", view.has_calls)}},
+              0);
+  const bool uses_index = std::ranges::any_of(
+      view.members, [](const MemberView& one) { return one.is_served && one.has_index; });
+  view.child_head =
+      opening({.result = "::std::shared_ptr<::rr::Skeleton>",
+               .name = view.skeleton + "::rr_child",
+               .parameters = {named(member, "rr_member", view.has_objrefs),
+                              named("const ::rr::ObjectIndex&", "rr_index", uses_index)}},
+              0);
+}
+
+}  // namespace
+
+ObjectView make_object(const model::Object& object, const Context& context) {
+  ObjectView view;
+  make_names(view, object);
+  make_bases(view, object, context);
+  report_renamed_members(object, context.report);
+  view.constants = class_constants(object.constants, context);
+  view.has_constants = !view.constants.empty();
+  make_members(view, object, context);
+  make_counts(view);
+  make_docs(view, object);
+  make_dispatch(view);
+  return view;
+}
+
+}  // namespace robdef::cpp

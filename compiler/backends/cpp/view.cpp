@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: Apache-2.0
+// Model -> view: what is declared, in which order, with which headers. Members are made in
+// member_view.cpp. Reports R0901 to R0904.
+#include "compiler/backends/cpp/view.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <variant>
+
+#include "compiler/backends/cpp/constants.hpp"
+#include "compiler/backends/cpp/layout.hpp"
+#include "compiler/backends/cpp/literal_text.hpp"
+#include "compiler/backends/cpp/order.hpp"
+#include "compiler/backends/cpp/view_parts.hpp"
+#include "compiler/backends/words.hpp"
+#include "compiler/output/prose.hpp"
+
+namespace robdef::cpp {
+
+std::vector<std::string> doc_lines(const std::string& documentation, std::size_t indent) {
+  return prose(documentation, "/// ", line_width - indent);
+}
+
+std::string variable(const CppType& type, const std::string& name, std::size_t indent) {
+  const std::string flat = type.text + " " + name + type.initial + ";";
+  if (indent + flat.size() <= line_width) return flat;
+  if (type.initial.starts_with(" = ") &&
+      indent + type.text.size() + 1 + name.size() + 2 <= line_width) {
+    return assignment(type.text + " " + name, type.initial.substr(3), indent);
+  }
+  return type.text + "\n" + std::string(indent + 4, ' ') + name + type.initial + ";";
+}
+
+namespace {
+
+ConstantView make_constant(const model::Constant& constant, const std::string& storage,
+                           std::size_t indent, const Context& context) {
+  ConstantView view;
+  view.wire_name = constant.name;
+  view.name = identifier(constant.name);
+  view.doc = doc_lines(constant.documentation, indent);
+  view.is_struct = constant.is_struct;
+  view.type = constant_type(constant, context.types);
+  view.value = constant_value(constant);
+  view.definition = constant_definition(constant, view.name, storage, context.types, indent);
+  return view;
+}
+
+EnumView make_enum(const model::Enum& enumeration) {
+  EnumView view;
+  view.wire_name = enumeration.name;
+  view.name = identifier(enumeration.name);
+  view.qualified = qualified(*enumeration.definition, view.name);
+  view.doc = doc_lines(enumeration.documentation, 0);
+  view.has_values = !enumeration.values.empty();
+  for (const model::EnumValue& value : enumeration.values) {
+    view.values.push_back({.wire_name = value.name,
+                           .name = identifier(value.name),
+                           .value = enum_literal(value),
+                           .doc = doc_lines(value.documentation, 2)});
+  }
+  return view;
+}
+
+ExceptionView make_exception(const model::Exception& exception, const Context& context) {
+  ExceptionView view;
+  view.wire_name = exception.definition->name + "." + exception.name;
+  view.name = identifier(exception.name);
+  view.qualified = qualified(*exception.definition, view.name);
+  view.doc = doc_lines(exception.documentation, 0);
+  for (const char* header : {"<rr/error.hpp>", "<rr/varvalue.hpp>", "<string>", "<utility>"}) {
+    context.types.include(header);
+  }
+  std::set<std::string> taken;
+  const std::string message = context.names.local("message", taken);
+  const std::string subname = context.names.local("subname", taken);
+  const std::string parameter = context.names.local("parameter", taken);
+  const std::string head =
+      list({.before = "explicit " + view.name + "(",
+            .items = {"::std::string " + message, "::std::string " + subname + " = {}",
+                      "const ::rr::VarValue& " + parameter + " = {}"},
+            .after = ")"},
+           2);
+  view.constructor =
+      head + "\n      " +
+      list({.before = ": ::rr::Error(",
+            .items = {"::rr::ErrorCode::remote_error", "\"" + view.wire_name + "\"",
+                      "::std::move(" + message + ")", "::std::move(" + subname + ")", parameter},
+            .after = ") {}"},
+           6);
+  return view;
+}
+
+FieldView make_field(const model::Field& field, const model::Record& record,
+                     const RecordNames& names, const Context& context) {
+  const CppType type =
+      context.types.spell(field.type, {.hidden = &names.hidden(), .record = &record});
+  // Outside of the class its names hide nothing.
+  const CppType described = context.types.spell(field.type, {.record = &record});
+  FieldView view;
+  view.wire_name = field.name;
+  view.name = names.of(field.name);
+  view.doc = doc_lines(field.documentation, 2);
+  view.type = type.text;
+  view.descriptor = described.descriptor;
+  view.robdef_type = field.type.text();
+  view.declaration = variable(type, view.name, 2);
+  return view;
+}
+
+std::vector<std::string> field_rows(const RecordView& view) {
+  std::vector<std::string> items;
+  for (const FieldView& field : view.fields) {
+    items.push_back(list({.before = "::rr::field<" + field.descriptor + ">(",
+                          .items = {"\"" + field.wire_name + "\"",
+                                    "offsetof(" + view.name + ", " + field.name + ")"},
+                          .after = "),"},
+                         4));
+  }
+  return table_rows(items, 4);
+}
+
+std::string record_table(const RecordView& view) {
+  const std::string before = "constinit const ::rr::RecordType " + view.table + "{";
+  const std::string name = "\"" + view.wire_name + "\"";
+  const std::string operations = "::rr::record_operations<" + view.name + ">";
+  if (view.is_namedarray) {
+    return list({.before = before,
+                 .items = {name, "::rr::number_of<" + view.number_type + ">", view.number_count,
+                           operations},
+                 .after = "};"},
+                0);
+  }
+  const std::string fields = view.has_fields ? view.field_table : "{}";
+  return list({.before = before,
+               .items = {view.is_struct ? "::rr::RecordKind::struct_" : "::rr::RecordKind::pod",
+                         name, fields, operations},
+               .after = "};"},
+              0);
+}
+
+/// Throws the exception's class: a row of the definition's table.
+std::string exception_row(const ExceptionView& view, const Names& names) {
+  std::set<std::string> taken;
+  const std::string error = names.local("error", taken);
+  const std::string raise =
+      "[](const ::rr::Error& " + error + ") { throw " + view.name + "(" + error + "); }";
+  return list({.before = "{", .items = {"\"" + view.wire_name + "\"", raise}, .after = "},"}, 4);
+}
+
+/// `inline constexpr const ::rr::Type& rr::type_of<...> = ...;`
+std::string specialization(const RecordView& view, const std::string& space) {
+  const std::string left = "inline constexpr const ::rr::Type& rr::type_of<" + view.qualified + ">";
+  const std::string right = "::" + space + "::" + view.table;
+  if (left.size() + 2 <= line_width) return assignment(left, right, 0);
+  const std::string type = "inline constexpr const ::rr::Type&";
+  const std::string second = "    rr::type_of<" + view.qualified + "> =";
+  if (second.size() <= line_width) return type + "\n" + second + "\n        " + right + ";";
+  return type + " rr::type_of<\n    " + view.qualified + "> =\n    " + right + ";";
+}
+
+RecordView make_record(const model::Record& record, const Context& context) {
+  const RecordNames names(record, context.report);
+  RecordView view;
+  view.wire_name = record.qualified_name();
+  view.name = identifier(record.name);
+  view.qualified = qualified(*record.definition, view.name);
+  view.doc = doc_lines(record.documentation, 0);
+  view.kind = model::name_of(record.kind);
+  view.is_struct = record.kind == model::RecordKind::struct_;
+  view.is_pod = record.kind == model::RecordKind::pod;
+  view.is_namedarray = record.kind == model::RecordKind::namedarray;
+  if (view.is_namedarray) {
+    view.number_type = context.types.number(record.number);
+    view.number_count = std::to_string(record.number_count);
+  }
+  view.constants = class_constants(record.constants, context);
+  for (const model::Field& field : record.fields) {
+    view.fields.push_back(make_field(field, record, names, context));
+  }
+  view.has_fields = !view.fields.empty();
+  view.table = table_name("type", record.name);
+  view.field_table = table_name("fields", record.name);
+  view.field_rows = field_rows(view);
+  view.table_definition = record_table(view);
+  view.specialization = specialization(view, namespace_of(record.definition->name));
+  context.types.include("<rr/type.hpp>");
+  return view;
+}
+
+class DefinitionMaker {
+ public:
+  DefinitionMaker(const model::Definition& definition, const model::Model& model, Report& report)
+      : definition_(definition),
+        names_(definition, model, report),
+        types_(names_),
+        context_{names_, types_, report} {}
+
+  DefinitionView make() {
+    make_names();
+    make_imports();
+    make_aliases();
+    const std::vector<model::Declaration> order = in_cpp_order(definition_);
+    for (const model::Declaration& early : named_early(order)) add_forward(early);
+    for (const model::Declaration& declaration : order) {
+      view_.declarations.push_back(
+          std::visit([&](const auto* declared) { return make(*declared); }, declaration));
+    }
+    make_groups();
+    make_tables();
+    view_.has_aliases = !view_.aliases.empty();
+    view_.has_forwards = !view_.forwards.empty();
+    view_.text = literal_text(definition_.text);
+    types_.include("<rr/stub.hpp>");
+    view_.includes.assign(types_.headers().begin(), types_.headers().end());
+    return std::move(view_);
+  }
+
+ private:
+  void make_names() {
+    view_.wire_name = definition_.name;
+    view_.space = namespace_of(definition_.name);
+    view_.qualified = "::" + view_.space;
+    view_.path = path_of(definition_.name);
+    view_.header = view_.path + ".hpp";
+    view_.doc = doc_lines(definition_.documentation, 0);
+    std::vector<std::string> numbers;
+    for (const std::uint32_t number : definition_.version.numbers) {
+      numbers.push_back(std::to_string(number));
+    }
+    view_.version = "{" + join(numbers, ", ") + "}";
+  }
+
+  void make_imports() {
+    for (const model::Definition* import : definition_.imports) {
+      const std::string header = path_of(import->name) + ".hpp";
+      view_.imports.push_back({.wire_name = import->name,
+                               .header = header,
+                               .definition = qualified(*import, "rr_definition")});
+      view_.import_includes.push_back("\"" + header + "\"");
+    }
+    std::ranges::sort(view_.import_includes);
+    view_.has_imports = !view_.imports.empty();
+  }
+
+  /// Types and exceptions keep their aliases. Objects are classes of other names, and constants are
+  /// not reached through aliases in the language either.
+  void make_aliases() {
+    for (const model::Alias& alias : definition_.aliases) {
+      const std::size_t dot = alias.qualified_name.rfind('.');
+      const std::string target = alias.qualified_name.substr(dot + 1);
+      for (const model::Definition* import : definition_.imports) {
+        if (alias.qualified_name.substr(0, dot) != import->name) continue;
+        if (!has_type(*import, target)) continue;
+        view_.aliases.push_back({"using " + identifier(alias.name) + " = " +
+                                 qualified(*import, identifier(target)) + ";"});
+      }
+    }
+  }
+
+  static bool has_type(const model::Definition& definition, const std::string& name) {
+    const auto is_called = [&](const auto& declared) { return declared.name == name; };
+    return std::ranges::any_of(definition.records, is_called) ||
+           std::ranges::any_of(definition.enums, is_called) ||
+           std::ranges::any_of(definition.exceptions, is_called);
+  }
+
+  void add_forward(const model::Declaration& early) {
+    if (const auto* record = std::get_if<const model::Record*>(&early)) {
+      view_.forwards.push_back({"struct " + identifier((*record)->name) + ";"});
+    } else if (const auto* object = std::get_if<const model::Object*>(&early)) {
+      view_.forwards.push_back({"class " + stub_name(**object) + ";"});
+      view_.forwards.push_back({"class " + skeleton_name(**object) + ";"});
+    }
+  }
+
+  DeclarationView make(const model::Constant& constant) {
+    DeclarationView view;
+    view.constant = make_constant(constant, "inline constexpr", 0, context_);
+    return view;
+  }
+  DeclarationView make(const model::Exception& exception) {
+    DeclarationView view;
+    view.exception = make_exception(exception, context_);
+    view_.has_exceptions = true;
+    return view;
+  }
+  DeclarationView make(const model::Enum& enumeration) {
+    types_.include("<cstdint>");
+    DeclarationView view;
+    view.enumeration = make_enum(enumeration);
+    return view;
+  }
+  DeclarationView make(const model::Record& record) {
+    DeclarationView view;
+    view.record = make_record(record, context_);
+    view_.has_records = true;
+    view_.has_fields |= view.record->has_fields && !view.record->is_namedarray;
+    return view;
+  }
+  DeclarationView make(const model::Object& object) {
+    DeclarationView view;
+    view.object = make_object(object, context_);
+    view_.has_objects = true;
+    for (const char* header :
+         {"<cstddef>", "<memory>", "<rr/answer.hpp>", "<rr/skeleton.hpp>", "<utility>"}) {
+      types_.include(header);
+    }
+    if (view.object->has_default) types_.include("<rr/stored.hpp>");
+    return view;
+  }
+
+  void make_tables() {
+    std::vector<std::string> imports;
+    std::vector<std::string> records;
+    std::vector<std::string> exceptions;
+    std::vector<std::string> objects;
+    for (const ImportView& import : view_.imports) imports.push_back("&" + import.definition + ",");
+    for (const DeclarationView& view : view_.declarations) {
+      if (view.record) records.push_back("&" + view.record->table + ",");
+      if (view.exception) exceptions.push_back(exception_row(*view.exception, names_));
+      if (view.object) objects.push_back("&" + view.object->table + ",");
+    }
+    view_.import_rows = table_rows(imports, 4);
+    view_.record_rows = table_rows(records, 4);
+    view_.exception_rows = table_rows(exceptions, 4);
+    view_.object_rows = table_rows(objects, 4);
+  }
+
+  /// Short constants that follow each other stand together.
+  void make_groups() {
+    const auto is_short = [](const DeclarationView& view) {
+      return view.constant && view.constant->doc.empty() && !view.constant->is_struct;
+    };
+    for (std::size_t i = 0; i < view_.declarations.size(); ++i) {
+      const bool joins = i + 1 < view_.declarations.size() && is_short(view_.declarations[i]) &&
+                         is_short(view_.declarations[i + 1]);
+      view_.declarations[i].ends_group = !joins;
+    }
+  }
+
+  const model::Definition& definition_;
+  Names names_;
+  Types types_;
+  Context context_;
+  DefinitionView view_;
+};
+
+}  // namespace
+
+std::vector<ConstantView> class_constants(const std::vector<model::Constant>& constants,
+                                          const Context& context) {
+  std::vector<ConstantView> views;
+  for (const model::Constant& constant : constants) {
+    views.push_back(make_constant(constant, "static constexpr", 2, context));
+  }
+  return views;
+}
+
+ModelView make_view(const model::Model& model, Report& report) {
+  ModelView view;
+  for (const auto& definition : model.definitions()) {
+    if (definition->is_import) continue;
+    check_types(*definition, report);
+    view.definitions.push_back(DefinitionMaker(*definition, model, report).make());
+  }
+  return view;
+}
+
+}  // namespace robdef::cpp

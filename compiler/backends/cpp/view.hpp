@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/diagnostics/report.hpp"
+#include "compiler/model/model.hpp"
+#include "compiler/output/view_type.hpp"
+
+/// What templates can print of a definition in C++. Texts are finished: names are C++ names, types
+/// C++ types, and what may need several lines is broken as the project's clang-format style does.
+/// `robdef view --lang cpp` prints it all as JSON.
+namespace robdef::cpp {
+
+/// A constant of a definition, record or object.
+struct ConstantView {
+  std::string wire_name;         ///< as in the definition
+  std::string name;              ///< in C++
+  std::vector<std::string> doc;  ///< lines with their `///`
+  bool is_struct = false;        ///< a struct constant: without type and value
+  std::string type;              ///< `::std::array<double, 3>`
+  std::string value;             ///< `{1, 2, 3}`
+  std::string definition;        ///< all of it
+};
+
+/// A name of `using` for something of another definition.
+struct AliasView {
+  std::string definition;  ///< `using Point = ::example::geometry::Point;`
+};
+
+struct EnumValueView {
+  std::string wire_name;
+  std::string name;
+  std::string value;  ///< `1`, `0x10`
+  std::vector<std::string> doc;
+};
+
+struct EnumView {
+  std::string wire_name;
+  std::string name;
+  std::string qualified;  ///< `::example::Color`
+  std::vector<std::string> doc;
+  bool has_values = false;
+  std::vector<EnumValueView> values;
+};
+
+struct ExceptionView {
+  std::string wire_name;  ///< qualified: `example.Fault`
+  std::string name;
+  std::string qualified;
+  std::vector<std::string> doc;
+  std::string constructor;  ///< from message, sub-name and parameter
+};
+
+struct FieldView {
+  std::string wire_name;
+  std::string name;
+  std::vector<std::string> doc;
+  std::string type;         ///< `::std::optional<Pose>`
+  std::string descriptor;   ///< what rr::type_of is asked for
+  std::string robdef_type;  ///< as in the definition, with qualified names
+  std::string declaration;  ///< `double pan = 0;`
+};
+
+/// A struct, pod or namedarray.
+struct RecordView {
+  std::string wire_name;  ///< qualified: `example.Angles`
+  std::string name;
+  std::string qualified;
+  std::vector<std::string> doc;
+  std::string kind;  ///< `struct`, `pod`, `namedarray`
+  bool is_struct = false;
+  bool is_pod = false;
+  bool is_namedarray = false;
+  std::string number_type;   ///< namedarray: of its numbers, `double`
+  std::string number_count;  ///< namedarray
+  std::vector<ConstantView> constants;
+  std::vector<FieldView> fields;
+  bool has_fields = false;
+  std::string table;                    ///< name of its RecordType
+  std::string field_table;              ///< name of the array of its fields
+  std::vector<std::string> field_rows;  ///< what the array holds
+  std::string table_definition;         ///< of the RecordType
+  std::string specialization;           ///< of rr::type_of
+};
+
+struct ParameterView {
+  std::string wire_name;
+  std::string name;
+  std::string type;
+  std::string passed;  ///< `double`, `const ::std::string&`
+  std::string local;   ///< a variable for it: `double pan = 0;`
+  std::string descriptor;
+  std::string robdef_type;
+};
+
+/// A member of an object. What does not apply to its kind is empty or false.
+struct MemberView {
+  std::string wire_name;
+  std::string name;
+  std::vector<std::string> doc;
+  std::string kind;  ///< `property`, `function`, ...
+  bool is_property = false;
+  bool is_function = false;
+  bool is_event = false;
+  bool is_objref = false;
+  bool is_pipe = false;
+  bool is_callback = false;
+  bool is_wire = false;
+  bool is_memory = false;
+  bool is_served = false;     ///< false: the runtime cannot do it yet, and nothing is generated
+  bool is_inherited = false;  ///< the generated classes have it from one they implement
+  std::string number;         ///< its place in the object's table
+  std::string entry;          ///< the table's entry: `rr_members_PanTilt[3]`
+
+  bool is_readonly = false;
+  bool is_writeonly = false;
+  bool is_unreliable = false;
+  bool is_nolock = false;
+  bool is_nolockread = false;
+  bool is_perclient = false;
+  bool is_urgent = false;
+  bool can_get = false;  ///< property: not writeonly
+  bool can_set = false;  ///< property: not readonly
+
+  std::string type;    ///< property, pipe, wire, memory: the value; function, callback: the result
+  std::string passed;  ///< the value as a parameter
+  std::string descriptor;  ///< what rr::type_of is asked for
+  std::string robdef_type;
+  std::string value;   ///< a name for a variable that holds it
+  std::string local;   ///< the variable: `double value = 0;`
+  std::string stored;  ///< property: what a Default class keeps: `::rr::Stored<double> rr_pan;`
+  bool has_result = false;  ///< function, callback: not void
+  std::vector<ParameterView> parameters;
+  bool has_parameters = false;
+  std::string arguments;        ///< names of the parameters: `pan, tilt`
+  std::string parameter_table;  ///< its definition; empty without parameters
+  bool is_generator = false;
+  bool yields = false;                               ///< generator: each step returns a `type`
+  std::optional<ParameterView> generator_parameter;  ///< what each step takes
+
+  std::string object_type;  ///< objref: qualified, `example.PanTilt`; empty for varobject
+  bool is_varobject = false;
+  std::string stub;  ///< objref: its class, as written here
+  std::string skeleton;
+  std::string qualified_stub;
+  std::string qualified_skeleton;
+  bool has_index = false;
+  bool has_int32_index = false;
+  bool has_string_index = false;
+
+  std::string getter;  ///< `get_pan`: properties and objrefs
+  std::string setter;  ///< `set_pan`
+  std::string token;   ///< name of the template parameter of async_ forms
+
+  // Laid out, for the inside of a class.
+  std::string stub_get;
+  std::string stub_set;
+  std::string stub_call;  ///< function
+  std::string stub_event;
+  std::string stub_find;             ///< objref: declared in the class
+  std::string stub_find_definition;  ///< objref: outside of it
+  std::string async_get;
+  std::string async_set;
+  std::string async_call;
+  std::string async_find;
+  std::string skeleton_get;
+  std::string skeleton_set;
+  std::string skeleton_call;
+  std::string skeleton_async;
+  std::string skeleton_fire;
+  std::string skeleton_find;
+  std::string dispatch_read;  ///< function: reads its parameters in rr_dispatch
+  std::string dispatch_call;  ///< function: the call there
+  std::string dispatch_find;  ///< objref: the case in rr_child
+  std::string default_get;
+  std::string default_set;
+  std::string default_call;
+  std::string default_find;
+};
+
+struct BaseView {
+  std::string wire_name;  ///< as an implements line stores it: qualified unless of this definition
+  std::string stub;
+  std::string skeleton;
+};
+
+struct ObjectView {
+  std::string wire_name;   ///< qualified: `example.PanTilt`
+  std::string short_name;  ///< `PanTilt`
+  std::string name;        ///< of the struct that holds its constants
+  std::vector<std::string> stub_doc;
+  std::vector<std::string> skeleton_doc;
+  std::vector<std::string> default_doc;
+  std::string stub;
+  std::string skeleton;
+  std::string default_class;
+  std::string qualified_stub;
+  std::string qualified_skeleton;
+  std::string qualified_default;
+  std::string stub_head;  ///< `class PanTiltStub : public virtual ::rr::Stub {`
+  std::string skeleton_head;
+  std::string default_head;
+  bool has_default = false;
+  std::vector<BaseView> implements;
+  bool has_implements = false;
+  std::vector<ConstantView> constants;
+  bool has_constants = false;
+  std::vector<MemberView> members;
+  bool has_members = false;     ///< served ones
+  bool has_parameters = false;  ///< one of them has parameters
+  bool has_calls = false;       ///< properties or functions
+  bool has_objrefs = false;
+  std::string member_count;
+  std::string table;                     ///< name of its ObjectType
+  std::string member_table;              ///< of the array of its members
+  std::vector<std::string> member_rows;  ///< what the array holds
+  std::string implements_table;
+  std::string parameter_tables;  ///< of the struct with its parameters' tables
+  std::string stub_type;         ///< definitions of rr_object_type
+  std::string skeleton_type;
+  std::string dispatch_head;
+  std::string child_head;
+};
+
+/// A declaration in the order of the generated header: one of these is there.
+struct DeclarationView {
+  std::optional<ConstantView> constant;
+  std::optional<ExceptionView> exception;
+  std::optional<EnumView> enumeration;
+  std::optional<RecordView> record;
+  std::optional<ObjectView> object;
+  bool ends_group = false;  ///< an empty line follows
+};
+
+/// Something of the definition that is declared before it is defined.
+struct ForwardView {
+  std::string declaration;  ///< `class PanTiltStub;`
+};
+
+struct ImportView {
+  std::string wire_name;
+  std::string header;      ///< `example/geometry.hpp`
+  std::string definition;  ///< `::example::geometry::rr_definition`
+};
+
+/// One service definition.
+struct DefinitionView {
+  std::string wire_name;  ///< `experimental.mount`
+  std::string space;      ///< `experimental::mount`
+  std::string qualified;  ///< `::experimental::mount`
+  std::string path;       ///< `experimental/mount`
+  std::string header;     ///< `experimental/mount.hpp`
+  std::vector<std::string> doc;
+  std::vector<std::string> includes;         ///< of the header: `<cstdint>`
+  std::vector<std::string> import_includes;  ///< `"example/geometry.hpp"`
+  std::vector<ImportView> imports;
+  bool has_imports = false;
+  std::vector<AliasView> aliases;
+  bool has_aliases = false;
+  std::vector<ForwardView> forwards;
+  bool has_forwards = false;
+  std::vector<DeclarationView> declarations;
+  bool has_fields = false;  ///< a struct or pod has some
+  bool has_records = false;
+  bool has_exceptions = false;
+  bool has_objects = false;
+  std::vector<std::string> import_rows;  ///< of the array of imported definitions
+  std::vector<std::string> record_rows;  ///< of the array of records
+  std::vector<std::string> exception_rows;
+  std::vector<std::string> object_rows;
+  std::vector<std::string> text;  ///< the definition's text as C++ literals, to be put in a row
+  std::string version;            ///< `{0, 10, 0, 0}`
+};
+
+/// Everything that is generated for.
+struct ModelView {
+  std::vector<DefinitionView> definitions;
+};
+
+/// Builds the view. Reports R0901 to R0904.
+ModelView make_view(const model::Model& model, Report& report);
+
+}  // namespace robdef::cpp

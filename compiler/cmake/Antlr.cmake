@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+# Lexers and parsers from grammars: the ANTLR tool and its C++ runtime, and one function.
+
+# The package's configuration names two libraries, but knows neither their headers nor that they
+# want libuuid to be linked.
+find_package(antlr4-runtime 4.9 REQUIRED CONFIG)
+find_path(ROBDEF_ANTLR_INCLUDE antlr4-runtime.h
+  HINTS ${ANTLR4_INCLUDE_DIR} PATH_SUFFIXES antlr4-runtime REQUIRED)
+find_program(ROBDEF_ANTLR_TOOL NAMES antlr4 REQUIRED
+  DOC "The ANTLR 4 tool, 4.7.2 or later but before 4.10, whose tables the runtime cannot read")
+
+# robdef_grammar(NAME LEXER file PARSER file NAMESPACE name)
+# A static library of the lexer and parser of a grammar. Its sources are C++17, since tool 4.7
+# writes u8"" where it means char; its headers can be included from C++20.
+function(robdef_grammar name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "LEXER;PARSER;NAMESPACE" "")
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/generated)
+  set(sources)
+  set(others)
+  foreach(grammar ${arg_LEXER} ${arg_PARSER})
+    get_filename_component(stem ${grammar} NAME_WE)
+    list(APPEND sources ${folder}/${stem}.cpp)
+    list(APPEND others ${folder}/${stem}.h ${folder}/${stem}.tokens ${folder}/${stem}.interp)
+  endforeach()
+  # Relative names, because the tool writes the name into what it generates.
+  add_custom_command(
+    OUTPUT ${sources} ${others}
+    COMMAND ${ROBDEF_ANTLR_TOOL} -Werror -Dlanguage=Cpp -no-visitor -no-listener
+      -package ${arg_NAMESPACE} -Xexact-output-dir -o ${folder} ${arg_LEXER} ${arg_PARSER}
+    WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
+    DEPENDS ${arg_LEXER} ${arg_PARSER}
+    COMMENT "Generating ${arg_PARSER}"
+    VERBATIM)
+  add_library(${name} STATIC ${sources})
+  set_target_properties(${name} PROPERTIES CXX_STANDARD 17)
+  target_include_directories(${name} SYSTEM PUBLIC ${folder} ${ROBDEF_ANTLR_INCLUDE})
+  target_link_libraries(${name} PUBLIC antlr4_static)
+endfunction()

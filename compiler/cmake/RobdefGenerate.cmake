@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+# robdef_generate(TARGET
+#   FILES a.robdef ...        definitions to generate code for; absolute or in the current source folder
+#   LANGUAGE cpp
+#   [IMPORT_PATHS dir ...]    where imported definitions are looked for; the folders of FILES and the
+#                             environment variable ROBOTRACONTEUR_ROBDEF_PATH are searched too
+#   [OUTPUT_DIR dir])         default: <current binary folder>/TARGET_robdef
+#
+# Generates code while TARGET is built, and adds it to TARGET: the sources, the include folder and
+# the runtime, both passed on to what links TARGET. TARGET is a library or program made before.
+# For a service a.b.c the header is included as "a/b/c.hpp". Nothing is generated for imports: give
+# them as FILES too, here or in another target that is linked.
+#
+# Each definition has a command of its own that knows all files it read, so an edited import runs
+# again exactly what depends on it; files whose text stays the same are not touched.
+#
+# Works with the target robdef of this tree and with robdef::robdef of an installed package.
+
+# Depth of a path in OUTPUT_DIR and its endings, by language. The names follow from the service
+# line, so they are known before the compiler is built; `robdef generate --list-outputs` prints
+# the same ones, and a test compares them.
+set(ROBDEF_CPP_ENDINGS .hpp .cpp)
+
+# The paths below OUTPUT_DIR that are generated for `file`.
+function(robdef_output_names file language result)
+  file(READ "${file}" text)
+  # The first statement; in front of it may stand blanks and a byte order mark.
+  if(NOT text MATCHES "(^|\n)[^A-Za-z0-9_#\n]*service[ \t\r\n\\\\]+([A-Za-z0-9_.]+)")
+    message(FATAL_ERROR "${file}: there is no service line")
+  endif()
+  set(service "${CMAKE_MATCH_2}")
+  string(TOUPPER "${language}" language)
+  set(names "")
+  string(REPLACE "." "/" path "${service}")
+  foreach(ending IN LISTS ROBDEF_${language}_ENDINGS)
+    list(APPEND names "${path}${ending}")
+  endforeach()
+  set(${result} "${names}" PARENT_SCOPE)
+endfunction()
+
+function(robdef_generate target)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "LANGUAGE;OUTPUT_DIR" "FILES;IMPORT_PATHS")
+  if(arg_UNPARSED_ARGUMENTS OR NOT arg_FILES)
+    message(FATAL_ERROR "usage: robdef_generate(TARGET FILES ... LANGUAGE cpp [IMPORT_PATHS ...] [OUTPUT_DIR dir]); not understood: ${arg_UNPARSED_ARGUMENTS}")
+  endif()
+  if(NOT TARGET ${target})
+    message(FATAL_ERROR "robdef_generate: there is no target ${target}")
+  endif()
+  if(NOT arg_LANGUAGE STREQUAL "cpp")
+    message(FATAL_ERROR "robdef_generate: unknown LANGUAGE `${arg_LANGUAGE}`; known: cpp")
+  endif()
+  if(NOT arg_OUTPUT_DIR)
+    set(arg_OUTPUT_DIR "${target}_robdef")
+  endif()
+  cmake_path(ABSOLUTE_PATH arg_OUTPUT_DIR BASE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}" NORMALIZE)
+
+  set(files "")
+  set(folders "")
+  foreach(file IN LISTS arg_FILES)
+    cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" NORMALIZE)
+    list(APPEND files "${file}")
+  endforeach()
+  foreach(folder IN LISTS arg_IMPORT_PATHS)
+    cmake_path(ABSOLUTE_PATH folder BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" NORMALIZE)
+    list(APPEND folders "${folder}")
+  endforeach()
+  foreach(file IN LISTS files)
+    cmake_path(GET file PARENT_PATH folder)
+    list(APPEND folders "${folder}")
+  endforeach()
+  list(REMOVE_DUPLICATES folders)
+  list(TRANSFORM folders PREPEND "-I" OUTPUT_VARIABLE search)
+
+  set(stamps "")
+  foreach(file IN LISTS files)
+    # A new service name means new file names.
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
+    robdef_output_names("${file}" ${arg_LANGUAGE} names)
+    list(TRANSFORM names PREPEND "${arg_OUTPUT_DIR}/" OUTPUT_VARIABLE outputs)
+    cmake_path(GET file FILENAME name)
+    set(stamp "${CMAKE_CURRENT_BINARY_DIR}/${target}_robdef.stamps/${name}")
+    # The generated files are byproducts, since they keep their old time when their text stays the
+    # same; the stamp says when the command last ran.
+    add_custom_command(
+      OUTPUT "${stamp}.stamp"
+      BYPRODUCTS ${outputs}
+      COMMAND robdef::robdef generate --lang ${arg_LANGUAGE} -o "${arg_OUTPUT_DIR}" ${search}
+              --depfile "${stamp}.d" --depfile-target "${stamp}.stamp" "${file}"
+      COMMAND ${CMAKE_COMMAND} -E touch "${stamp}.stamp"
+      DEPENDS "${file}" robdef::robdef
+      DEPFILE "${stamp}.d"
+      COMMENT "Generating ${arg_LANGUAGE} from ${name}"
+      VERBATIM)
+    list(APPEND stamps "${stamp}.stamp")
+    target_sources(${target} PRIVATE ${outputs})
+  endforeach()
+  file(MAKE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/${target}_robdef.stamps")
+
+  # One target in front of TARGET, so that headers are there before anything includes them.
+  get_property(count TARGET ${target} PROPERTY ROBDEF_GENERATE_CALLS)
+  math(EXPR count "0${count} + 1")
+  set_property(TARGET ${target} PROPERTY ROBDEF_GENERATE_CALLS ${count})
+  add_custom_target(${target}_robdef_${count} DEPENDS ${stamps})
+  add_dependencies(${target} ${target}_robdef_${count})
+
+  target_include_directories(${target} PUBLIC "$<BUILD_INTERFACE:${arg_OUTPUT_DIR}>")
+  # By property, so that the caller may link in either form of target_link_libraries.
+  set_property(TARGET ${target} APPEND PROPERTY LINK_LIBRARIES robdef::runtime)
+  set_property(TARGET ${target} APPEND PROPERTY INTERFACE_LINK_LIBRARIES robdef::runtime)
+endfunction()

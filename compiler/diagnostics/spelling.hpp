@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace robdef {
+
+/// The candidate that `written` was probably meant to be: the one that takes the fewest inserted,
+/// removed, changed or swapped letters, upper and lower case taken as near. Of equally near ones
+/// the first. Empty when all are too far off to be worth a word.
+std::string_view nearest(std::string_view written, const std::vector<std::string_view>& candidates);
+
+}  // namespace robdef

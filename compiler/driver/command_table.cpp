@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/driver/command_table.hpp"
+
+#include <array>
+#include <cctype>
+#include <vector>
+
+#include "compiler/backends/backend.hpp"
+#include "compiler/diagnostics/spelling.hpp"
+
+namespace robdef {
+
+namespace {
+
+std::string upper_case(std::string_view text) {
+  std::string upper(text);
+  for (char& letter : upper) {
+    letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  }
+  return upper;
+}
+
+std::string take_language(Options& options, const std::string& value) {
+  if (find_backend(value) != nullptr) {
+    options.language = value;
+    return "";
+  }
+  std::string known;
+  std::vector<std::string_view> names;
+  for (const Backend* backend : backends()) {
+    known += (known.empty() ? "`" : ", `") + std::string(backend->name()) + "`";
+    names.push_back(backend->name());
+  }
+  const std::string_view near = nearest(value, names);
+  return "unknown language `" + value + "`; " +
+         (near.empty() ? "known: " + known : "did you mean `" + std::string(near) + "`?");
+}
+
+std::string take_format(Options& options, const std::string& value) {
+  if (value == "text") {
+    options.format = Format::text;
+  } else if (value == "line") {
+    options.format = Format::line;
+  } else if (value == "json") {
+    options.format = Format::json;
+  } else {
+    return "unknown format `" + value + "`; known: `text`, `line`, `json`";
+  }
+  return "";
+}
+
+std::string take_silenced(Options& options, const std::string& value) {
+  const CodeEntry* entry = find_code(upper_case(value));
+  if (entry == nullptr) return "there is no code `" + value + "`; see `robdef explain --list`";
+  if (entry->severity == Severity::error) {
+    return "`" + std::string(entry->name) + "` is an error; only warnings can be turned off";
+  }
+  options.silenced.push_back(entry->code);
+  return "";
+}
+
+template <std::string Options::*member>
+std::string take_text(Options& options, const std::string& value) {
+  options.*member = value;
+  return value.empty() ? "the value is empty" : "";
+}
+
+template <bool Options::*member>
+std::string take_switch(Options& options, const std::string&) {
+  options.*member = true;
+  return "";
+}
+
+std::string take_import_folder(Options& options, const std::string& value) {
+  options.search_path.folders.push_back(value);
+  return value.empty() ? "the value is empty" : "";
+}
+
+constexpr CommandSet reading = {Command::generate, Command::check, Command::describe,
+                                Command::model, Command::view};
+
+constexpr std::array commands = {
+    CommandRow{Command::generate, "generate", "--lang LANG [-o DIR] [OPTION...] FILE...",
+               "make the source files of a language",
+               "Checks the definitions, and everything they import, and writes the code for the\n"
+               "given files below the output folder. Nothing is generated for imports.\n"
+               "Nothing is written unless everything can be, and a file whose text stays the\n"
+               "same is not touched.\n"},
+    CommandRow{Command::check, "check", "[OPTION...] FILE...",
+               "report errors and warnings, write nothing",
+               "Checks the definitions and everything they import. All errors of all files are\n"
+               "reported in one run.\n"},
+    CommandRow{Command::describe, "describe", "[OPTION...] FILE...",
+               "print a readable outline of definitions",
+               "Prints what the definitions offer: types with their sizes, objects with their\n"
+               "members, each with its documentation.\n"},
+    CommandRow{Command::model, "model", "[OPTION...] FILE...", "print the resolved model as JSON",
+               "Prints the given definitions and their imports as JSON: names resolved,\n"
+               "constants evaluated, sizes computed. The same input gives the same bytes.\n"},
+    CommandRow{Command::view, "view", "--lang LANG [OPTION...] FILE...",
+               "print what the templates of a language are given, as JSON",
+               "Prints the view of the given definitions as JSON: every value that a template\n"
+               "of the language can print. Read it when writing a template folder.\n"},
+    CommandRow{Command::explain, "explain", "CODE... | --list",
+               "explain a code such as R0203, or list them all",
+               "Explains codes (R0203), or all codes of a rule (V12) of the language\n"
+               "description.\n"},
+};
+
+constexpr std::array options = {
+    OptionRow{"--lang",
+              "",
+              "LANG",
+              {Command::generate, Command::view},
+              "target language; see the list below",
+              take_language},
+    OptionRow{"--output",
+              "-o",
+              "DIR",
+              {Command::generate},
+              "folder to write below, made when missing;\ndefault: the current folder",
+              take_text<&Options::output_folder>},
+    OptionRow{"--import-path", "-I", "DIR", reading,
+              "look here for imported definitions; may be\nrepeated. An import a.b is the file\n"
+              "a.b.robdef: beside the importing file, in\nthese folders, then in those of the\n"
+              "environment",
+              take_import_folder},
+    OptionRow{"--strict",
+              "",
+              "",
+              {Command::check},
+              "every file must declare version 0.9.2 or\nlater, as published ones do",
+              take_switch<&Options::is_strict>},
+    OptionRow{"--templates",
+              "",
+              "DIR",
+              {Command::generate},
+              "take templates from here: those of the same\nname replace the language's own; with"
+              " a file\noutputs.txt they are all that is generated",
+              take_text<&Options::template_folder>},
+    OptionRow{"--list-outputs",
+              "",
+              "",
+              {Command::generate},
+              "print the paths that would be written, one\na line, and write nothing",
+              take_switch<&Options::lists_outputs>},
+    OptionRow{"--depfile",
+              "",
+              "FILE",
+              {Command::generate},
+              "write a make rule there that names every file\nthat was read",
+              take_text<&Options::depfile>},
+    OptionRow{"--depfile-target",
+              "",
+              "NAME",
+              {Command::generate},
+              "target of that rule; default: the outputs",
+              take_text<&Options::depfile_target>},
+    OptionRow{"--format", "", "FORM", reading,
+              "form of the findings: text (default), line\n(one line each) or json; json goes to"
+              " standard\noutput unless the command prints there itself",
+              take_format},
+    OptionRow{"--no-warning", "", "CODE", reading, "do not report this warning; may be repeated",
+              take_silenced},
+    OptionRow{"--list",
+              "",
+              "",
+              {Command::explain},
+              "print all codes with their rules",
+              take_switch<&Options::lists_codes>},
+    OptionRow{"--json", "", "", {Command::explain}, "print JSON", take_switch<&Options::is_json>},
+};
+
+/// `text` in a column that begins behind `indent` blanks; the first line stands there already.
+std::string hanging(std::string_view text, std::size_t indent) {
+  std::string lines;
+  for (const char letter : text) {
+    lines += letter;
+    if (letter == '\n') lines.append(indent, ' ');
+  }
+  return lines + "\n";
+}
+
+std::string padded(std::string text, std::size_t width) {
+  if (text.size() < width) text.resize(width, ' ');
+  return text;
+}
+
+std::string option_line(std::string_view short_name, std::string_view name, std::string_view value,
+                        std::string_view help) {
+  constexpr std::size_t column = 28;
+  std::string left = short_name.empty() ? "      " : "  " + std::string(short_name) + ", ";
+  left += name;
+  if (!value.empty()) left += " " + std::string(value);
+  if (left.size() > column - 2) left += "\n" + std::string(column, ' ');
+  return padded(std::move(left), column) + hanging(help, column);
+}
+
+std::string languages() {
+  std::string text = "\nLanguages:\n";
+  for (const Backend* backend : backends()) {
+    text +=
+        "  " + padded(std::string(backend->name()), 12) + std::string(backend->summary()) + "\n";
+  }
+  return text;
+}
+
+constexpr std::string_view environment_and_exit =
+    "\nEnvironment:\n"
+    "  ROBOTRACONTEUR_ROBDEF_PATH  folders searched for imports after those of -I,\n"
+    "                              separated by : or ;\n"
+    "\nExit status: 0 fine, 1 errors found, 2 used wrongly, 3 a fault of robdef itself.\n";
+
+}  // namespace
+
+std::span<const CommandRow> command_rows() { return commands; }
+std::span<const OptionRow> option_rows() { return options; }
+
+std::string general_help() {
+  std::string text =
+      "usage: robdef COMMAND [OPTION...] FILE...\n"
+      "\n"
+      "Compiles service definitions (.robdef), the language of Robot Raconteur, into\n"
+      "clients and services.\n"
+      "\n"
+      "Commands:\n";
+  for (const CommandRow& row : commands) {
+    text += "  " + padded(std::string(row.name), 12) + std::string(row.summary) + "\n";
+  }
+  text +=
+      "\n"
+      "  robdef COMMAND --help       the options of a command\n"
+      "  robdef --version            the version of this program\n"
+      "\n"
+      "Examples:\n"
+      "  robdef check experimental.mount.robdef\n"
+      "  robdef generate --lang cpp -o generated -I shared experimental.mount.robdef\n"
+      "  robdef explain R0203\n";
+  text += languages();
+  text += environment_and_exit;
+  return text;
+}
+
+std::string help_of(const CommandRow& command) {
+  std::string text = "usage: robdef " + std::string(command.name) + " " +
+                     std::string(command.arguments) + "\n\n" + std::string(command.description) +
+                     "\nOptions:\n";
+  bool has_language = false;
+  for (const OptionRow& row : options) {
+    if (!row.commands.contains(command.command)) continue;
+    text += option_line(row.short_name, row.name, row.value, row.help);
+    has_language = has_language || row.name == "--lang";
+  }
+  text += option_line("-h", "--help", "", "print this");
+  if (has_language) text += languages();
+  if (reading.contains(command.command)) {
+    text += environment_and_exit;
+  } else {
+    text += "\nExit status: 0 fine, 2 no such code.\n";
+  }
+  return text;
+}
+
+}  // namespace robdef

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "compiler/driver/options.hpp"
+
+/// The two tables of the command line.
+namespace robdef {
+
+struct CommandRow {
+  Command command{};
+  std::string_view name;
+  std::string_view arguments;    ///< as in the usage line
+  std::string_view summary;      ///< one line, for the list of commands
+  std::string_view description;  ///< paragraphs for `robdef COMMAND --help`, each line at most 78
+};
+
+/// Which commands an option belongs to.
+struct CommandSet {
+  unsigned bits = 0;
+
+  constexpr CommandSet(std::initializer_list<Command> commands) {
+    for (const Command command : commands) bits |= 1U << static_cast<unsigned>(command);
+  }
+  [[nodiscard]] constexpr bool contains(Command command) const {
+    return (bits >> static_cast<unsigned>(command) & 1U) != 0;
+  }
+};
+
+struct OptionRow {
+  std::string_view name;        ///< `--lang`; empty where there is only a letter
+  std::string_view short_name;  ///< `-I`; empty: none
+  std::string_view value;       ///< name of the value in the help; empty for a switch
+  CommandSet commands;
+  std::string_view help;  ///< lines for the help, each at most 50
+  /// Takes the value into the options. Returns what is wrong with it; empty when nothing is.
+  std::string (*take)(Options& options, const std::string& value);
+
+  /// How it is called in messages: the long name if there is one.
+  [[nodiscard]] std::string_view title() const { return name.empty() ? short_name : name; }
+};
+
+std::span<const CommandRow> command_rows();
+std::span<const OptionRow> option_rows();
+
+/// `robdef --help`.
+std::string general_help();
+/// `robdef COMMAND --help`.
+std::string help_of(const CommandRow& command);
+
+}  // namespace robdef

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/driver/run.hpp"
+
+#include <exception>
+#include <ostream>
+#include <variant>
+#include <vector>
+
+#include "compiler/driver/explain.hpp"
+
+namespace robdef {
+
+namespace {
+
+ExitStatus explain(const Options& options, std::ostream& out, std::ostream& err) {
+  std::vector<const CodeEntry*> entries;
+  if (options.lists_codes) {
+    for (const CodeEntry& entry : code_entries()) entries.push_back(&entry);
+  } else {
+    std::string unknown;
+    entries = find_entries(options.inputs, unknown);
+    if (!unknown.empty()) {
+      err << "robdef: there is no code or rule `" << unknown
+          << "`\n`robdef explain --list` shows all\n";
+      return exit_usage;
+    }
+  }
+  out << (options.is_json       ? entry_json(entries)
+          : options.lists_codes ? entry_list(entries)
+                                : entry_text(entries));
+  return exit_fine;
+}
+
+ExitStatus answer(std::span<const std::string> arguments, std::string_view import_variable,
+                  std::ostream& out, std::ostream& err) {
+  const auto parsed = parse_options(arguments, import_variable);
+  if (const auto* text = std::get_if<Answer>(&parsed)) {
+    out << text->text;
+    return exit_fine;
+  }
+  if (const auto* error = std::get_if<UsageError>(&parsed)) {
+    err << "robdef: " << error->text << '\n';
+    return exit_usage;
+  }
+  const auto& options = std::get<Options>(parsed);
+  return options.command == Command::explain ? explain(options, out, err)
+                                             : compile(options, out, err);
+}
+
+}  // namespace
+
+ExitStatus run(std::span<const std::string> arguments, std::string_view import_variable,
+               std::ostream& out, std::ostream& err) {
+  const ExitStatus status = answer(arguments, import_variable, out, err);
+  if (out.flush()) return status;
+  err << "robdef: standard output cannot be written\n";
+  return status == exit_fine ? exit_errors : status;
+}
+
+ExitStatus guard(const std::function<ExitStatus()>& work, std::ostream& err) {
+  try {
+    return work();
+  } catch (const std::exception& fault) {
+    err << "robdef: this is a fault of robdef, not of your definition: " << fault.what()
+        << "\nPlease report it, with the definition and the command line.\n";
+  } catch (...) {
+    err << "robdef: this is a fault of robdef, not of your definition: something unknown was "
+           "thrown\nPlease report it, with the definition and the command line.\n";
+  }
+  return exit_fault;
+}
+
+}  // namespace robdef

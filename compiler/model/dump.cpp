@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: Apache-2.0
+// Model -> JSON; the form is written down in dump.hpp.
+#include "compiler/model/dump.hpp"
+
+#include <cstdint>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "compiler/output/json.hpp"
+
+namespace robdef::model {
+namespace {
+
+constexpr int model_version = 1;
+
+std::string_view name_of(ArrayForm form) {
+  switch (form) {
+    case ArrayForm::none:
+      return "none";
+    case ArrayForm::any_length:
+      return "any_length";
+    case ArrayForm::fixed_length:
+      return "fixed_length";
+    case ArrayForm::maximum_length:
+      return "maximum_length";
+    case ArrayForm::any_shape:
+      return "any_shape";
+    case ArrayForm::fixed_shape:
+      return "fixed_shape";
+  }
+  return "";
+}
+
+std::string_view name_of(ContainerForm form) {
+  switch (form) {
+    case ContainerForm::none:
+      return "none";
+    case ContainerForm::list:
+      return "list";
+    case ContainerForm::int32_map:
+      return "int32";
+    case ContainerForm::string_map:
+      return "string";
+    case ContainerForm::generator:
+      return "generator";
+  }
+  return "";
+}
+
+std::string_view name_of(GeneratorForm form) {
+  switch (form) {
+    case GeneratorForm::none:
+      return "none";
+    case GeneratorForm::returns:
+      return "returns";
+    case GeneratorForm::takes:
+      return "takes";
+    case GeneratorForm::both:
+      return "both";
+  }
+  return "";
+}
+
+std::string_view name_of(IndexForm form) {
+  switch (form) {
+    case IndexForm::none:
+      return "none";
+    case IndexForm::int32:
+      return "int32";
+    case IndexForm::string:
+      return "string";
+  }
+  return "";
+}
+
+std::string_view name_of(ast::VersionSpelling spelling) {
+  switch (spelling) {
+    case ast::VersionSpelling::none:
+      return "none";
+    case ast::VersionSpelling::stdver:
+      return "stdver";
+    case ast::VersionSpelling::option:
+      return "option";
+  }
+  return "";
+}
+
+struct BaseKind {
+  std::string_view operator()(Primitive) const { return "primitive"; }
+  std::string_view operator()(const Record* record) const { return model::name_of(record->kind); }
+  std::string_view operator()(const Enum*) const { return "enum"; }
+  std::string_view operator()(const Object*) const { return "object"; }
+  std::string_view operator()(VarValue) const { return "varvalue"; }
+  std::string_view operator()(VarObject) const { return "varobject"; }
+  std::string_view operator()(Unknown) const { return "unknown"; }
+};
+
+class Dump {
+ public:
+  Dump(const Sources& sources, Detail detail)
+      : sources_(sources), is_full_(detail == Detail::full) {}
+
+  std::string run(const Model& model) {
+    json_.begin_object().member("model_version", model_version);
+    list("definitions", model.definitions(), [this](const auto& one) { definition(*one); });
+    json_.end_object();
+    return std::move(json_).text();
+  }
+
+ private:
+  template <class Items, class Write>
+  void list(std::string_view key, const Items& items, Write write) {
+    json_.key(key).begin_array();
+    for (const auto& item : items) write(item);
+    json_.end_array();
+  }
+
+  void texts(std::string_view key, const std::vector<std::string>& items) {
+    list(key, items, [this](const std::string& text) { json_.value(text); });
+  }
+
+  void origin(const std::string& documentation, Span span) {
+    if (!is_full_) return;
+    json_.member("documentation", documentation);
+    json_.member("line", sources_[span.source].position(span.begin).line);
+  }
+
+  void definition(const Definition& definition);
+  void declarations(const Definition& definition);
+  void constant(const Constant& constant);
+  void enumeration(const Enum& enumeration);
+  void record(const Record& record);
+  void field(const Field& field);
+  void object(const Object& object);
+  void member(const Member& member);
+  void parameter(const Parameter& parameter);
+  void modifiers(const std::vector<Modifier>& modifiers);
+  void access(const Access& access);
+  void type(const Type& type);
+  void records(std::string_view key, const Definition& definition, RecordKind kind);
+
+  void constants(const std::vector<Constant>& constants) {
+    list("constants", constants, [this](const Constant& one) { constant(one); });
+  }
+
+  const Sources& sources_;
+  bool is_full_;
+  JsonWriter json_;
+};
+
+void Dump::definition(const Definition& definition) {
+  const bool has_version = definition.version_spelling != ast::VersionSpelling::none;
+  json_.begin_object().member("name", definition.name);
+  if (is_full_) {
+    json_.member("file", sources_[definition.source].name());
+    json_.member("is_import", definition.is_import);
+  }
+  json_.member("version", has_version ? text_of(definition.version) : std::string());
+  json_.member("version_spelling", name_of(definition.version_spelling));
+  if (is_full_) json_.member("documentation", definition.documentation);
+  list("imports", definition.imports, [this](const Definition* one) { json_.value(one->name); });
+  list("aliases", definition.aliases, [this](const Alias& alias) {
+    json_.begin_object().member("name", alias.name).member("of", alias.qualified_name).end_object();
+  });
+  texts("options", definition.options);
+  constants(definition.constants);
+  list("exceptions", definition.exceptions, [this](const Exception& exception) {
+    json_.begin_object().member("name", exception.name);
+    origin(exception.documentation, exception.span);
+    json_.end_object();
+  });
+  list("enums", definition.enums, [this](const Enum& one) { enumeration(one); });
+  records("structs", definition, RecordKind::struct_);
+  records("pods", definition, RecordKind::pod);
+  records("namedarrays", definition, RecordKind::namedarray);
+  list("objects", definition.objects, [this](const Object& one) { object(one); });
+  if (is_full_) {
+    declarations(definition);
+    json_.member("text", definition.text);
+  }
+  json_.end_object();
+}
+
+void Dump::declarations(const Definition& definition) {
+  list("declarations", definition.declarations, [this](const Declaration& declaration) {
+    std::visit([this](const auto* item) { json_.value(item->name); }, declaration);
+  });
+}
+
+void Dump::constant(const Constant& constant) {
+  json_.begin_object().member("name", constant.name);
+  json_.member("type", constant.is_struct ? std::string("struct") : constant.type.text());
+  json_.key("value");
+  const auto number = [this](const Number& value) {
+    std::visit([this](auto exact) { json_.value(exact); }, value);
+  };
+  if (const auto* one = std::get_if<Number>(&constant.value)) {
+    number(*one);
+  } else if (const auto* text = std::get_if<std::string>(&constant.value)) {
+    json_.value(*text);
+  } else if (const auto* numbers = std::get_if<std::vector<Number>>(&constant.value)) {
+    json_.begin_array();
+    for (const Number& value : *numbers) number(value);
+    json_.end_array();
+  } else {
+    json_.begin_array();
+    for (const auto& field : std::get<std::vector<StructValueField>>(constant.value)) {
+      json_.begin_object().member("field", field.field);
+      json_.member("constant", field.constant->name).end_object();
+    }
+    json_.end_array();
+  }
+  origin(constant.documentation, constant.span);
+  json_.end_object();
+}
+
+void Dump::enumeration(const Enum& enumeration) {
+  json_.begin_object().member("name", enumeration.name);
+  list("values", enumeration.values, [this](const EnumValue& value) {
+    json_.begin_object().member("name", value.name).member("value", value.value);
+    json_.member("is_hexadecimal", value.is_hexadecimal);
+    if (is_full_) json_.member("documentation", value.documentation);
+    json_.end_object();
+  });
+  origin(enumeration.documentation, enumeration.span);
+  json_.end_object();
+}
+
+void Dump::records(std::string_view key, const Definition& definition, RecordKind kind) {
+  list(key, definition.records, [this, kind](const Record& one) {
+    if (one.kind == kind) record(one);
+  });
+}
+
+void Dump::record(const Record& record) {
+  json_.begin_object().member("name", record.name);
+  constants(record.constants);
+  list("fields", record.fields, [this](const Field& one) { field(one); });
+  texts("options", record.options);
+  switch (record.kind) {
+    case RecordKind::struct_:
+      json_.member("is_recursive", record.is_recursive);
+      break;
+    case RecordKind::pod:
+      json_.member("packed_size", record.packed_size);
+      break;
+    case RecordKind::namedarray:
+      json_.member("number", model::name_of(record.number));
+      json_.member("number_count", record.number_count);
+      break;
+  }
+  origin(record.documentation, record.span);
+  json_.end_object();
+}
+
+void Dump::field(const Field& field) {
+  json_.begin_object().member("name", field.name).key("type");
+  type(field.type);
+  modifiers(field.modifiers);
+  origin(field.documentation, field.span);
+  json_.end_object();
+}
+
+void Dump::object(const Object& object) {
+  json_.begin_object().member("name", object.name);
+  list("implements", object.implements,
+       [this](const Object* one) { json_.value(one->qualified_name()); });
+  constants(object.constants);
+  list("members", object.members, [this](const Member& one) { member(one); });
+  texts("options", object.options);
+  origin(object.documentation, object.span);
+  json_.end_object();
+}
+
+void Dump::member(const Member& member) {
+  json_.begin_object().member("kind", model::name_of(member.kind));
+  json_.member("name", member.name).key("type");
+  type(member.type);
+  json_.member("index", name_of(member.index));
+  list("parameters", member.parameters, [this](const Parameter& one) { parameter(one); });
+  json_.member("generator", name_of(member.generator)).key("generator_parameter");
+  if (member.generator_parameter) {
+    parameter(*member.generator_parameter);
+  } else {
+    json_.null();
+  }
+  modifiers(member.modifiers);
+  access(member.access);
+  origin(member.documentation, member.span);
+  json_.end_object();
+}
+
+void Dump::parameter(const Parameter& parameter) {
+  json_.begin_object().member("name", parameter.name).key("type");
+  type(parameter.type);
+  json_.end_object();
+}
+
+void Dump::modifiers(const std::vector<Modifier>& modifiers) {
+  list("modifiers", modifiers, [this](const Modifier& modifier) {
+    json_.begin_object().member("name", modifier.name);
+    texts("arguments", modifier.arguments);
+    json_.end_object();
+  });
+}
+
+void Dump::access(const Access& access) {
+  const std::pair<bool, std::string_view> words[] = {
+      {access.is_readonly, "readonly"},     {access.is_writeonly, "writeonly"},
+      {access.is_unreliable, "unreliable"}, {access.is_nolock, "nolock"},
+      {access.is_nolockread, "nolockread"}, {access.is_perclient, "perclient"},
+      {access.is_urgent, "urgent"},
+  };
+  list("access", words, [this](const auto& word) {
+    if (word.first) json_.value(word.second);
+  });
+}
+
+void Dump::type(const Type& type) {
+  Type base = type;
+  base.array = ArrayForm::none;
+  base.container = ContainerForm::none;
+  json_.begin_object().member("text", type.text());
+  json_.member("kind", std::visit(BaseKind{}, type.base)).member("name", base.text());
+  json_.member("array", name_of(type.array)).key("dimensions").begin_array();
+  for (const std::uint32_t dimension : type.dimensions) json_.value(dimension);
+  json_.end_array().member("container", name_of(type.container)).end_object();
+}
+
+}  // namespace
+
+std::string dump(const Model& model, const Sources& sources, Detail detail) {
+  return Dump(sources, detail).run(model);
+}
+
+}  // namespace robdef::model

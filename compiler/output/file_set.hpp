@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace robdef {
+
+/// Files to be written: each name once, in the order of their names, together or not at all.
+class FileSet {
+ public:
+  /// What write() did.
+  struct Written {
+    std::vector<std::string> changed;  ///< paths, relative to the folder
+    std::string failure;               ///< empty when all is well; else nothing was changed
+  };
+
+  /// `path` is relative and uses `/`. Throws std::logic_error for a path that is there already, or
+  /// that leads out of the folder.
+  void add(std::string path, std::string content);
+
+  [[nodiscard]] const std::map<std::string, std::string, std::less<>>& files() const {
+    return files_;
+  }
+  [[nodiscard]] bool contains(std::string_view path) const { return files_.contains(path); }
+
+  /// Writes below `folder`, which is made when missing. A file that already has its content is not
+  /// touched. All others are written beside their place first and renamed when all are complete, so
+  /// a full disk or a folder without permission leaves everything as it was.
+  [[nodiscard]] Written write(const std::filesystem::path& folder) const;
+
+ private:
+  std::map<std::string, std::string, std::less<>> files_;
+};
+
+}  // namespace robdef

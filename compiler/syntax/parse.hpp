@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "compiler/diagnostics/report.hpp"
+#include "compiler/diagnostics/source.hpp"
+#include "compiler/syntax/ast.hpp"
+
+namespace robdef::ast {
+
+/// Reads one definition. Every mistake of the L, P and S rules is reported, in one run: a line that
+/// cannot be read is left out, and reading goes on with the next. Warns of `option` (W4) and of
+/// what is accepted only because existing files have it (Q rules). Looks nothing up.
+/// Safe to call from several threads with different reports.
+File parse(const Source& source, SourceId id, Report& report);
+
+}  // namespace robdef::ast

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/syntax/tokens.hpp"
+
+#include <algorithm>
+
+namespace robdef::syntax {
+namespace {
+
+FaultToken fault_token(const antlr4::Token& token) {
+  return {token.getType(), token.getStartIndex(), token.getStopIndex() + 1};
+}
+
+}  // namespace
+
+void LineCharacters::set(std::string_view text) {
+  text_ = text;
+  next_ = 0;
+}
+
+size_t LineCharacters::LA(ssize_t offset) {
+  if (offset <= 0) return 0;
+  const std::size_t at = next_ + static_cast<std::size_t>(offset) - 1;
+  if (at < text_.size()) return static_cast<unsigned char>(text_[at]);
+  return at == text_.size() ? '\n' : antlr4::IntStream::EOF;
+}
+
+std::string LineCharacters::getText(const antlr4::misc::Interval& interval) {
+  const auto begin = static_cast<std::size_t>(interval.a);
+  const auto end = std::min(static_cast<std::size_t>(interval.b) + 1, text_.size());
+  return begin < end ? std::string(text_.substr(begin, end - begin)) : std::string();
+}
+
+void LineTokens::load(antlr4::Lexer& lexer) {
+  source_ = &lexer;
+  tokens_.clear();
+  next_ = 0;
+  do {
+    tokens_.push_back(lexer.nextToken());
+    auto& token = static_cast<antlr4::CommonToken&>(*tokens_.back());
+    token.setTokenIndex(tokens_.size() - 1);
+  } while (tokens_.back()->getType() != grammar::RobdefLexer::NL);
+}
+
+void LineTokens::consume() {
+  if (next_ < tokens_.size()) ++next_;
+}
+
+antlr4::Token* LineTokens::LT(ssize_t offset) {
+  if (offset > 0) {
+    // Behind the line's end there is nothing but the line's end.
+    const std::size_t at = next_ + static_cast<std::size_t>(offset) - 1;
+    return tokens_[std::min(at, tokens_.size() - 1)].get();
+  }
+  const auto back = static_cast<std::size_t>(-offset);
+  return back == 0 || back > next_ ? nullptr : tokens_[next_ - back].get();
+}
+
+void FirstFault::reportError(antlr4::Parser*, const antlr4::RecognitionException& error) {
+  keep(error.getCtx(), *error.getOffendingToken());
+}
+
+void FirstFault::recover(antlr4::Parser*, std::exception_ptr) {
+  throw antlr4::ParseCancellationException();
+}
+
+antlr4::Token* FirstFault::recoverInline(antlr4::Parser* parser) {
+  keep(parser->getContext(), *parser->getCurrentToken());
+  throw antlr4::ParseCancellationException();
+}
+
+void FirstFault::keep(antlr4::RuleContext* context, const antlr4::Token& token) {
+  fault_ = {};
+  const auto* const rule = dynamic_cast<const antlr4::ParserRuleContext*>(context);
+  if (rule != nullptr && rule->start != nullptr) fault_.rule_begin = rule->start->getStartIndex();
+  for (antlr4::tree::ParseTree* node = context; node != nullptr; node = node->parent) {
+    const auto* const enclosing = dynamic_cast<const antlr4::RuleContext*>(node);
+    if (enclosing != nullptr) fault_.rules.push_back(enclosing->getRuleIndex());
+  }
+  fault_.keyword = tokens_.get(0)->getType();
+  fault_.token = fault_token(token);
+  const std::size_t index = token.getTokenIndex();
+  if (index > 0) fault_.previous = fault_token(*tokens_.get(index - 1));
+  if (index > 1) fault_.before_previous = fault_token(*tokens_.get(index - 2));
+}
+
+}  // namespace robdef::syntax

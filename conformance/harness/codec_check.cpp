@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/harness/codec_check.hpp"
+
+#include "conformance/harness/comparison.hpp"
+#include "conformance/harness/values.hpp"
+
+namespace rr::conformance {
+namespace {
+
+constexpr const char* web_socket_text = "the frames are those of a web socket";
+
+std::string said(const Json& answer) {
+  return answer.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 200);
+}
+
+Result begin(const Scenario& scenario, Role role) {
+  Result result;
+  result.run = {scenario.name, scenario.version, role};
+  if (scenario.web_socket) result.fail(std::string(whole_run), "", web_socket_text);
+  return result;
+}
+
+Result begin_values(int message_version, Role role) {
+  Result result;
+  result.run = {"values", "v" + std::to_string(message_version), role};
+  return result;
+}
+
+Json element_request(const Value& value) {
+  return {{"do", "element"},
+          {"message_version", value.message_version},
+          {"type", value.type},
+          {"hex", hex_of_bytes(*value.bytes)}};
+}
+
+std::string difference_of_bytes(const Bytes& recorded, const std::string& hex) {
+  const std::string wanted = hex_of_bytes(recorded);
+  std::size_t at = 0;
+  while (at < wanted.size() && at < hex.size() && wanted[at] == hex[at]) ++at;
+  return "byte " + std::to_string(at / 2) + ": ..." + wanted.substr(at & ~1U, 40) +
+         " recorded, ..." + (at < hex.size() ? hex.substr(at & ~1U, 40) : "") + " made";
+}
+
+void check_one_packing(const Value& value, Runner& decoder, Runner& encoder, Result& result) {
+  const std::string place = case_place(value.name);
+  Json request = {{"do", "value"},
+                  {"message_version", value.message_version},
+                  {"type", value.type},
+                  {"value", value.value}};
+  request.update(value.element);
+  const Json packed = encoder.ask(request);
+  if (!value.bytes) {
+    if (packed.contains("refused")) {
+      ++result.refused;
+    } else {
+      result.fail(place, value.type,
+                  "packed, though the recorded library refuses: " + said(packed));
+    }
+    return;
+  }
+  ++result.checked;
+  if (!packed.contains("hex")) return result.fail(place, value.type, "not packed: " + said(packed));
+  if (packed["hex"] != hex_of_bytes(*value.bytes)) {
+    return result.fail(place, value.type,
+                       difference_of_bytes(*value.bytes, packed["hex"].get<std::string>()));
+  }
+  const Json decoded = decoder.ask(element_request(value));
+  if (!decoded.contains("decoded")) {
+    return result.fail(place, value.type, "not decoded: " + said(decoded));
+  }
+  const Json again = encoder.ask({{"do", "element"},
+                                  {"message_version", value.message_version},
+                                  {"decoded", decoded["decoded"]}});
+  if (again.value("hex", "") != hex_of_bytes(*value.bytes)) {
+    result.fail(place, value.type, "its decode gives other bytes: " + said(again));
+  }
+}
+
+}  // namespace
+
+Result check_decoding(const Scenario& scenario, Runner& decoder) {
+  Result result = begin(scenario, Role::decode);
+  for (const Frame& frame : scenario.frames) {
+    const Json answer = decoder.ask({{"do", "message"}, {"hex", hex_of_bytes(frame.bytes)}});
+    ++result.checked;
+    if (!answer.contains("decoded")) {
+      result.fail(frame_place(frame.number), "", "not decoded: " + said(answer));
+    } else if (answer["decoded"] != frame.decoded) {
+      result.fail(frame_place(frame.number), "",
+                  describe_difference(frame.decoded, answer["decoded"]));
+    }
+  }
+  return result;
+}
+
+Result check_encoding(const Scenario& scenario, Runner& encoder) {
+  Result result = begin(scenario, Role::encode);
+  for (const Frame& frame : scenario.frames) {
+    const Json answer = encoder.ask({{"do", "message"}, {"decoded", frame.decoded}});
+    ++result.checked;
+    if (!answer.contains("hex")) {
+      result.fail(frame_place(frame.number), "", "not encoded: " + said(answer));
+    } else if (answer["hex"] != hex_of_bytes(frame.bytes)) {
+      result.fail(frame_place(frame.number), "",
+                  difference_of_bytes(frame.bytes, answer["hex"].get<std::string>()));
+    }
+  }
+  return result;
+}
+
+Result check_unpacking(const Captures& captures, int message_version, Runner& decoder) {
+  Result result = begin_values(message_version, Role::decode);
+  for (const Value& value : captures.values) {
+    if (value.message_version != message_version || !value.bytes) continue;
+    ++result.checked;
+    const Json answer = decoder.ask(element_request(value));
+    if (!answer.contains("value")) {
+      result.fail(case_place(value.name), value.type, "not unpacked: " + said(answer));
+    } else if (!same_value(value.value, answer["value"])) {
+      result.fail(case_place(value.name), value.type,
+                  said(value.value) + " recorded, " + said(answer["value"]) + " unpacked");
+    }
+  }
+  return result;
+}
+
+Result check_packing(const Captures& captures, int message_version, Runner& decoder,
+                     Runner& encoder) {
+  Result result = begin_values(message_version, Role::encode);
+  for (const Value& value : captures.values) {
+    if (value.message_version != message_version) continue;
+    check_one_packing(value, decoder, encoder, result);
+  }
+  return result;
+}
+
+}  // namespace rr::conformance

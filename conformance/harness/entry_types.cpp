@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/harness/entry_types.hpp"
+
+#include <rr/message_tree.hpp>
+
+namespace rr::conformance {
+
+int entry_type_of(std::span<const std::byte> bytes) {
+  rr::MessageTree tree;
+  if (!rr::read_tree(bytes, tree) || tree.entries.empty()) return -1;
+  return number_of(tree.entries.front().type);
+}
+
+int error_of(std::span<const std::byte> bytes) {
+  rr::MessageTree tree;
+  if (!rr::read_tree(bytes, tree) || tree.entries.empty()) return 0;
+  return tree.entries.front().error;
+}
+
+Bytes connection_test_answer(std::span<const std::byte> test) {
+  rr::MessageTree tree;
+  if (!rr::read_tree(test, tree) || tree.entries.empty()) return {};
+  tree.entries.front().type = rr::EntryType::connection_test_ret;
+  std::swap(tree.sender_node, tree.receiver_node);
+  std::swap(tree.sender_name, tree.receiver_name);
+  std::swap(tree.sender_endpoint, tree.receiver_endpoint);
+  return rr::write_tree(tree);
+}
+
+bool repeats_type_answer(const Scenario& scenario, const Frame& frame) {
+  if (!is(frame, rr::EntryType::object_type_name_ret)) return false;
+  for (const Frame& earlier : scenario.frames) {
+    if (earlier.number == frame.number) return false;
+    if (earlier.connection == frame.connection && !earlier.from_client &&
+        is(earlier, rr::EntryType::object_type_name_ret) &&
+        earlier.entries().front().at("request_id") == frame.entries().front().at("request_id")) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace rr::conformance

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "conformance/harness/captures.hpp"
+#include "conformance/harness/recorder.hpp"
+#include "conformance/harness/suite.hpp"
+
+namespace {
+
+constexpr std::string_view usage =
+    R"(usage: conformance_harness play --captures DIR (--runner PROGRAM | --connect HOST:PORT | --listen PORT)
+                           [--language NAME] [--only REGEX] [--before COMMAND]
+                           [--expected FILE] [--deviations FILE] [--json FILE]
+       conformance_harness definitions --captures DIR --output DIR
+       conformance_harness record --captures DIR --runner PROGRAM --plan NAME --version v2|v4|v4st
+
+play: plays a folder of captures. With --runner, a language's runner is the service and the client, and
+  decodes and encodes; with --connect, a service that runs elsewhere is tested, and COMMAND (a shell
+  command) brings it to its first state before each scenario; with --listen, a client.
+definitions: writes the service definitions of the folder, for a compiler.
+record: plays a plan of the folder with a runner on both ends and writes it down as a scenario.
+Exit code: 0 when all holds, 1 when not, 2 when used wrongly.
+)";
+
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+int port_of(std::string_view text) {
+  int port = 0;
+  const auto [end, error] = std::from_chars(text.begin(), text.end(), port);
+  if (error != std::errc{} || end != text.end() || port < 1 || port > 65535) {
+    throw UsageError("no port: " + std::string(text));
+  }
+  return port;
+}
+
+rr::conformance::Address address_of(std::string_view text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string_view::npos) throw UsageError("no HOST:PORT: " + std::string(text));
+  return {std::string(text.substr(0, colon)), port_of(text.substr(colon + 1))};
+}
+
+struct CommandLine {
+  rr::conformance::Options options;
+  std::string output;
+  std::string plan;
+  std::string version;
+};
+
+void take_option(CommandLine& line, const std::string& name, const std::string& value) {
+  rr::conformance::Options& options = line.options;
+  const std::map<std::string_view, std::function<void()>> known = {
+      {"--captures", [&] { options.captures = value; }},
+      {"--output", [&] { line.output = value; }},
+      {"--plan", [&] { line.plan = value; }},
+      {"--version", [&] { line.version = value; }},
+      {"--runner", [&] { options.runner = {value}; }},
+      {"--language", [&] { options.language = value; }},
+      {"--connect", [&] { options.connect = address_of(value); }},
+      {"--before", [&] { options.before = value; }},
+      {"--listen", [&] { options.listen = port_of(value); }},
+      {"--only", [&] { options.only = value; }},
+      {"--expected", [&] { options.expected = value; }},
+      {"--deviations", [&] { options.deviations = value; }},
+      {"--json", [&] { options.json = value; }},
+  };
+  const auto option = known.find(name);
+  if (option == known.end()) throw UsageError("unknown option " + name);
+  option->second();
+}
+
+int run(const std::vector<std::string>& words) {
+  if (words.empty()) throw UsageError("no command");
+  CommandLine line;
+  for (std::size_t i = 1; i < words.size(); i += 2) {
+    if (i + 1 == words.size()) throw UsageError(words[i] + " needs a value");
+    take_option(line, words[i], words[i + 1]);
+  }
+  const rr::conformance::Options& options = line.options;
+  if (options.captures.empty()) throw UsageError("--captures is missing");
+  if (words[0] == "definitions") {
+    if (line.output.empty()) throw UsageError("--output is missing");
+    for (const auto& file : rr::conformance::write_definitions(options.captures, line.output)) {
+      std::cout << file << "\n";
+    }
+    return 0;
+  }
+  if (words[0] == "record") {
+    if (line.plan.empty() || line.version.empty() || options.runner.empty()) {
+      throw UsageError("record needs --plan, --version and --runner");
+    }
+    rr::conformance::record(options.captures, line.plan, line.version, options.runner);
+    return 0;
+  }
+  if (words[0] != "play") throw UsageError("unknown command " + words[0]);
+  if (options.runner.empty() && !options.connect && !options.listen) {
+    throw UsageError("one of --runner, --connect and --listen is needed");
+  }
+  return rr::conformance::run_suite(options) ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run({argv + 1, argv + argc});
+  } catch (const UsageError& error) {
+    std::cerr << error.what() << "\n" << usage;
+    return 2;
+  } catch (const std::exception& error) {
+    std::cerr << "conformance: " << error.what() << "\n";
+    return 1;
+  }
+}

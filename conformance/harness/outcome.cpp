@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compares what a client got in a step with what the plan says that the recorded one got.
+#include "conformance/harness/client_replay.hpp"
+#include "conformance/harness/values.hpp"
+
+namespace rr::conformance {
+namespace {
+
+std::string said(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 300);
+}
+
+// The value of the last set of the property that this step gets.
+Json value_set_before(const std::vector<Step>& steps, const Step& step) {
+  Json value;
+  for (const Step& earlier : steps) {
+    if (earlier.index >= step.index) break;
+    const Json& plan = earlier.plan;
+    if (plan.at("op") == "set" && plan.at("obj") == step.plan.at("obj") &&
+        plan.at("member") == step.plan.at("member")) {
+      value = plan.at("value");
+    }
+  }
+  return value;
+}
+
+std::optional<std::string> fault_of_error(const Comparison& comparison, const Step& step,
+                                          const Json& recorded, const Json& raised) {
+  const std::string both = said(recorded) + " recorded, " + said(raised) + " raised";
+  if (recorded.at("code") != raised.value("code", Json())) return both;
+  const std::string name = recorded.at("name");
+  if (!is_host_specific(name) && name != raised.value("name", "")) return both;
+  const std::string message = recorded.at("message");
+  const Json arguments = step.plan.value("args", Json::array());
+  if (comparison.is_scripted(message, arguments) && message != raised.value("message", "")) {
+    return both;
+  }
+  if (recorded.value("subname", "") != raised.value("subname", "")) return both;
+  if (!same_value(recorded.value("param", Json()), raised.value("param", Json()))) return both;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> fault_of_outcome(const Comparison& comparison,
+                                            const std::vector<Step>& steps, const Step& step,
+                                            const Json& outcome) {
+  if (outcome.contains("unsupported")) {
+    return "not supported: " + outcome["unsupported"].get<std::string>();
+  }
+  const Json& plan = step.plan;
+  if (plan.contains("raised")) {
+    if (outcome.contains("raised")) {
+      return fault_of_error(comparison, step, plan["raised"], outcome["raised"]);
+    }
+    return said(plan["raised"]) + " was not raised, but " + said(outcome);
+  }
+  if (outcome.contains("raised")) return "raised " + said(outcome["raised"]);
+  const Json got = outcome.value("result", Json());
+  if (plan.value("result_as_set", false)) {
+    const Json set = value_set_before(steps, step);
+    if (same_value(set, got)) return std::nullopt;
+    return said(set) + " was set, " + said(got) + " came back";
+  }
+  const Json recorded = plan.value("result", Json());
+  const bool same =
+      plan.at("op") == "wait" ? same_things(recorded, got) : same_value(recorded, got);
+  if (same) return std::nullopt;
+  return said(recorded) + " recorded, " + said(got) + " came";
+}
+
+}  // namespace rr::conformance

@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/harness/service_replay.hpp"
+
+#include <rr/error.hpp>
+#include <thread>
+
+#include "conformance/harness/entry_types.hpp"
+#include "conformance/harness/stream.hpp"
+
+namespace rr::conformance {
+namespace {
+
+using rr::EntryType;
+
+constexpr Milliseconds answer_limit{3000};
+constexpr Milliseconds limit_after_fault{100};
+constexpr Milliseconds optional_limit{200};
+constexpr Milliseconds quiet{25};
+
+// What the recorded service left out of the capabilities that its client offered: it was told to.
+Json withheld_capabilities(const Scenario& scenario) {
+  constexpr std::uint32_t page = 0xFFF00000;
+  Json withheld = Json::array();
+  if (scenario.frames.size() < 2) return withheld;
+  const auto capabilities = [](const Frame& frame) {
+    for (const Json& element : frame.entries().at(0).at("elements")) {
+      if (element.value("name", "") == "capabilities" && element.contains("value")) {
+        return element["value"].get<std::vector<std::uint32_t>>();
+      }
+    }
+    return std::vector<std::uint32_t>();
+  };
+  for (const std::uint32_t offered : capabilities(scenario.frames[0])) {
+    for (const std::uint32_t answered : capabilities(scenario.frames[1])) {
+      const std::uint32_t missing = offered & ~answered;
+      if ((offered & page) == (answered & page) && missing != 0) {
+        withheld.push_back((offered & page) | missing);
+      }
+    }
+  }
+  return withheld;
+}
+
+// The name that the host language of the recorded library gave to the exception in an answer.
+std::string host_error_of(const Frame& frame) {
+  if (frame.from_client || frame.entries().empty()) return {};
+  const Json& entry = frame.entries().front();
+  if (entry.at("error") != static_cast<int>(ErrorCode::remote_error)) return {};
+  for (const Json& element : entry.at("elements")) {
+    if (element.value("name", "") != "errorname") continue;
+    const std::string name = element.at("value");
+    return is_host_specific(name) ? name : std::string();
+  }
+  return {};
+}
+
+// The service that a connection is with, as its first requests say.
+std::string service_of(const Scenario& scenario, int connection) {
+  for (const Frame& frame : scenario.frames) {
+    const bool asks =
+        is(frame, EntryType::connect_client) || is(frame, EntryType::connect_client_combined);
+    if (frame.connection == connection && frame.from_client && asks) {
+      return frame.entries().front().at("service_path");
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Json serve_request(const Captures& captures, const Scenario& scenario) {
+  Json request = {{"do", "start"},
+                  {"node", {{"id", scenario.service.id}, {"name", scenario.service.name}}},
+                  {"message_version", scenario.message_version},
+                  {"string_table", scenario.string_table},
+                  {"node_options", scenario.node_options},
+                  {"withheld_capabilities", withheld_capabilities(scenario)},
+                  {"services", captures.service.value("services", Json::array())},
+                  {"port", 0}};
+  if (scenario.heartbeat_ms.is_object()) {
+    request["heartbeat_ms"] = scenario.heartbeat_ms.at("service");
+  }
+  return request;
+}
+
+struct ServiceReplay::Line {
+  Stream stream;
+  PlayedConnection played;
+  const Frame* last_sent = nullptr;
+  bool was_opened = false;
+  bool is_gone = false;  // closed by ours as listed: what the recorded one still got is not sent
+};
+
+// One scenario while it is played.
+class ServiceReplay::Play {
+ public:
+  Play(ServiceReplay& replay, const Scenario& scenario)
+      : replay_(replay), scenario_(scenario), lines_(scenario.connections.size()) {
+    result_.run = {scenario.name, scenario.version, Role::service};
+  }
+
+  Result whole() {
+    for (const Step& step : scenario_.steps) {
+      play(step);
+      ++result_.checked;
+    }
+    return std::move(result_);
+  }
+
+ private:
+  void play(const Step& step) {
+    step_ = &step;
+    step_failed_ = false;
+    if (const ListEntry* deviation = deviation_of(step)) return play_deviating(step, *deviation);
+    const auto begun = std::chrono::steady_clock::now();
+    const Milliseconds pause = pause_of(step);
+    for (int i = 0; i < step.frame_count; ++i) {
+      const Frame& frame = scenario_.frames[static_cast<std::size_t>(step.first_frame + i)];
+      if (frame.from_client) {
+        std::this_thread::sleep_for(pause / (step.frame_count + 1));
+        send(frame);
+      } else {
+        expect(frame);
+      }
+      if (connection_of(frame).closed_after_frame == frame.number) end(frame);
+    }
+    if (pause.count() > 0) std::this_thread::sleep_until(begun + pause + quiet);
+    if (step_failed_) calm_down();
+  }
+
+  // What is listed for a step, by its number or by a frame in it.
+  [[nodiscard]] const ListEntry* deviation_of(const Step& step) const {
+    const auto listed = [&](std::string_view place) {
+      return replay_.deviations_.find(result_.run, place);
+    };
+    if (const ListEntry* entry = listed(step_place(step.index))) return entry;
+    for (int i = 0; i < step.frame_count; ++i) {
+      const Frame& frame = scenario_.frames[static_cast<std::size_t>(step.first_frame + i)];
+      const std::string host_error = host_error_of(frame);
+      const ListEntry* entry = frame.entries().empty() ? listed(no_entries)
+                               : host_error.empty()    ? nullptr
+                                                       : listed(host_error_place(host_error));
+      if (entry != nullptr) return entry;
+    }
+    return nullptr;
+  }
+
+  // How long a step with connection tests takes: they are spread over it.
+  [[nodiscard]] Milliseconds pause_of(const Step& step) const {
+    if (!scenario_.heartbeat_ms.is_object() || !step.plan.is_object()) return Milliseconds(0);
+    return Milliseconds(step.plan.value("ms", 0));
+  }
+
+  [[nodiscard]] Line& line_of(const Frame& frame) {
+    return lines_.at(static_cast<std::size_t>(frame.connection));
+  }
+  [[nodiscard]] const Connection& connection_of(const Frame& frame) const {
+    return scenario_.connections.at(static_cast<std::size_t>(frame.connection));
+  }
+
+  void fault(const std::string& text) {
+    // What follows a fault in its step is its consequence.
+    if (!step_failed_) result_.fail(step_place(step_->index), step_->label, text);
+    step_failed_ = true;
+  }
+
+  void open(Line& line) {
+    line.stream = Stream::connect(replay_.address_.host, replay_.address_.port);
+    line.was_opened = true;
+  }
+
+  // After our service closed a connection that the recorded one kept: a new one takes its place.
+  void reopen(Line& line, const Frame& next) {
+    open(line);
+    line.played = {};
+    line.played.take_next_message_id = true;
+    for (const Frame& frame : scenario_.frames) {
+      if (frame.number == next.number) return;
+      if (frame.connection != next.connection || !opens(frame)) continue;
+      line.stream.send(frame.bytes);
+      Bytes answer;
+      if (line.stream.receive(answer, answer_limit) != Arrival::message) return;
+      for (const Frame& recorded : scenario_.frames) {
+        const bool answers = recorded.number > frame.number && !recorded.from_client &&
+                             recorded.connection == frame.connection;
+        if (!answers) continue;
+        replay_.comparison_.difference(recorded, answer, line.played, &frame);
+        line.played.take_next_message_id = true;
+        break;
+      }
+    }
+  }
+
+  void send(const Frame& frame) {
+    Line& line = line_of(frame);
+    if (line.is_gone) return;
+    if (!line.was_opened) {
+      open(line);
+    } else if (!line.stream.is_open()) {
+      reopen(line, frame);
+    }
+    line.stream.send(addressed(frame, line.played));
+    line.last_sent = &frame;
+  }
+
+  // Receives what is no connection test of the service itself.
+  Arrival receive(Line& line, Bytes& message, Milliseconds limit) {
+    while (true) {
+      const Arrival arrival = line.stream.receive(message, limit);
+      if (arrival != Arrival::message || !scenario_.heartbeat_ms.is_object() ||
+          entry_type_of(message) != number_of(EntryType::connection_test)) {
+        return arrival;
+      }
+      line.stream.send(connection_test_answer(message));
+    }
+  }
+
+  // The answer to a DisconnectClient after a connect that failed may come or not.
+  [[nodiscard]] bool is_optional(const Frame& frame) const {
+    return is(frame, EntryType::disconnect_client_ret) && connection_of(frame).closed_by_client &&
+           (connection_of(frame).service_endpoint == 0 || frame.entries().front().at("error") != 0);
+  }
+
+  void expect(const Frame& frame) {
+    Line& line = line_of(frame);
+    if (is(frame, EntryType::service_closed)) {
+      replay_.close_service_(service_of(scenario_, frame.connection));
+    }
+    if (repeats_type_answer(scenario_, frame)) {
+      const ListEntry* listed = replay_.deviations_.find(result_.run, repeated_type_answer);
+      if (listed != nullptr) {
+        ++line.played.message_id_lead;
+        result_.deviations.push_back(listed);
+        return;
+      }
+    }
+    const bool optional = is_optional(frame);
+    Bytes message;
+    const Milliseconds limit = step_failed_ ? limit_after_fault
+                               : optional   ? optional_limit
+                                            : answer_limit;
+    switch (receive(line, message, limit)) {
+      case Arrival::closed:
+        if (!optional)
+          fault("closed the connection instead of sending frame " + std::to_string(frame.number));
+        return;
+      case Arrival::nothing:
+        if (!optional) fault("did not send frame " + std::to_string(frame.number));
+        return;
+      case Arrival::message:
+        break;
+    }
+    const auto different =
+        replay_.comparison_.difference(frame, message, line.played, line.last_sent);
+    if (different) fault("frame " + std::to_string(frame.number) + ": " + *different);
+  }
+
+  // The recorded connection ended after this frame.
+  void end(const Frame& frame) {
+    Line& line = line_of(frame);
+    const bool by_client = connection_of(frame).closed_by_client;
+    // Nothing tells how much a service still says to a client that has gone.
+    if (!(by_client && frame.from_client)) {
+      Bytes message;
+      const Arrival arrival = receive(line, message, by_client ? quiet : answer_limit);
+      if (arrival == Arrival::message) {
+        fault("a message more than recorded, of type " + std::to_string(entry_type_of(message)));
+      } else if (!by_client && arrival == Arrival::nothing) {
+        fault("did not close the connection");
+      }
+    }
+    line.stream.close();
+  }
+
+  // Lets everything arrive that a step that went wrong still brings.
+  void calm_down() {
+    for (Line& line : lines_) {
+      if (!line.stream.is_open()) continue;
+      Bytes message;
+      while (line.stream.receive(message, quiet) == Arrival::message) continue;
+      line.played.take_next_message_id = true;
+    }
+  }
+
+  // A step in which ours is to do something else, which is then checked instead.
+  void play_deviating(const Step& step, const ListEntry& entry) {
+    const Frame* sent = nullptr;
+    const Frame* recorded = nullptr;
+    for (int i = 0; i < step.frame_count; ++i) {
+      const Frame& frame = scenario_.frames[static_cast<std::size_t>(step.first_frame + i)];
+      if (frame.from_client) {
+        sent = &frame;
+        send(frame);
+      } else {
+        recorded = &frame;
+      }
+    }
+    if (sent == nullptr) return fault(entry.where_listed() + ": a step in which nothing is sent");
+    check_instead(line_of(*sent), *sent, recorded, entry);
+    if (!step_failed_) result_.deviations.push_back(&entry);
+    calm_down();
+  }
+
+  void check_instead(Line& line, const Frame& sent, const Frame* recorded, const ListEntry& entry) {
+    Bytes message;
+    const Arrival arrival = receive(line, message, answer_limit);
+    const std::string listed = " (" + entry.where_listed() + " says: " + entry.instead() + ")";
+    if (entry.instead() == "closed") {
+      if (arrival != Arrival::closed) fault("did not close the connection" + listed);
+      line.is_gone = arrival == Arrival::closed;
+      return;
+    }
+    const std::string wanted = entry.instead();
+    if (!wanted.starts_with("error ")) return fault("no such deviation" + listed);
+    const int code = std::stoi(wanted.substr(6));
+    if (recorded != nullptr && recorded->entries().front().at("error") == code) {
+      return fault("the recording says the same" + listed);
+    }
+    if (arrival != Arrival::message) return fault("no answer" + listed);
+    if (error_of(message) != code || entry_type_of(message) != answer_type(sent, recorded)) {
+      fault("answered " + std::to_string(entry_type_of(message)) + " with error " +
+            std::to_string(error_of(message)) + listed);
+    }
+  }
+
+  static int answer_type(const Frame& sent, const Frame* recorded) {
+    return recorded != nullptr ? recorded->entry_type() : sent.entry_type() + 1;
+  }
+
+  ServiceReplay& replay_;
+  const Scenario& scenario_;
+  std::vector<Line> lines_;
+  Result result_;
+  const Step* step_ = nullptr;
+  bool step_failed_ = false;
+};
+
+ServiceReplay::ServiceReplay(const Comparison& comparison, const Deviations& deviations,
+                             Address address, std::function<void(const std::string&)> close_service)
+    : comparison_(comparison),
+      deviations_(deviations),
+      address_(std::move(address)),
+      close_service_(std::move(close_service)) {}
+
+Result ServiceReplay::play(const Scenario& scenario) { return Play(*this, scenario).whole(); }
+
+}  // namespace rr::conformance

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/harness/suite.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <regex>
+#include <set>
+
+#include "conformance/harness/client_replay.hpp"
+#include "conformance/harness/codec_check.hpp"
+#include "conformance/harness/malformed.hpp"
+#include "conformance/harness/runner_client.hpp"
+
+namespace rr::conformance {
+namespace {
+
+// A client that somebody else starts and drives: it is told on the terminal what is expected.
+class ForeignClient final : public TestedClient {
+ public:
+  void begin(const Scenario& scenario, int port) override {
+    std::cout << "\n== " << scenario.name << " " << scenario.version << ": " << scenario.about
+              << "\n   client node " << scenario.client.id << " " << scenario.client.name
+              << ", message version " << scenario.message_version
+              << (scenario.string_table ? " with the string table" : "") << ", service at port "
+              << port << std::endl;
+  }
+  void start(const Json& step) override {
+    std::cout << "   " << (step.is_null() ? "take the node down" : step.dump()) << std::endl;
+  }
+  std::optional<Json> outcome(Milliseconds) override { return std::nullopt; }
+  [[nodiscard]] bool tells_outcomes() const override { return false; }
+  [[nodiscard]] Milliseconds patience() const override { return Milliseconds(60000); }
+};
+
+class Suite {
+ public:
+  explicit Suite(const Options& options)
+      : options_(options),
+        captures_(read_captures(options.captures)),
+        comparison_(captures_),
+        expected_(options.expected ? ExpectedFailures(*options.expected, options.language)
+                                   : ExpectedFailures()),
+        deviations_(options.deviations ? Deviations(*options.deviations) : Deviations()),
+        report_(options.language, expected_, deviations_,
+                options.only.empty() && !options.connect && !options.listen) {}
+
+  bool run() {
+    if (captures_.scenarios.empty()) {
+      throw std::runtime_error("no scenarios in " + options_.captures.string());
+    }
+    if (options_.connect) {
+      play_foreign_service();
+    } else if (options_.listen) {
+      play_foreign_client();
+    } else {
+      play_runner();
+    }
+    report_.print(std::cout);
+    if (options_.json) {
+      std::ofstream stream(*options_.json);
+      stream << report_.json().dump(1, ' ', false, Json::error_handler_t::replace) << "\n";
+    }
+    return report_.holds();
+  }
+
+ private:
+  [[nodiscard]] bool is_wanted(const std::string& name) const {
+    return options_.only.empty() || std::regex_match(name, std::regex(options_.only));
+  }
+
+  template <class Play>
+  void for_each_scenario(Play play) {
+    for (const Scenario& scenario : captures_.scenarios) {
+      if (is_wanted(scenario.name)) play(scenario);
+    }
+  }
+
+  // A run that cannot even be carried out is a fault of the whole.
+  void add(const Run& run, const std::function<Result()>& play) {
+    Result result;
+    try {
+      result = play();
+    } catch (const std::exception& error) {
+      result.run = run;
+      result.fail(std::string(whole_run), "", error.what());
+    }
+    report_.add(std::move(result));
+  }
+
+  [[nodiscard]] std::set<int> versions_of_values() const {
+    std::set<int> versions;
+    for (const Value& value : captures_.values) versions.insert(value.message_version);
+    return versions;
+  }
+  [[nodiscard]] std::set<int> versions_of_malformed() const {
+    std::set<int> versions;
+    for (const MalformedCase& one : captures_.malformed) versions.insert(one.message_version);
+    return versions;
+  }
+
+  void play_runner() {
+    check_codec();
+    for_each_scenario([&](const Scenario& scenario) {
+      add({scenario.name, scenario.version, Role::service}, [&] { return serve(scenario); });
+    });
+    for_each_scenario([&](const Scenario& scenario) {
+      if (scenario.hand_made) return;
+      add({scenario.name, scenario.version, Role::client}, [&] { return call(scenario); });
+    });
+    for (const int version : versions_of_malformed()) {
+      if (!is_wanted("malformed")) continue;
+      add({"malformed", "v" + std::to_string(version), Role::service},
+          [&] { return serve_malformed(version); });
+    }
+  }
+
+  void check_codec() {
+    Runner decoder(options_.runner, "decode");
+    Runner encoder(options_.runner, "encode");
+    for (const int version : versions_of_values()) {
+      if (!is_wanted("values")) continue;
+      const std::string name = "v" + std::to_string(version);
+      add({"values", name, Role::decode},
+          [&] { return check_unpacking(captures_, version, decoder); });
+      add({"values", name, Role::encode},
+          [&] { return check_packing(captures_, version, decoder, encoder); });
+    }
+    for_each_scenario([&](const Scenario& scenario) {
+      add({scenario.name, scenario.version, Role::decode},
+          [&] { return check_decoding(scenario, decoder); });
+      add({scenario.name, scenario.version, Role::encode},
+          [&] { return check_encoding(scenario, encoder); });
+    });
+  }
+
+  Result serve(const Scenario& scenario) {
+    if (scenario.web_socket) return not_playable(scenario, Role::service);
+    Runner runner(options_.runner, "serve");
+    const Json started = runner.ask(serve_request(captures_, scenario));
+    ServiceReplay replay(comparison_, deviations_, {"127.0.0.1", started.at("port")},
+                         [&](const std::string& service) {
+                           runner.ask({{"do", "close_service"}, {"service", service}});
+                         });
+    return replay.play(scenario);
+  }
+
+  Result call(const Scenario& scenario) {
+    if (scenario.web_socket) return not_playable(scenario, Role::client);
+    RunnerClient client(options_.runner);
+    Listener listener(0);
+    return ClientReplay(comparison_, deviations_, listener, client).play(scenario);
+  }
+
+  Result serve_malformed(int version) {
+    const Scenario* scenario = captures_.find("connect", "v" + std::to_string(version));
+    if (scenario == nullptr) throw std::runtime_error("no scenario connect to connect with");
+    Runner runner(options_.runner, "serve");
+    const Json started = runner.ask(serve_request(captures_, *scenario));
+    return check_malformed(captures_, version, deviations_, {"127.0.0.1", started.at("port")});
+  }
+
+  static Result not_playable(const Scenario& scenario, Role role) {
+    Result result;
+    result.run = {scenario.name, scenario.version, role};
+    result.fail(std::string(whole_run), "", "the frames are those of a web socket");
+    return result;
+  }
+
+  void reset_foreign_service(const std::string& scenario, const std::string& version) {
+    if (options_.before.empty()) return;
+    ::setenv("CONFORMANCE_SCENARIO", scenario.c_str(), 1);
+    ::setenv("CONFORMANCE_VERSION", version.c_str(), 1);
+    if (std::system(options_.before.c_str()) != 0) {
+      throw std::runtime_error("failed: " + options_.before);
+    }
+  }
+
+  void play_foreign_service() {
+    for_each_scenario([&](const Scenario& scenario) {
+      if (scenario.web_socket) return;
+      add({scenario.name, scenario.version, Role::service}, [&] {
+        reset_foreign_service(scenario.name, scenario.version);
+        ServiceReplay replay(comparison_, deviations_, *options_.connect,
+                             [](const std::string& service) {
+                               std::cout << "close the service " << service << " now" << std::endl;
+                             });
+        return replay.play(scenario);
+      });
+    });
+    for (const int version : versions_of_malformed()) {
+      const std::string name = "v" + std::to_string(version);
+      if (!is_wanted("malformed")) continue;
+      add({"malformed", name, Role::service}, [&] {
+        reset_foreign_service("malformed", name);
+        return check_malformed(captures_, version, deviations_, *options_.connect);
+      });
+    }
+  }
+
+  void play_foreign_client() {
+    Listener listener(*options_.listen, true);
+    for_each_scenario([&](const Scenario& scenario) {
+      if (scenario.web_socket || scenario.hand_made) return;
+      add({scenario.name, scenario.version, Role::client}, [&] {
+        ForeignClient client;
+        return ClientReplay(comparison_, deviations_, listener, client).play(scenario);
+      });
+    });
+  }
+
+  const Options& options_;
+  Captures captures_;
+  Comparison comparison_;
+  ExpectedFailures expected_;
+  Deviations deviations_;
+  Report report_;
+};
+
+}  // namespace
+
+bool run_suite(const Options& options) { return Suite(options).run(); }
+
+}  // namespace rr::conformance

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "conformance/runners/cpp/adapters.hpp"
+
+namespace rr::conformance {
+
+/// Adds everything that was generated for the definitions of the captures. Written by the build.
+void add_all(Adapters& adapters);
+
+}  // namespace rr::conformance

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/runners/cpp/call.hpp"
+
+#include <chrono>
+#include <stdexcept>
+
+#include "conformance/runners/cpp/node_settings.hpp"
+
+namespace rr::conformance {
+namespace {
+
+constexpr std::chrono::seconds arrival_limit{2};
+
+// Codes of the recorded client's notifications.
+constexpr int client_closed = 1;
+constexpr int path_released = 5;
+
+Json raised(const Adapters& adapters, const Error& error) {
+  Json json = {{"code", static_cast<int>(error.code())},
+               {"name", error.name()},
+               {"message", error.message()}};
+  if (!error.subname().empty()) json["subname"] = error.subname();
+  if (!error.parameter().is_null()) json["param"] = to_json(adapters, error.parameter());
+  return json;
+}
+
+// An index as paths spell it: ASCII letters and digits as they are, every other byte with two
+// digits.
+std::string escaped(const std::string& index) {
+  static constexpr char digits[] = "0123456789abcdef";
+  std::string text;
+  for (const char c : index) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+    if (plain) {
+      text += c;
+    } else {
+      text += {'%', digits[byte >> 4], digits[byte & 15]};
+    }
+  }
+  return text;
+}
+
+// `objref` or `objref[index]`, as a step asks for it.
+std::string relative_path(const Json& step) {
+  const std::string member = step.at("member");
+  if (!step.contains("index")) return member;
+  const Json& index = step["index"];
+  return member + "[" + escaped(index.is_string() ? index.get<std::string>() : index.dump()) + "]";
+}
+
+}  // namespace
+
+void Arrivals::add(Json thing) {
+  {
+    const std::lock_guard lock(mutex_);
+    things_.push_back(std::move(thing));
+  }
+  changed_.notify_all();
+}
+
+Json Arrivals::wait(std::size_t count) {
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, arrival_limit, [&] { return things_.size() >= count; });
+  return std::exchange(things_, Json::array());
+}
+
+void Arrivals::clear() {
+  const std::lock_guard lock(mutex_);
+  things_ = Json::array();
+}
+
+Json CallingNode::answer(const Json& request) {
+  const std::string what = request.at("do");
+  if (what == "start") {
+    stop();
+    arrivals_.clear();
+    node_ = std::make_unique<Node>(node_options(request));
+    for (const auto& [name, definition] : adapters_.definitions())
+      node_->add_definition(*definition);
+    return {{"done", true}};
+  }
+  if (what == "stop_node") {
+    stop();
+    return {{"done", true}};
+  }
+  try {
+    return {{"result", play(request.at("step"))}};
+  } catch (const Error& error) {
+    return {{"raised", raised(adapters_, error)}};
+  } catch (const NotSupported& reason) {
+    return {{"unsupported", reason.what()}};
+  }
+}
+
+// The node first: a client that ends by itself waits for the service to answer.
+void CallingNode::stop() {
+  subscriptions_.clear();
+  if (node_) node_->shutdown();
+  objects_.clear();
+  clients_.clear();
+  node_.reset();
+}
+
+Json CallingNode::play(const Json& step) {
+  const std::string operation = step.at("op");
+  if (operation == "connect") return connect(step);
+  if (operation == "wait") return arrivals_.wait(step.at("count").get<std::size_t>());
+  if (operation == "drain") {
+    arrivals_.clear();
+    return nullptr;
+  }
+  if (operation == "disconnect") {
+    clients_.at(step.at("obj").get<std::string>()).close();
+    return nullptr;
+  }
+  if (operation == "get") return object(step).caller->get(step.at("member").get<std::string>());
+  if (operation == "set") {
+    object(step).caller->set(step.at("member").get<std::string>(), step.at("value"));
+    return nullptr;
+  }
+  if (operation == "call") {
+    return object(step).caller->call(step.at("member").get<std::string>(), step.at("args"));
+  }
+  if (operation == "objref") return find(step);
+  if (operation == "find_object_type") return find_object_type(step);
+  if (operation == "listen") return listen(step);
+  if (operation == "attributes") return attributes(step);
+  if (operation == "local_services") return local_services(step);
+  throw NotSupported("the runtime cannot do " + operation + " yet");
+}
+
+CallingNode::Object& CallingNode::object(const Json& step) {
+  const auto found = objects_.find(step.at("obj").get<std::string>());
+  if (found == objects_.end()) throw std::runtime_error("there is no object " + step["obj"].dump());
+  return found->second;
+}
+
+Json CallingNode::keep(const std::string& name, const std::string& client, Held held) {
+  auto caller = adapters_.object(held.type).call(adapters_, held.stub);
+  const Json type = {{"rrtype", held.type}};
+  objects_[name] = {std::move(held), std::move(caller), client};
+  return type;
+}
+
+Json CallingNode::connect(const Json& step) {
+  const std::string name = step.at("as");
+  ConnectOptions options;
+  options.username = step.value("username", "");
+  options.object_type = step.value("objecttype", "");
+  const Json credentials = step.value("credentials", Json::object());
+  for (const auto& [key, value] : credentials.items()) {
+    options.credentials[key] = made_from_json<VarValue>(adapters_, value);
+  }
+  options.on_closed = [this, name](const Error&) {
+    arrivals_.add({{"event_type", client_closed}, {"service", name}});
+  };
+  options.on_path_released = [this, name](const std::string& path) {
+    arrivals_.add({{"event_type", path_released}, {"path", path}, {"service", name}});
+  };
+  auto client = node_->connect<Stub>(step.at("url").get<std::string>(), std::move(options));
+  const std::shared_ptr<Stub> root = client.stub();
+  clients_.insert_or_assign(name, std::move(client));
+  return keep(name, name, {root, root->rr_object_type().name});
+}
+
+Json CallingNode::find(const Json& step) {
+  Object& parent = object(step);
+  Held held =
+      parent.caller->objref(step.at("member").get<std::string>(), step.value("index", Json()));
+  return keep(step.at("as"), parent.client, std::move(held));
+}
+
+Json CallingNode::find_object_type(const Json& step) {
+  const Object& parent = object(step);
+  return clients_.at(parent.client)
+      .find_object_type(parent.held.stub->rr_path() + "." + relative_path(step));
+}
+
+Json CallingNode::listen(const Json& step) {
+  const std::string member = step.at("member");
+  const std::string name = step.value("as", member);
+  subscriptions_.push_back(object(step).caller->listen(member, [this, name](const Json& arguments) {
+    arrivals_.add({{"event", name}, {"args", arguments}});
+  }));
+  return nullptr;
+}
+
+Json CallingNode::attributes(const Json& step) {
+  Json result = Json::object();
+  for (const auto& [name, value] : clients_.at(object(step).client).attributes()) {
+    result[name] = to_json(adapters_, value);
+  }
+  return result;
+}
+
+// The object is an ordinary one of the definition RobotRaconteurServiceIndex.
+Json CallingNode::local_services(const Json& step) {
+  Json result = Json::array();
+  for (const Json& item : object(step).caller->call("GetLocalNodeServices", Json::array())) {
+    result.push_back({{"index", item.at(0)},
+                      {"name", item.at(1).at("Name")},
+                      {"type", item.at(1).at("RootObjectType")}});
+  }
+  return result;
+}
+
+}  // namespace rr::conformance

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <rr/node.hpp>
+#include <string>
+#include <vector>
+
+#include "conformance/runners/cpp/adapters.hpp"
+#include "conformance/runners/cpp/caller.hpp"
+
+namespace rr::conformance {
+
+/// What arrives without being asked for: events, sessions that end, objects that are released.
+class Arrivals {
+ public:
+  void add(Json thing);
+  /// Waits for so many, not for ever, and takes all that have come.
+  Json wait(std::size_t count);
+  void clear();
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  Json things_ = Json::array();
+};
+
+/// `call`: a node that does the steps of a plan.
+class CallingNode {
+ public:
+  explicit CallingNode(const Adapters& adapters) : adapters_(adapters) {}
+  ~CallingNode() { stop(); }
+
+  /// {do: start, ...} and {do: stop_node} give {done}; {do: step, step} gives what became of it.
+  Json answer(const Json& request);
+
+ private:
+  // An object that the plan has a name for.
+  struct Object {
+    Held held;
+    std::unique_ptr<Caller> caller;
+    std::string client;  ///< name of its client
+  };
+
+  void stop();
+  Json play(const Json& step);
+  Json connect(const Json& step);
+  Json find(const Json& step);
+  Json find_object_type(const Json& step);
+  Json listen(const Json& step);
+  Json attributes(const Json& step);
+  Json local_services(const Json& step);
+  Json keep(const std::string& name, const std::string& client, Held held);
+  Object& object(const Json& step);
+
+  const Adapters& adapters_;
+  Arrivals arrivals_;
+  std::unique_ptr<Node> node_;
+  std::map<std::string, Client<Stub>> clients_;
+  std::map<std::string, Object> objects_;
+  std::vector<Subscription> subscriptions_;
+};
+
+}  // namespace rr::conformance

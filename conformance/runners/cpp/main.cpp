@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// The C++ runner: one of four verbs, a line of JSON in, a line of JSON out, until its input ends.
+#include <exception>
+#include <functional>
+#include <iostream>
+#include <string>
+
+#include "conformance/runners/cpp/all.hpp"
+#include "conformance/runners/cpp/call.hpp"
+#include "conformance/runners/cpp/codec_verbs.hpp"
+#include "conformance/runners/cpp/serve.hpp"
+
+namespace {
+
+using rr::conformance::Json;
+
+void answer_lines(const std::function<Json(const Json&)>& answer) {
+  for (std::string line; std::getline(std::cin, line);) {
+    Json result;
+    try {
+      result = answer(Json::parse(line));
+    } catch (const std::exception& error) {
+      result = {{"error", error.what()}};
+    }
+    std::cout << result.dump(-1, ' ', false, Json::error_handler_t::replace) << "\n" << std::flush;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string verb = argc == 2 ? argv[1] : "";
+  rr::conformance::Adapters adapters;
+  add_all(adapters);
+  if (verb == "decode") {
+    answer_lines([&](const Json& request) { return decode(adapters, request); });
+  } else if (verb == "encode") {
+    answer_lines([&](const Json& request) { return encode(adapters, request); });
+  } else if (verb == "serve") {
+    rr::conformance::ServedNode node(adapters);
+    answer_lines([&](const Json& request) { return node.answer(request); });
+  } else if (verb == "call") {
+    rr::conformance::CallingNode node(adapters);
+    answer_lines([&](const Json& request) { return node.answer(request); });
+  } else {
+    std::cerr << "usage: conformance_runner decode|encode|serve|call\n";
+    return 2;
+  }
+  return 0;
+}

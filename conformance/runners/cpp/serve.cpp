@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/runners/cpp/serve.hpp"
+
+#include <stdexcept>
+
+#include "conformance/runners/cpp/node_settings.hpp"
+#include "conformance/runners/cpp/script.hpp"
+
+namespace rr::conformance {
+namespace {
+
+// The script of a service's root: its own, or "as NAME" for that of another.
+Json script_of(const Json& service, const Json& all) {
+  constexpr std::string_view as = "as ";
+  const Json& node = service.at("node");
+  if (!node.is_string()) return node;
+  const std::string text = node;
+  for (const Json& other : all) {
+    if (text.starts_with(as) && other.at("name") == text.substr(as.size())) return other.at("node");
+  }
+  throw std::runtime_error("there is no script " + text);
+}
+
+}  // namespace
+
+Json ServedNode::answer(const Json& request) {
+  const std::string what = request.at("do");
+  if (what == "start") return start(request);
+  if (what != "close_service") throw std::runtime_error("unknown request " + what);
+  services_.at(request.at("service").get<std::string>())->close();
+  return {{"done", true}};
+}
+
+Json ServedNode::start(const Json& request) {
+  services_.clear();
+  node_ = std::make_unique<Node>(node_options(request));
+  const Json& services = request.at("services");
+  for (const Json& service : services) offer(service, services);
+  const auto port = static_cast<std::uint16_t>(request.value("port", 0));
+  return {{"port", node_->listen_tcp(port, "127.0.0.1")}};
+}
+
+void ServedNode::offer(const Json& service, const Json& all) {
+  ServiceOptions options;
+  const Json attributes = service.value("attributes", Json::object());
+  for (const auto& [name, value] : attributes.items()) {
+    options.attributes[name] = made_from_json<VarValue>(adapters_, value);
+  }
+  const ObjectAdapter& root = adapters_.object(service.at("object").get_ref<const std::string&>());
+  const std::string name = service.at("name");
+  auto script = std::make_shared<Script>(adapters_, script_of(service, all));
+  services_[name] =
+      node_->register_service(name, root.serve(std::move(script)), std::move(options));
+}
+
+}  // namespace rr::conformance

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "rr/node_id.hpp"
+#include "rr/stub.hpp"
+#include "rr/varvalue.hpp"
+
+/// The client's side of a connected service.
+namespace rr {
+
+/// How to connect.
+struct ConnectOptions {
+  /// Of a service that has users; then `credentials` usually holds `password`.
+  std::string username;
+  std::map<std::string, VarValue> credentials;
+  /// Qualified name of the type that the root object must have or implement. Empty: that of the
+  /// stub.
+  std::string object_type;
+  /// For calls of this client's stubs; 0: the node's request timeout.
+  std::chrono::milliseconds request_timeout{0};
+  /// Called once when the session has ended, whoever ended it, on a thread of the node: the reason.
+  /// operation_aborted means that this side closed it, connection_error a lost connection,
+  /// service_not_found that the service was closed.
+  std::function<void(const Error&)> on_closed;
+  /// Called when the service has released the object at a path, on a thread of the node. Stubs for
+  /// it and for what lies below may still be used and reach the object that is there then, if any.
+  std::function<void(const std::string&)> on_path_released;
+};
+
+/// A session with a service: closes it when destroyed. The stubs found through it stay, but their
+/// calls fail once it is closed.
+class ClientBase {
+ public:
+  /// No session: not open.
+  ClientBase() = default;
+  ClientBase(ClientBase&& other) noexcept = default;
+  ClientBase& operator=(ClientBase&& other) noexcept;
+  ~ClientBase();
+
+  /// Tells the service, waits for its answer for at most half a second, and ends the connection.
+  /// Calls that are open fail with connection_error. Nothing happens the second time.
+  void close();
+  /// False once the session has ended, whoever ended it.
+  [[nodiscard]] bool is_open() const;
+  /// Ends all open calls of this session with operation_cancelled.
+  void cancel_calls();
+
+  /// As the service gave them when connecting.
+  [[nodiscard]] const std::map<std::string, VarValue>& attributes() const;
+  [[nodiscard]] const NodeId& remote_node() const;
+  [[nodiscard]] const std::string& remote_name() const;
+  /// The type of the root object, as the service told it.
+  [[nodiscard]] const std::string& object_type() const;
+  /// The texts of the service's definitions, by their names.
+  [[nodiscard]] std::map<std::string, std::string> definitions() const;
+  /// Type of the object at an objref, as the service tells it now. Throws rr::Error.
+  [[nodiscard]] std::string find_object_type(const std::string& path) const;
+  /// Attributes as they are now. Throws rr::Error.
+  [[nodiscard]] std::map<std::string, VarValue> fetch_attributes() const;
+
+  explicit ClientBase(std::shared_ptr<Session> session);  // made by Node::connect
+
+ private:
+  std::shared_ptr<Session> session_;
+};
+
+/// The same, with the stub of the root object.
+template <class S>
+class Client : public ClientBase {
+ public:
+  Client() = default;
+  Client(std::shared_ptr<Session> session, std::shared_ptr<S> stub)
+      : ClientBase(std::move(session)), stub_(std::move(stub)) {}
+
+  S* operator->() const { return stub_.get(); }
+  S& operator*() const { return *stub_; }
+  [[nodiscard]] const std::shared_ptr<S>& stub() const { return stub_; }
+
+ private:
+  std::shared_ptr<S> stub_;
+};
+
+}  // namespace rr

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <future>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "rr/client.hpp"
+#include "rr/error.hpp"
+#include "rr/options.hpp"
+#include "rr/service.hpp"
+#include "rr/skeleton.hpp"
+#include "rr/stub.hpp"
+
+namespace rr {
+
+/// One participant: offers services, and connects to those of others.
+///
+///   rr::Node node({.name = "camera.host"});
+///   node.register_service("camera", std::make_shared<MyCamera>());
+///   node.listen_tcp(6257);
+///
+///   rr::Node node;
+///   auto camera = node.connect<CameraStub>("rr+tcp://host:6257/?service=camera");
+///   camera->start();
+///
+/// Threads. A node has few threads of its own: one waits for the network and handles what comes in
+/// place, another watches it. What user code may rely on:
+///
+/// - Members of a service are called on a thread of the node, for each client one at a time, in the
+///   order of its requests. Calls of different clients may overlap, so objects that are shared need
+///   their own locks.
+/// - A handler that takes long holds up its own client only: after a few milliseconds another
+/// thread
+///   waits for the network (NodeOptions::max_threads bounds how many). A handler can answer later
+///   (Request::defer), and then holds up nobody.
+/// - A blocking call sends in the calling thread, which reads the connection itself until its
+/// answer is
+///   there, if no other thread does. It may be made anywhere, in handlers too.
+/// - Event handlers and completions of asynchronous calls run on a thread of the node, never inside
+/// a
+///   call that the program makes. Events of one session come one at a time, in order.
+/// - No user code runs while the runtime holds a lock.
+///
+/// The object must not be destroyed by one of its own threads.
+class Node {
+ public:
+  explicit Node(NodeOptions options = {});
+  /// As shutdown().
+  ~Node();
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  [[nodiscard]] const NodeId& id() const;
+  [[nodiscard]] const std::string& name() const;
+
+  /// Accepts connections at `rr+tcp://host:port`, port 0 meaning any; a host of `*`, or none, means
+  /// all addresses. Returns the port. Throws rr::Error.
+  std::uint16_t listen(std::string_view url);
+  /// The same at all addresses of both families, or at `host` only.
+  std::uint16_t listen_tcp(std::uint16_t port, std::string_view host = {});
+  /// Where a service may be reached, by what this node knows: one URL for each address it listens
+  /// at.
+  [[nodiscard]] std::vector<std::string> urls(std::string_view service) const;
+
+  /// Offers an object and what it refers to. The name is a letter, then letters, digits and
+  /// underscores. Throws rr::Error.
+  Service register_service(std::string name, std::shared_ptr<Skeleton> root,
+                           ServiceOptions options = {});
+
+  /// Makes the types of a definition known for what is received without being asked for: structs in
+  /// varvalues, exceptions, objects behind varobjects. Those of stubs and services are known
+  /// anyway.
+  void add_definition(const Definition& definition);
+
+  /// Connects to the service at a URL. The root object must be an S, or implement it; with rr::Stub
+  /// any object will do that this program has a definition of. Throws rr::Error.
+  template <class S>
+  Client<S> connect(std::string_view url, ConnectOptions options = {}) {
+    auto [session, stub] = open(url, std::move(options), type_of_stub<S>());
+    return Client<S>(std::move(session), cast<S>(std::move(stub)));
+  }
+  /// The same without waiting: it happens on a thread of its own. With other completion tokens see
+  /// rr/async.hpp.
+  template <class S>
+  std::future<Client<S>> async_connect(std::string url, ConnectOptions options = {}) {
+    auto promise = std::make_shared<std::promise<Client<S>>>();
+    auto future = promise->get_future();
+    run_aside([this, promise, url = std::move(url), options = std::move(options)] {
+      try {
+        promise->set_value(connect<S>(url, options));
+      } catch (...) {
+        promise->set_exception(std::current_exception());
+      }
+    });
+    return future;
+  }
+  /// Runs something on a thread of its own, which shutdown() waits for. It may not throw.
+  void run_aside(std::function<void()> work);
+
+  /// Closes all services, clients and connections, and waits for the node's threads, and so for
+  /// handlers that run. Nothing happens the second time.
+  void shutdown();
+
+  /// Serves a connection that came another way: one end of a connected stream socket, which is
+  /// taken over.
+  void adopt(int descriptor);
+
+ private:
+  struct State;
+  using Opened = std::pair<std::shared_ptr<Session>, std::shared_ptr<Stub>>;
+
+  template <class S>
+  static const ObjectType* type_of_stub() {
+    if constexpr (std::is_same_v<S, Stub>) {
+      return nullptr;
+    } else {
+      return &S().rr_object_type();
+    }
+  }
+  template <class S>
+  static std::shared_ptr<S> cast(std::shared_ptr<Stub> stub) {
+    auto result = std::dynamic_pointer_cast<S>(std::move(stub));
+    if (!result) refuse();
+    return result;
+  }
+  [[noreturn]] static void refuse();
+  Opened open(std::string_view url, ConnectOptions options, const ObjectType* type);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace rr

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "rr/node_id.hpp"
+#include "rr/wire.hpp"
+
+namespace rr {
+
+enum class LogLevel : std::uint8_t { debug, info, warning, error };
+
+/// What one side of a new connection offers the other (04, section 4.4). Both must want a thing.
+struct Offer {
+  bool message_v4 = true;        ///< the compact message format
+  bool string_table = true;      ///< codes for frequent strings; needs message_v4
+  bool combined_connect = true;  ///< connecting to a service in one step instead of four
+};
+
+/// How a node behaves. The defaults are those of the existing implementations.
+struct NodeOptions {
+  /// Name of the node: letters, digits, `_`, `.`, `-`, a letter first. Empty for none.
+  std::string name{};
+  /// Zero: a random one.
+  NodeId id{};
+
+  /// Threads that the node may have. Two are enough until handlers block; see rr/node.hpp.
+  unsigned max_threads = 32;
+  /// Where reports go; nothing is printed. Called on any thread, under no lock.
+  std::function<void(LogLevel, std::string_view)> log{};
+
+  Offer client_offer{};
+  Offer server_offer{.string_table = false};
+
+  /// How long a call waits for its answer, unless the call says otherwise.
+  std::chrono::milliseconds request_timeout{15'000};
+  /// From looking up the name to the first message both understand.
+  std::chrono::milliseconds connect_timeout{5'000};
+  /// A server closes connections that have not brought a whole message after this time.
+  std::chrono::milliseconds first_message_timeout{5'000};
+  /// A side that has sent nothing for so long sends a connection test; a server waits a fifth
+  /// longer.
+  std::chrono::milliseconds heartbeat_period{10'000};
+  /// A connection is given up when nothing came for so long after something was sent.
+  std::chrono::milliseconds receive_timeout{15'000};
+  /// A connected client that has sent nothing for so long tells its service that it is there.
+  std::chrono::milliseconds keep_alive_period{60'000};
+  /// A service drops clients that it has not heard for so long.
+  std::chrono::milliseconds client_timeout{600'000};
+
+  Limits limits{};
+  /// Largest message, in bytes, before a client has connected to a service.
+  std::uint32_t size_before_connect = 512 * 1024;
+  /// Incoming connections at a time; 0: no limit.
+  std::size_t max_connections = 0;
+  /// Bytes that may wait to be sent on one connection before it is given up.
+  std::size_t send_queue_limit = 64 * 1024 * 1024;
+  /// Bytes of requests that wait for their handlers before a connection is read no further.
+  std::size_t request_queue_limit = 1024 * 1024;
+};
+
+}  // namespace rr

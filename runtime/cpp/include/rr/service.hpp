@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "rr/definition.hpp"
+#include "rr/node_id.hpp"
+#include "rr/skeleton.hpp"
+#include "rr/varvalue.hpp"
+
+/// The service's side: what a node offers under a name.
+namespace rr {
+
+/// A client that is connected to a service.
+struct ServiceClient {
+  std::uint32_t endpoint = 0;  ///< its number in this node
+  NodeId node;
+  std::string node_name;
+};
+
+struct ServiceOptions {
+  /// What clients are told about the service: numbers, arrays and strings.
+  std::map<std::string, VarValue> attributes;
+  /// Definitions, besides those that the root object's imports, whose types may be used in
+  /// varvalues or varobjects.
+  std::vector<const Definition*> extra_imports;
+  /// Called on a thread of the node, before the first and after the last request of a client.
+  std::function<void(const ServiceClient&)> on_client_connected;
+  std::function<void(const ServiceClient&)> on_client_disconnected;
+};
+
+/// A service while it is offered.
+class ServiceContext {
+ public:
+  virtual ~ServiceContext() = default;
+
+  [[nodiscard]] virtual const std::string& name() const = 0;
+  [[nodiscard]] virtual const Skeleton& root() const = 0;
+  [[nodiscard]] virtual std::map<std::string, VarValue> attributes() const = 0;
+  virtual void set_attributes(std::map<std::string, VarValue> attributes) = 0;
+  /// Forgets the object at a path and those below it, and tells all clients; a later request to the
+  /// path finds the object anew. Throws rr::Error: service_error for a path where no object is
+  /// known, invalid_operation for the root.
+  virtual void release_path(const std::string& path) = 0;
+  [[nodiscard]] virtual std::vector<ServiceClient> clients() const = 0;
+  /// Ends the session of a client, if it has one.
+  virtual void disconnect(std::uint32_t endpoint) = 0;
+  /// Tells all clients that the service is closed, and ends their sessions. The name is free again.
+  virtual void close() = 0;
+
+  /// The client whose request this thread handles; 0 outside of handlers. For `perclient` members.
+  static std::uint32_t current_client();
+};
+
+/// A registered service. The service stays until it is closed or its node goes away, whatever
+/// becomes of this handle.
+class Service {
+ public:
+  Service() = default;
+  explicit Service(std::shared_ptr<ServiceContext> context) : context_(std::move(context)) {}
+
+  ServiceContext* operator->() const { return context_.get(); }
+  [[nodiscard]] const std::shared_ptr<ServiceContext>& context() const { return context_; }
+
+ private:
+  std::shared_ptr<ServiceContext> context_;
+};
+
+}  // namespace rr

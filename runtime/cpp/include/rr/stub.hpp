@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "rr/definition.hpp"
+#include "rr/error.hpp"
+#include "rr/type.hpp"
+#include "rr/varvalue.hpp"
+
+/// What generated stubs stand on: the client's side of an object.
+namespace rr {
+
+/// Number of the contract between generated code and this runtime. Generated headers refuse
+/// another.
+inline constexpr int stub_api = 1;
+
+class Session;
+class Stub;
+
+/// Ends a handler's connection to an event when it is destroyed, or by disconnect().
+class [[nodiscard]] Subscription {
+ public:
+  Subscription() = default;
+  Subscription(Subscription&& other) noexcept;
+  Subscription& operator=(Subscription&& other) noexcept;
+  ~Subscription();
+
+  /// The handler is not called any more once this returns, unless it is the caller itself.
+  void disconnect();
+  /// Leaves the handler connected for as long as the stub lives.
+  void detach();
+
+  struct Handler;  // internal
+  explicit Subscription(std::shared_ptr<Handler> handler);
+
+ private:
+  std::shared_ptr<Handler> handler_;
+};
+
+/// Reads the values of a received packet or request, in any order, by name.
+class Arguments {
+ public:
+  /// Reads the parameters of a member into `values`, one pointer each, in their order. Throws
+  /// rr::Error (message_element_not_found, data_type_mismatch, ...) naming the parameter.
+  void read(const Member& member, void* const* values) const;
+
+  struct Source;  // internal
+  explicit Arguments(const Source& source) : source_(&source) {}
+
+ private:
+  const Source* source_;
+};
+
+/// Calls a function when an event arrives. Made by Event::connect.
+class EventHandler {
+ public:
+  virtual ~EventHandler() = default;
+  virtual void call(const Arguments& arguments) = 0;
+
+ protected:
+  explicit EventHandler(const Member& member) : member_(&member) {}
+  [[nodiscard]] const Member& member() const { return *member_; }
+
+ private:
+  const Member* member_;
+};
+
+/// An event of an object on another node.
+template <class... Parameters>
+class Event {
+ public:
+  Event(Stub& stub, const Member& member) : stub_(&stub), member_(&member) {}
+
+  /// Calls `function` for each event from now on, in order, on a thread of the node, never under a
+  /// lock and never inside a call that the program makes. It may make calls itself. What it throws
+  /// is given to the node's log. Connect before the events that matter: the service sends to
+  /// everybody and keeps nothing.
+  template <class Function>
+  Subscription connect(Function function);
+
+ private:
+  Stub* stub_;
+  const Member* member_;
+};
+
+/// Where an asynchronous call leaves its result. Derived by rr/async.hpp; the runtime calls exactly
+/// one of the two, once, on a thread of the node, under no lock.
+class Completion {
+ public:
+  virtual ~Completion() = default;
+  /// Where to read the result into; null for none.
+  virtual void* result() = 0;
+  virtual void succeed() = 0;
+  virtual void fail(std::exception_ptr error) = 0;
+};
+
+/// The base of every generated stub: an object on another node, named by its path. Calls may be
+/// made from any thread at once. A stub keeps its session alive but does not hold the connection
+/// open. The stub of an object derives, virtually, from the stubs of the objects it implements.
+class Stub {
+ public:
+  Stub() = default;
+  virtual ~Stub();
+  Stub(const Stub&) = delete;
+  Stub& operator=(const Stub&) = delete;
+
+  /// The object's type; the most derived one that this program knows.
+  [[nodiscard]] virtual const ObjectType& rr_object_type() const = 0;
+  /// `service.objref[index]...`
+  [[nodiscard]] const std::string& rr_path() const { return rr_path_; }
+  [[nodiscard]] const std::shared_ptr<Session>& rr_session() const { return rr_session_; }
+  /// How long a call waits for its answer: by default the node's request timeout (15 s).
+  void rr_set_timeout(std::chrono::milliseconds timeout) { rr_timeout_ = timeout; }
+  [[nodiscard]] std::chrono::milliseconds rr_timeout() const { return rr_timeout_; }
+
+ protected:
+  // Used by generated code; each blocks until the answer is there, and throws rr::Error.
+  void rr_get(const Member& member, void* value);
+  void rr_set(const Member& member, const void* value);
+  void rr_invoke(const Member& member, const void* const* arguments, void* result);
+  std::shared_ptr<Stub> rr_find(const Member& member);
+  std::shared_ptr<Stub> rr_find(const Member& member, std::int32_t index);
+  std::shared_ptr<Stub> rr_find(const Member& member, std::string_view index);
+
+  template <class T>
+  T rr_get(const Member& member) {
+    T value{};
+    rr_get(member, &value);
+    return value;
+  }
+  template <class R, class... Arguments>
+  R rr_call(const Member& member, const Arguments&... arguments) {
+    const void* const values[] = {&arguments..., nullptr};
+    if constexpr (std::is_void_v<R>) {
+      rr_invoke(member, values, nullptr);
+    } else {
+      R result{};
+      rr_invoke(member, values, &result);
+      return result;
+    }
+  }
+  template <class S, class... Index>
+  std::shared_ptr<S> rr_find_as(const Member& member, const Index&... index) {
+    auto stub = std::dynamic_pointer_cast<S>(rr_find(member, index...));
+    if (!stub) rr_refuse(member);
+    return stub;
+  }
+
+  // The asynchronous forms: encode and send now, complete later. Defined in rr/async.hpp, which a
+  // program includes that calls an async_ member.
+  template <class R, class Token, class... Arguments>
+  auto rr_async_call(const Member& member, Token&& token, const Arguments&... arguments);
+  template <class T, class Token>
+  auto rr_async_get(const Member& member, Token&& token);
+  template <class T, class Token>
+  auto rr_async_set(const Member& member, Token&& token, const T& value);
+  template <class S, class Token, class... Index>
+  auto rr_async_find(const Member& member, Token&& token, const Index&... index);
+
+ private:
+  friend class Session;
+  template <class...>
+  friend class Event;
+
+  template <class Handler, class S>
+  friend class FindCompletion;
+
+  // What the asynchronous templates stand on: encodes and sends at once, so arguments need not
+  // outlive the call. `set` tells a property's two requests apart.
+  void rr_start(const Member& member, bool set, const void* const* arguments,
+                std::unique_ptr<Completion> completion);
+  void rr_start_find(const Member& member, std::unique_ptr<Completion> completion);
+  void rr_start_find(const Member& member, std::int32_t index,
+                     std::unique_ptr<Completion> completion);
+  void rr_start_find(const Member& member, std::string_view index,
+                     std::unique_ptr<Completion> completion);
+  [[noreturn]] static void rr_refuse(const Member& member);  // an object of another type
+  Subscription rr_connect(const Member& member, std::unique_ptr<EventHandler> handler);
+
+  std::shared_ptr<Session> rr_session_;
+  std::string rr_path_;
+  std::chrono::milliseconds rr_timeout_{0};
+};
+
+template <class... Parameters>
+template <class Function>
+Subscription Event<Parameters...>::connect(Function function) {
+  class Bound final : public EventHandler {
+   public:
+    Bound(const Member& member, Function&& call) : EventHandler(member), call_(std::move(call)) {}
+    void call(const Arguments& arguments) override {
+      std::tuple<Parameters...> values;
+      std::apply(
+          [&](auto&... value) {
+            void* const places[] = {&value..., nullptr};
+            arguments.read(member(), places);
+            call_(value...);
+          },
+          values);
+    }
+
+   private:
+    Function call_;
+  };
+  return stub_->rr_connect(*member_, std::make_unique<Bound>(*member_, std::move(function)));
+}
+
+}  // namespace rr

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "rr/type.hpp"
+
+namespace rr {
+
+/// The one struct that every node knows without a definition: time since 1970-01-01 UTC (03,
+/// section 6).
+struct TimeSpec {
+  std::int64_t seconds = 0;
+  std::int32_t nanoseconds = 0;  ///< 0 <= nanoseconds < 1e9
+
+  bool operator==(const TimeSpec&) const = default;
+};
+extern const RecordType time_spec_type;
+template <>
+inline constexpr const Type& type_of<TimeSpec> = time_spec_type;
+
+}  // namespace rr

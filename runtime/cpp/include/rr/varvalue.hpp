@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "rr/buffer.hpp"
+#include "rr/error.hpp"
+#include "rr/type.hpp"
+
+namespace rr {
+
+class VarValue;
+/// What containers inside a varvalue hold, whatever their sender's item type was (03, section 8).
+using VarList = std::vector<VarValue>;
+using VarIntMap = std::map<std::int32_t, VarValue>;
+using VarStringMap = std::map<std::string, VarValue>;
+
+/// Any value of the protocol, or null. Cheap to copy: copies share the value, which does not
+/// change, so that they may be used by several threads at once.
+///
+/// A received one holds what the bytes tell: numbers always as an Array<T>, even a single one; a
+/// struct S as S; pods and namedarrays as Array<P> or MultiArray<P>; containers as VarList,
+/// VarIntMap, VarStringMap; strings as std::string.
+class VarValue {
+ public:
+  VarValue() = default;
+  /// Holds a value of any type that type_of knows. A scalar number travels as an array of one.
+  template <class T>
+  requires(!std::is_same_v<std::decay_t<T>, VarValue>) VarValue(T value)
+      : VarValue(type_of<T>, value_operations<T>) {  // NOLINT: takes anything
+    *static_cast<T*>(place()) = std::move(value);
+  }
+  VarValue(const char* text) : VarValue(std::string(text)) {}       // NOLINT
+  VarValue(std::string_view text) : VarValue(std::string(text)) {}  // NOLINT
+
+  [[nodiscard]] bool is_null() const { return type_ == nullptr; }
+  /// Null for null.
+  [[nodiscard]] const Type* type() const { return type_; }
+  /// The held value if it is a `T`, else null.
+  template <class T>
+  [[nodiscard]] const T* get_if() const {
+    return type_ == &type_of<T> ? static_cast<const T*>(value()) : nullptr;
+  }
+  /// Throws rr::Error (data_type_mismatch) when it is no `T`.
+  template <class T>
+  [[nodiscard]] const T& get() const {
+    if (const T* value = get_if<T>()) return *value;
+    throw_mismatch();
+  }
+  /// As one number or value of an enumeration: of a scalar, or of an array of one, which is what a
+  /// received scalar is. Throws rr::Error (data_type_mismatch).
+  template <class T>
+  requires(Number<T> || std::is_enum_v<T>) [[nodiscard]] T number() const {
+    if (const T* value = get_if<T>()) return *value;
+    if constexpr (std::is_enum_v<T>) {
+      return static_cast<T>(number<std::int32_t>());
+    } else {
+      const Array<T>& array = get<Array<T>>();
+      if (array.size() == 1) return array[0];
+      throw_mismatch();
+    }
+  }
+
+  /// Holds a new value of a type known at run time only: place() is where, until the VarValue has
+  /// been copied.
+  VarValue(const Type& type, const ValueOperations& operations);
+  [[nodiscard]] void* place() { return place_; }
+  [[nodiscard]] const void* value() const { return place_; }
+
+  /// Whether both have the same type and travel as the same bytes: a NaN is equal to itself.
+  friend bool operator==(const VarValue& a, const VarValue& b);
+
+ private:
+  [[noreturn]] static void throw_mismatch();
+
+  const Type* type_ = nullptr;
+  void* place_ = nullptr;
+  MemoryRef memory_;
+};
+
+class VarValueType final : public Type {
+ public:
+  constexpr VarValueType() = default;
+  [[nodiscard]] ElementType element_type() const override { return ElementType::void_; }
+  void write(Writer& writer, const ElementName& name, const void* value) const override;
+  bool read(Decoder& decoder, const Element& element, void* value) const override;
+};
+inline constexpr VarValueType varvalue_type;
+template <>
+inline constexpr const Type& type_of<VarValue> = varvalue_type;
+
+}  // namespace rr

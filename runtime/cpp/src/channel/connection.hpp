@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "rr/buffer.hpp"
+#include "rr/error.hpp"
+#include "rr/node_id.hpp"
+#include "rr/reader.hpp"
+#include "rr/wire.hpp"
+#include "rr/writer.hpp"
+#include "runtime/cpp/src/channel/time.hpp"
+
+namespace rr::channel {
+
+/// What was found while reading and may run user code, which must wait until reading is given up.
+using Laters = std::vector<std::function<void()>>;
+
+/// What gets the messages of a connection: the endpoint layer.
+class Receiver {
+ public:
+  virtual ~Receiver() = default;
+  /// An entry that answers a request. On whichever thread reads, in the order of arrival; may not
+  /// wait nor run user code, but leave that in `laters`.
+  virtual void take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
+                           Laters& laters) = 0;
+  /// Any other message, one at a time and in order, on a thread of the node; may run user code.
+  /// `first` is its first entry.
+  virtual void handle(const Message& message, const Entry& first, const MemoryRef& owner) = 0;
+  /// The connection is gone: requests fail. At once, on any thread; may not run user code.
+  virtual void lost(const Error& why, Laters& laters) = 0;
+  /// The last call: comes in order behind the last message. May run user code.
+  virtual void closed() = 0;
+};
+
+/// A thread that waits for an answer, on its stack.
+struct Waiter {
+  std::atomic<bool> is_done{false};
+  std::atomic<bool> is_reader{false};       // written by the connection
+  Waiter* next = nullptr;                   // guarded by the connection
+  std::condition_variable* wake = nullptr;  // while the thread sleeps; the same
+};
+
+/// Carries messages to and from one other node. Any thread may send.
+///
+/// Reading has no thread of its own: a thread that waits for an answer reads the connection itself
+/// if nobody does, and hands on what belongs to others; while nobody waits, the reactor reads.
+class Connection {
+ public:
+  virtual ~Connection() = default;
+
+  // What the two sides agreed on.
+  [[nodiscard]] MessageVersion version() const { return version_.load(std::memory_order_relaxed); }
+  [[nodiscard]] bool may_combine() const { return may_combine_; }
+  /// Zero until the other side has said who it is.
+  [[nodiscard]] const NodeId& remote_node() const { return remote_node_; }
+  [[nodiscard]] const std::string& remote_name() const { return remote_name_; }
+  /// The address of this side as it may stand in a URL: `rr+tcp://10.0.0.5:2355`; empty if unknown.
+  [[nodiscard]] virtual std::string local_url() const = 0;
+
+  /// The two endpoints that the connection carries: what a message without them is taken to have.
+  void set_endpoints(std::uint32_t own, std::uint32_t remote) {
+    own_endpoint_.store(own, std::memory_order_relaxed);
+    remote_endpoint_.store(remote, std::memory_order_relaxed);
+  }
+  [[nodiscard]] std::uint32_t own_endpoint() const {
+    return own_endpoint_.load(std::memory_order_relaxed);
+  }
+  /// Messages may have full size from now on.
+  void set_authorised() { is_authorised_.store(true, std::memory_order_relaxed); }
+
+  /// Sends a finished message now, or as soon as the other side takes it; never blocks. The writer
+  /// can be used again at once. Throws rr::Error: protocol_error for one that is too large,
+  /// connection_error when the connection is gone. `now` need not be exact.
+  virtual void send(Writer& message, Time now) = 0;
+  void send(Writer& message) { send(message, coarse_now()); }
+  /// The same for an answer, from Receiver::handle(): it leaves together with other answers to what
+  /// one receive has brought. Throws only when it is too large.
+  virtual void reply(Writer& message) = 0;
+
+  /// Makes the calling thread the reader if there is none; to be called before the request is sent.
+  virtual void claim(Waiter& waiter) = 0;
+  /// Waits until the waiter is done or the deadline has come. `now` need not be exact.
+  virtual void wait(Waiter& waiter, Time deadline, Time now) = 0;
+  /// Ends a claim without waiting.
+  virtual void resign(Waiter& waiter) = 0;
+  /// Marks a waiter done. It may be gone when this returns.
+  virtual void finish(Waiter& waiter) = 0;
+  /// To be called when something will come that no caller waits for: the reactor reads it then.
+  virtual void expect() = 0;
+  /// Brings a reader that waits to look at its deadline and at whether it is done.
+  virtual void nudge() = 0;
+
+  /// Ends the connection. Never blocks; Receiver::closed() follows.
+  virtual void close(const Error& why) = 0;
+  /// The same after a while, in which the other side may do it.
+  virtual void close_after(Milliseconds delay) = 0;
+  [[nodiscard]] virtual bool is_closed() const = 0;
+
+ protected:
+  std::atomic<MessageVersion> version_{MessageVersion::v2};
+  std::atomic<bool> may_combine_{false};
+  std::atomic<bool> is_authorised_{false};
+  std::atomic<std::uint32_t> own_endpoint_{0};
+  std::atomic<std::uint32_t> remote_endpoint_{0};
+  NodeId remote_node_;  // written once, by the first message
+  std::string remote_name_;
+};
+
+}  // namespace rr::channel

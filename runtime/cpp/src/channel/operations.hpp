@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "rr/error.hpp"
+#include "rr/node_id.hpp"
+#include "rr/reader.hpp"
+#include "rr/writer.hpp"
+
+/// Messages that a connection sends by itself (04, sections 4 and 5).
+namespace rr::channel {
+
+inline constexpr std::string_view create_connection = "CreateConnection";
+inline constexpr std::string_view get_remote_node_id = "GetRemoteNodeID";
+
+/// An array of uint32, before what was written so far.
+void write_codes(Writer& writer, std::string_view name, std::span<const std::uint32_t> codes);
+
+/// The elements `errorname` and `errorstring`; returns how many elements.
+std::uint32_t write_error(Writer& writer, std::string_view name, std::string_view message);
+
+/// The first message of a connection, whole, always in format 2.
+void write_create_connection(Writer& writer, const MessageHeader& header,
+                             std::span<const std::uint32_t> codes);
+
+}  // namespace rr::channel

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/channel/outbox.hpp"
+
+#include <sys/socket.h>
+#include <sys/uio.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace rr::channel {
+namespace {
+
+constexpr std::size_t smallest_segment = 4096;
+constexpr std::size_t pieces_at_once = 64;
+
+iovec as_iovec(const std::byte* data, std::size_t size) {
+  return {const_cast<std::byte*>(data), size};
+}
+
+// Sends without blocking. 0 when the socket takes nothing now, -1 when it is broken.
+std::ptrdiff_t send_pieces(int socket, std::span<iovec> pieces) {
+  msghdr message{};
+  message.msg_iov = pieces.data();
+  message.msg_iovlen = pieces.size();
+  while (true) {
+    const ssize_t sent = sendmsg(socket, &message, MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (sent >= 0) return sent;
+    if (errno == EAGAIN || errno == EWOULDBLOCK) return 0;
+    if (errno != EINTR) return -1;
+  }
+}
+
+}  // namespace
+
+void Outbox::add(std::span<const std::byte> bytes) {
+  if (bytes.empty()) return;
+  size_ += bytes.size();
+  if (!empty() && segments_.back().room >= bytes.size()) {
+    Segment& last = segments_.back();
+    std::memcpy(const_cast<std::byte*>(last.data) + last.size, bytes.data(), bytes.size());
+    last.size += bytes.size();
+    last.room -= bytes.size();
+    return;
+  }
+  const std::size_t capacity = std::max(smallest_segment, bytes.size());
+  Allocation memory = allocate(capacity);
+  std::memcpy(memory.bytes, bytes.data(), bytes.size());
+  segments_.push_back(
+      {std::move(memory.owner), memory.bytes, bytes.size(), capacity - bytes.size()});
+}
+
+void Outbox::add(Writer& message, std::size_t sent) {
+  for (const Piece& piece : message.pieces()) {
+    const std::size_t skipped = std::min(sent, piece.size);
+    sent -= skipped;
+    const std::span rest(piece.data + skipped, piece.size - skipped);
+    if (rest.empty()) continue;
+    if (MemoryRef owner = message.owner(piece)) {
+      segments_.push_back({std::move(owner), rest.data(), rest.size(), 0});
+      size_ += rest.size();
+    } else {
+      add(rest);
+    }
+  }
+}
+
+std::ptrdiff_t Outbox::send(int socket, std::span<const Piece> more) {
+  if (empty() && more.size() == 1) {  // nearly always
+    const ssize_t sent = ::send(socket, more[0].data, more[0].size, MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (sent == static_cast<ssize_t>(more[0].size)) return sent;
+    if (sent >= 0 || errno == EAGAIN || errno == EWOULDBLOCK) return std::max<ssize_t>(sent, 0);
+    if (errno != EINTR) return -1;
+  }
+  std::size_t more_sent = 0;
+  while (true) {
+    std::array<iovec, pieces_at_once> pieces;
+    std::size_t count = 0;
+    std::size_t wanted = 0;
+    const auto add_piece = [&](const std::byte* data, std::size_t size) {
+      pieces[count++] = as_iovec(data, size);
+      wanted += size;
+    };
+    for (std::size_t i = first_; i < segments_.size() && count < pieces.size(); ++i) {
+      add_piece(segments_[i].data, segments_[i].size);
+    }
+    const std::size_t own = wanted;
+    std::size_t skipped = more_sent;
+    for (const Piece& piece : more) {
+      if (count == pieces.size()) break;
+      const std::size_t skip = std::min(skipped, piece.size);
+      skipped -= skip;
+      if (skip != piece.size) add_piece(piece.data + skip, piece.size - skip);
+    }
+    if (count == 0) break;
+    const std::ptrdiff_t result = send_pieces(socket, std::span(pieces.data(), count));
+    if (result < 0) return -1;
+    const auto sent = static_cast<std::size_t>(result);
+    drop(std::min(sent, own));
+    more_sent += sent - std::min(sent, own);
+    if (sent != wanted) break;
+    if (count != pieces.size()) break;  // that was all
+  }
+  return static_cast<std::ptrdiff_t>(more_sent);
+}
+
+void Outbox::drop(std::size_t bytes) {
+  size_ -= bytes;
+  while (bytes != 0) {
+    Segment& segment = segments_[first_];
+    const std::size_t dropped = std::min(bytes, segment.size);
+    segment.data += dropped;
+    segment.size -= dropped;
+    bytes -= dropped;
+    if (segment.size != 0) break;
+    segment.owner = MemoryRef();
+    ++first_;
+  }
+  if (empty()) clear();
+}
+
+void Outbox::clear() {
+  std::vector<Segment>().swap(segments_);
+  first_ = 0;
+  size_ = 0;
+}
+
+}  // namespace rr::channel

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// The life of a connection: start, heartbeats and limits of time, end.
+#include "runtime/cpp/src/channel/stream_connection.hpp"
+
+#include <sys/epoll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace rr::channel {
+
+static_assert(std::atomic<Time>::is_always_lock_free);
+
+StreamConnection::StreamConnection(Role role, Descriptor socket, std::shared_ptr<Reactor> reactor,
+                                   std::shared_ptr<const NodeOptions> options)
+    : role_(role),
+      socket_(std::move(socket)),
+      reactor_(std::move(reactor)),
+      options_(std::move(options)),
+      last_sent_(coarse_now()),
+      last_received_(coarse_now()),
+      created_(coarse_now()) {
+  set_stream_options(socket_.get());
+}
+
+StreamConnection::~StreamConnection() {
+  reactor_->cancel(life_timer_);
+  reactor_->cancel(park_timer_);
+}
+
+void StreamConnection::set_agreement(const NodeId& remote_node, std::string remote_name,
+                                     const Agreement& agreement) {
+  remote_node_ = remote_node;
+  remote_name_ = std::move(remote_name);
+  version_ = agreement.version;
+  may_combine_ = agreement.combined_connect;
+  has_local_strings_ = agreement.local_strings;
+  has_standard_strings_ = agreement.standard_strings;
+}
+
+void StreamConnection::start(std::shared_ptr<Receiver> receiver) {
+  receiver_ = std::move(receiver);
+  was_heard_ = role_ == Role::client;
+  {
+    const std::lock_guard lock(turns_);
+    if (is_closing_) return;
+    self_ = shared_from_this();
+    // A client's first call follows at once and reads by itself.
+    if (role_ == Role::client) {
+      watch_ = Watch::parked;
+    } else {
+      set_watch(Watch::full);
+    }
+  }
+  constexpr Milliseconds first_look{400};  // 04, section 5
+  const Milliseconds soon = role_ == Role::server ? options_->first_message_timeout : first_look;
+  reactor_->schedule(life_timer_, weak_from_this(),
+                     after(Clock::now(), std::min(soon, heartbeat_period())));
+}
+
+std::string StreamConnection::local_url() const {
+  const Address address = local_address(socket_.get());
+  return address.size == 0 || address.family() == AF_UNIX ? std::string()
+                                                          : "rr+tcp://" + address.text();
+}
+
+std::uint32_t StreamConnection::largest_message() const {
+  const std::uint32_t size = options_->limits.message_size;
+  if (is_authorised_.load(std::memory_order_relaxed)) return size;
+  return std::min(size, options_->size_before_connect);
+}
+
+Limits StreamConnection::limits() const {
+  return {.message_size = largest_message(), .depth = options_->limits.depth};
+}
+
+Milliseconds StreamConnection::heartbeat_period() const {
+  const Milliseconds period = options_->heartbeat_period;
+  return role_ == Role::server ? period + period / 5 : period;
+}
+
+// On the watching thread.
+void StreamConnection::look_after() {
+  const Time now = Clock::now();
+  const Time close_at = close_at_;
+  if (now >= close_at) {
+    close(Error(ErrorCode::connection_error, "the connection was closed"));
+    return;
+  }
+  if (!was_heard_ && now >= created_ + options_->first_message_timeout) {
+    close(Error(ErrorCode::connection_error, "the other side has not said who it is"));
+    return;
+  }
+  const Time last_sent = last_sent_;
+  if (last_sent - last_received_.load() > options_->receive_timeout) {
+    close(Error(ErrorCode::connection_error, "the other side does not answer any more"));
+    return;
+  }
+  Time next = after(last_sent, heartbeat_period());
+  if (next <= now) {
+    if (was_heard_) send_test();
+    next = after(now, heartbeat_period());
+  }
+  if (!was_heard_) next = std::min(next, created_ + options_->first_message_timeout);
+  // Many connections of one age are looked after together.
+  constexpr Milliseconds grain{50};
+  if (heartbeat_period() > 100 * grain) next += grain - (next - Time{}) % grain;
+  reactor_->schedule(life_timer_, weak_from_this(), std::min(next, close_at));
+}
+
+void StreamConnection::close_after(Milliseconds delay) {
+  const Time when = after(Clock::now(), delay);
+  close_at_ = when;
+  reactor_->schedule(life_timer_, weak_from_this(), when);
+}
+
+void StreamConnection::close(const Error& why) {
+  bool has_turn = false;
+  {
+    const std::lock_guard lock(turns_);
+    begin_close(why);
+    has_turn = !std::exchange(is_read_, true);
+  }
+  if (has_turn) finish_close();
+}
+
+// Under turns_. Whoever has the read turn, or gets it now, keeps it for ever and finishes.
+void StreamConnection::begin_close(const Error& why) {
+  if (is_closing_) return;
+  is_closing_ = true;
+  why_closed_ = std::make_unique<const Error>(why);
+  ::shutdown(socket_.get(), SHUT_RDWR);  // wakes a thread that receives
+}
+
+// With the read turn, which is not given back.
+void StreamConnection::finish_close() {
+  reactor_->cancel(life_timer_);
+  reactor_->cancel(park_timer_);
+  Laters laters;
+  if (receiver_) receiver_->lost(*why_closed_, laters);  // receiver_ stays until closed() is due
+  std::shared_ptr<StreamConnection> self;
+  bool must_post = false;
+  {
+    const std::lock_guard lock(turns_);
+    self = std::move(self_);
+    if (is_watched_) reactor_->remove(socket_.get());
+    is_watched_ = false;
+    watch_ = Watch::off;
+    is_closed_pending_ = receiver_ != nullptr;
+    must_post = is_closed_pending_ && !std::exchange(is_dispatched_, true);
+  }
+  if (on_gone_) on_gone_(*this);
+  if (must_post) laters.emplace_back([keep = shared_from_this()] { keep->drain_posted(); });
+  for (const std::function<void()>& later : laters) {
+    if (!reactor_->post(later)) later();  // the node is going away; this thread takes it along
+  }
+  if (self) reactor_->retire(std::move(self));
+}
+
+}  // namespace rr::channel

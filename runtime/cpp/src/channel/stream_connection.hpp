@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rr/options.hpp"
+#include "runtime/cpp/src/channel/capabilities.hpp"
+#include "runtime/cpp/src/channel/connection.hpp"
+#include "runtime/cpp/src/channel/inbox.hpp"
+#include "runtime/cpp/src/channel/outbox.hpp"
+#include "runtime/cpp/src/channel/reactor.hpp"
+#include "runtime/cpp/src/channel/scratch.hpp"
+#include "runtime/cpp/src/channel/socket.hpp"
+
+namespace rr::channel {
+
+/// A connection over a stream socket.
+///
+/// Two turns, each taken by one thread at a time, order what happens to it. Who has the read turn
+/// may receive; user code never runs with it. Who has the dispatch turn hands messages to the
+/// receiver, which may run user code for long; what is read meanwhile waits in a queue.
+///
+/// While a caller reads, the reactor does not watch the socket: it would be woken by every answer.
+/// Calls in a tight loop find the socket unwatched ("parked") and leave it so; a timer of a
+/// millisecond puts it back under watch when calls have ceased.
+class StreamConnection final : public Connection,
+                               public Pollable,
+                               public std::enable_shared_from_this<StreamConnection> {
+ public:
+  enum class Role : std::uint8_t { client, server };
+
+  /// `on_gone`, if any, is called once when the connection has ended, on any thread.
+  StreamConnection(Role role, Descriptor socket, std::shared_ptr<Reactor> reactor,
+                   std::shared_ptr<const NodeOptions> options);
+  ~StreamConnection();
+
+  /// Before start(): who the other side is and what was agreed with it.
+  void set_agreement(const NodeId& remote_node, std::string remote_name,
+                     const Agreement& agreement);
+  /// Before start(): called once when the connection has ended, on any thread.
+  void set_on_gone(std::function<void(StreamConnection&)> on_gone) {
+    on_gone_ = std::move(on_gone);
+  }
+  /// Messages go to `receiver` from now on; the reactor watches the socket.
+  void start(std::shared_ptr<Receiver> receiver);
+
+  [[nodiscard]] std::string local_url() const override;
+  using Connection::send;
+  void send(Writer& message, Time now) override;
+  void reply(Writer& message) override;
+  void claim(Waiter& waiter) override;
+  void wait(Waiter& waiter, Time deadline, Time now) override;
+  void resign(Waiter& waiter) override;
+  void finish(Waiter& waiter) override;
+  void expect() override;
+  void nudge() override;
+  void close(const Error& why) override;
+  void close_after(Milliseconds delay) override;
+  [[nodiscard]] bool is_closed() const override {
+    return is_closing_.load(std::memory_order_relaxed);
+  }
+
+  void on_ready(std::uint32_t events) override;
+  void on_stuck() override { flush(); }
+
+ private:
+  enum class Received { some, nothing, end };
+  enum class Watch : std::uint8_t { off, full, parked };
+
+  class LifeTimer final : public Timer {
+   public:
+    explicit LifeTimer(StreamConnection& connection) : connection_(connection) {}
+    void on_timer() override { connection_.look_after(); }
+
+   private:
+    StreamConnection& connection_;
+  };
+  class ParkTimer final : public Timer {
+   public:
+    explicit ParkTimer(StreamConnection& connection) : connection_(connection) {}
+    void on_timer() override { connection_.unpark(); }
+
+   private:
+    StreamConnection& connection_;
+  };
+
+  // Sending (stream_sending.cpp)
+  void check_size(const Writer& message) const;
+  void send_or_queue(Writer& message, Time now);
+  void send_with_strings(Writer& message, Time now);
+  [[noreturn]] void fail_sending();
+  void flush();
+  void watch_for_room();
+  void send_own(Writer& message);  // of the connection itself; failures are ignored
+
+  // Reading (stream_reading.cpp)
+  Received receive(Scratch& scratch, bool may_block, bool& is_full);
+  bool take(Scratch& scratch, const Frame& frame);
+  void take_answers(const Message& message, const Entry& first, const MemoryRef& owner,
+                    Laters& laters);
+  void refuse_stream(const Scratch& scratch, std::size_t size);
+  bool take_read_turn();
+  void read_as_reactor(bool until_end);
+  bool leave_read_turn(Scratch& scratch, bool may_dispatch);
+  bool hand_on(Scratch& scratch, bool may_dispatch, bool& must_post);
+  void enqueue(const Frame& frame);
+  void dispatch(Scratch& scratch);
+  bool drain(Scratch& scratch);
+  void drain_posted();
+  void handle_frame(Scratch& scratch, const Frame& frame, bool is_parsed);
+  void complete(Message& message) const;
+
+  // Waiting callers (stream_waiting.cpp)
+  bool follow(Waiter& waiter, Time deadline);
+  void lead(Waiter& waiter, Time deadline, Time now);
+  bool may_block_until(Time deadline);
+  void leave_to_reactor(Scratch& scratch);
+  void begin_lead(Waiter& waiter);
+  void park_or_watch();
+  void promote_next();
+  void set_watch(Watch watch);
+  void watch_again();
+  void unpark();
+
+  // Stream operations and heartbeats (stream_operations.cpp)
+  bool take_own(const Message& message, const Entry& entry);
+  void answer_stream_op(const Message& message, const Entry& entry);
+  void answer_create_connection(const Message& message, const Entry& entry);
+  void answer_capability(const Message& message, const Entry& entry);
+  void answer_test(const Message& message, const Entry& entry);
+  void send_test();
+
+  // Life (stream_connection.cpp)
+  void look_after();
+  void begin_close(const Error& why);
+  void finish_close();
+  [[nodiscard]] Limits limits() const;
+  [[nodiscard]] std::uint32_t largest_message() const;
+  [[nodiscard]] Milliseconds heartbeat_period() const;
+
+  const Role role_;
+  const Descriptor socket_;
+  const std::shared_ptr<Reactor> reactor_;
+  const std::shared_ptr<const NodeOptions> options_;
+  std::shared_ptr<Receiver> receiver_;
+  std::shared_ptr<StreamConnection> self_;  // while the reactor may name this; guarded by turns_
+  std::function<void(StreamConnection&)> on_gone_;
+  std::atomic<bool> has_local_strings_{false};
+  std::atomic<bool> has_standard_strings_{false};
+
+  // Guards what follows, never while user code runs or the network is waited for.
+  std::mutex turns_;
+  bool is_read_ = false;
+  bool read_again_ = false;     // there is more than the thread with the read turn may have seen
+  bool is_dispatched_ = false;  // or will be, by posted work
+  bool is_stalled_ = false;     // not read on because of queued requests
+  bool is_closed_pending_ = false;
+  std::atomic<bool> is_closing_{false};  // written under turns_
+  Watch watch_ = Watch::off;
+  bool is_watched_ = false;  // by the reactor, for anything
+  bool is_park_timed_ = false;
+  std::uint32_t leads_ = 0;  // claims that succeeded
+  std::uint32_t leads_seen_ = 0;
+  Time last_lead_{};
+  Waiter* followers_ = nullptr;
+  std::unique_ptr<std::deque<Frame>> queue_;  // messages for the dispatch turn
+  std::size_t queued_bytes_ = 0;
+  std::unique_ptr<const Error> why_closed_;
+
+  Inbox inbox_;                       // with the read turn
+  bool had_message_ = false;          // with the read turn
+  bool has_receive_timeout_ = false;  // with the read turn
+  bool holds_back_answers_ = false;   // with the dispatch turn
+
+  std::mutex sending_;
+  Outbox outbox_;                        // under sending_
+  std::atomic<bool> has_unsent_{false};  // the socket took not all
+
+  std::atomic<Time> last_sent_;
+  std::atomic<Time> last_received_;
+  std::atomic<bool> was_heard_{false};  // a whole message has come
+  std::atomic<Time> close_at_{never};
+  const Time created_;
+  LifeTimer life_timer_{*this};
+  ParkTimer park_timer_{*this};
+};
+
+}  // namespace rr::channel

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// How messages leave a connection.
+#include <sys/epoll.h>
+
+#include "rr/error.hpp"
+#include "rr/reader.hpp"
+#include "runtime/cpp/src/channel/stream_connection.hpp"
+
+namespace rr::channel {
+namespace {
+
+// Senders stop this much earlier than receivers (04, section 3).
+constexpr std::size_t size_margin = 100;
+
+}  // namespace
+
+void StreamConnection::check_size(const Writer& message) const {
+  if (message.failed()) throw Error(message.code(), message.Latch::message());
+  if (message.size() + size_margin > largest_message()) {
+    throw Error(ErrorCode::protocol_error,
+                "the message of " + std::to_string(message.size()) + " bytes is too large");
+  }
+}
+
+void StreamConnection::send(Writer& message, Time now) {
+  check_size(message);
+  if (message.version() == MessageVersion::v4 &&
+      (has_local_strings_.load(std::memory_order_relaxed) ||
+       has_standard_strings_.load(std::memory_order_relaxed))) {
+    send_with_strings(message, now);
+  } else {
+    send_or_queue(message, now);
+  }
+}
+
+// Sends what was held back and the message, and queues what the socket does not take.
+void StreamConnection::send_or_queue(Writer& message, Time now) {
+  if (is_closing_.load(std::memory_order_relaxed)) {
+    throw Error(ErrorCode::connection_error, "the connection is closed");
+  }
+  const std::size_t size = message.size();
+  std::ptrdiff_t sent = 0;
+  bool has_rest = false;
+  bool is_broken = false;
+  {
+    const std::lock_guard lock(sending_);
+    if (!has_unsent_.load(std::memory_order_relaxed)) {
+      sent = outbox_.send(socket_.get(), message.pieces());
+    }
+    last_sent_.store(now, std::memory_order_relaxed);
+    is_broken = sent < 0;
+    has_rest = !is_broken && sent != static_cast<std::ptrdiff_t>(size);
+    if (has_rest) {
+      outbox_.add(message, static_cast<std::size_t>(sent));
+      is_broken = outbox_.size() > options_->send_queue_limit;
+      has_unsent_ = true;
+    }
+  }
+  // A large array is not to be kept until this thread sends again.
+  if (size >= Writer::attach_threshold) message.reset(message.version());
+  if (is_broken) fail_sending();
+  if (has_rest) watch_for_room();
+}
+
+void StreamConnection::fail_sending() {
+  const Error why(ErrorCode::connection_error, "the other side does not take what is sent to it");
+  close(why);
+  throw Error(why);
+}
+
+void StreamConnection::send_with_strings(Writer& message, Time now) {
+  const std::vector<std::byte> plain = message.copy();
+  const std::vector<std::byte> coded =
+      apply_string_table(plain, has_local_strings_, has_standard_strings_);
+  Writer writer;
+  writer.prepend_bytes(coded.data(), coded.size());
+  send_or_queue(writer, now);
+}
+
+void StreamConnection::reply(Writer& message) {
+  try {
+    if (holds_back_answers_ && message.size() < Writer::attach_threshold && !has_local_strings_ &&
+        !has_standard_strings_) {
+      check_size(message);
+      const std::lock_guard lock(sending_);
+      outbox_.add(message, 0);
+    } else {
+      // The request came a moment ago.
+      send(message, last_received_.load(std::memory_order_relaxed));
+    }
+  } catch (const Error& error) {
+    // When the client is gone nobody is left that could be told.
+    if (error.code() != ErrorCode::connection_error) throw;
+  }
+}
+
+void StreamConnection::send_own(Writer& message) {
+  try {
+    send(message);
+  } catch (const Error&) {
+    // The connection ends, which its receiver is told in another way.
+  }
+}
+
+// Sends what waits, as far as the socket takes it.
+void StreamConnection::flush() {
+  bool is_broken = false;
+  bool has_rest = false;
+  {
+    const std::lock_guard lock(sending_);
+    if (outbox_.empty() || is_closing_) return;
+    is_broken = outbox_.send(socket_.get(), {}) < 0;
+    has_rest = !outbox_.empty();
+    has_unsent_ = has_rest;
+    last_sent_.store(coarse_now(), std::memory_order_relaxed);
+  }
+  if (is_broken) {
+    close(Error(ErrorCode::connection_error, "the other side does not take what is sent to it"));
+  } else if (has_rest) {
+    watch_for_room();
+  }
+}
+
+// The reactor flushes when there is room; it does not look while the socket is parked.
+void StreamConnection::watch_for_room() {
+  const std::lock_guard lock(turns_);
+  if (watch_ == Watch::parked) set_watch(Watch::parked);
+}
+
+}  // namespace rr::channel

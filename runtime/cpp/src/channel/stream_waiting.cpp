@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// How callers wait: one of them reads the connection, the others follow.
+#include <poll.h>
+#include <sys/epoll.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+
+#include <utility>
+
+#include "runtime/cpp/src/channel/stream_connection.hpp"
+
+namespace rr::channel {
+namespace {
+
+// A receive returns after this time to look at the deadline; set once per socket, which is cheaper
+// than waiting with poll() each time.
+constexpr std::chrono::seconds receive_pause{1};
+// For how long without a call a parked socket stays so.
+constexpr Milliseconds park_time{1};
+
+}  // namespace
+
+void StreamConnection::claim(Waiter& waiter) {
+  const std::lock_guard lock(turns_);
+  if (is_closing_ || is_read_) return;
+  begin_lead(waiter);
+}
+
+// Under turns_.
+void StreamConnection::begin_lead(Waiter& waiter) {
+  is_read_ = true;
+  waiter.is_reader = true;
+  ++leads_;
+  if (watch_ == Watch::full) set_watch(Watch::parked);
+}
+
+void StreamConnection::wait(Waiter& waiter, Time deadline, Time now) {
+  if (waiter.is_reader) {
+    lead(waiter, deadline, now);
+  } else if (follow(waiter, deadline)) {
+    lead(waiter, deadline, coarse_now());
+  }
+}
+
+void StreamConnection::resign(Waiter& waiter) {
+  {
+    const std::lock_guard lock(turns_);
+    if (!waiter.is_reader.exchange(false)) return;
+    if (!is_closing_) {
+      if (followers_ != nullptr) {
+        promote_next();
+      } else {
+        is_read_ = false;
+        park_or_watch();
+      }
+      return;
+    }
+  }
+  finish_close();
+}
+
+// Under turns_, when a caller has ended reading. A call that ended in the same tick of the clock as
+// the one before is taken for one of many.
+void StreamConnection::park_or_watch() {
+  const Time now = last_received_.load(std::memory_order_relaxed);
+  const bool is_tight = std::exchange(last_lead_, now) == now || is_park_timed_;
+  if (std::exchange(read_again_, false) || !is_tight) {
+    watch_again();
+  } else if (!std::exchange(is_park_timed_, true)) {
+    leads_seen_ = leads_;
+    reactor_->schedule(park_timer_, weak_from_this(), Clock::now() + park_time);
+  }
+}
+
+// Returns true when the waiter is to read itself, false when it is done or out of time.
+bool StreamConnection::follow(Waiter& waiter, Time deadline) {
+  Reactor::about_to_wait();
+  std::condition_variable wake;
+  std::unique_lock lock(turns_);
+  waiter.wake = &wake;
+  waiter.next = std::exchange(followers_, &waiter);
+  while (!waiter.is_done && !waiter.is_reader) {
+    if (!is_read_ && !is_closing_) {
+      begin_lead(waiter);  // the reader left between the claim and now
+      break;
+    }
+    if (Clock::now() >= deadline) break;
+    wait_until(wake, lock, deadline);
+  }
+  for (Waiter** link = &followers_; *link != nullptr; link = &(*link)->next) {
+    if (*link != &waiter) continue;
+    *link = waiter.next;
+    break;
+  }
+  waiter.next = nullptr;
+  waiter.wake = nullptr;
+  return waiter.is_reader;
+}
+
+// Under turns_, with the read turn: hands it to the caller that has waited longest.
+void StreamConnection::promote_next() {
+  Waiter* oldest = followers_;
+  while (oldest->next != nullptr) oldest = oldest->next;
+  oldest->is_reader = true;
+  oldest->wake->notify_one();
+}
+
+void StreamConnection::lead(Waiter& waiter, Time deadline, Time now) {
+  Reactor::about_to_wait();
+  if (!std::exchange(has_receive_timeout_, true)) {
+    timeval pause{};
+    pause.tv_sec = receive_pause.count();
+    setsockopt(socket_.get(), SOL_SOCKET, SO_RCVTIMEO, &pause, sizeof pause);
+  }
+  // Nearly always the first receive brings the answer.
+  bool may_block = deadline - now > 2 * receive_pause;
+  {
+    const ScratchLease scratch;
+    while (!waiter.is_done.load(std::memory_order_acquire) &&
+           !is_closing_.load(std::memory_order_relaxed)) {
+      may_block = may_block || may_block_until(deadline);
+      bool is_full = false;
+      const Received received = receive(*scratch, may_block, is_full);
+      may_block = false;
+      if (!scratch->waiting.empty() || !scratch->laters.empty()) leave_to_reactor(*scratch);
+      if (received == Received::end) break;
+      if (received == Received::nothing && Clock::now() >= deadline) break;
+    }
+  }
+  resign(waiter);
+}
+
+// What a caller has read that is not for callers.
+void StreamConnection::leave_to_reactor(Scratch& scratch) {
+  bool must_post = false;
+  {
+    const std::lock_guard lock(turns_);
+    hand_on(scratch, false, must_post);
+  }
+  if (must_post) reactor_->post([self = shared_from_this()] { self->drain_posted(); });
+  for (std::function<void()>& later : scratch.laters) reactor_->post(std::move(later));
+  scratch.laters.clear();
+}
+
+// A blocking receive would be late for a deadline that is near: then poll() waits for bytes.
+bool StreamConnection::may_block_until(Time deadline) {
+  if (deadline == never || deadline - Clock::now() > receive_pause) return true;
+  wait_for(socket_.get(), POLLIN, deadline);
+  return false;
+}
+
+void StreamConnection::finish(Waiter& waiter) {
+  if (waiter.is_reader.load(std::memory_order_relaxed)) {
+    waiter.is_done.store(true, std::memory_order_release);  // it is not asleep
+    return;
+  }
+  const std::lock_guard lock(turns_);
+  waiter.is_done = true;
+  if (waiter.wake != nullptr) waiter.wake->notify_one();
+}
+
+void StreamConnection::expect() {
+  const std::lock_guard lock(turns_);
+  if (!is_read_) watch_again();
+}
+
+void StreamConnection::nudge() { send_test(); }
+
+// Under turns_.
+void StreamConnection::set_watch(Watch watch) {
+  if (self_ == nullptr) return;
+  watch_ = watch;
+  const bool was_watched = is_watched_;
+  std::uint32_t events = 0;
+  if (watch == Watch::full) {
+    events = EPOLLIN | EPOLLOUT | EPOLLRDHUP;
+  } else if (has_unsent_) {
+    events = EPOLLOUT;
+  }
+  if (events == 0) {
+    reactor_->remove(socket_.get());  // cheaper for the kernel than watching for nothing
+  } else if (was_watched) {
+    reactor_->change(socket_.get(), events, *this);
+  } else {
+    reactor_->add(socket_.get(), events, *this);
+  }
+  is_watched_ = events != 0;
+}
+
+// Under turns_, when nobody reads: the reactor looks at once if there is something already.
+void StreamConnection::watch_again() {
+  if (watch_ == Watch::parked && !is_closing_) set_watch(Watch::full);
+}
+
+// On the watching thread.
+void StreamConnection::unpark() {
+  {
+    const std::lock_guard lock(turns_);
+    if (std::exchange(leads_seen_, leads_) == leads_) {
+      is_park_timed_ = false;
+      if (!is_read_) watch_again();
+      return;
+    }
+  }
+  reactor_->schedule(park_timer_, weak_from_this(), Clock::now() + park_time);
+}
+
+}  // namespace rr::channel

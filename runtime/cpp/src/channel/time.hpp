@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <ctime>
+#include <mutex>
+
+/// The runtime's clocks.
+namespace rr::channel {
+
+using Clock = std::chrono::steady_clock;
+using Time = Clock::time_point;
+using Milliseconds = std::chrono::milliseconds;
+
+/// Later than everything.
+inline constexpr Time never = Time::max();
+
+/// Clock::now() to a few milliseconds, for a quarter of its price.
+inline Time coarse_now() {
+  timespec time{};
+  clock_gettime(CLOCK_MONOTONIC_COARSE, &time);
+  return Time(std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec));
+}
+
+/// `now + span`, or never when that is out of range.
+inline Time after(Time now, Milliseconds span) {
+  constexpr Milliseconds longest = std::chrono::hours(24 * 365 * 100);
+  return span > longest ? never : now + span;
+}
+
+/// Waits until notified or `deadline`; spurious returns are possible.
+inline void wait_until(std::condition_variable& condition, std::unique_lock<std::mutex>& lock,
+                       Time deadline) {
+  if (deadline == never) {
+    condition.wait(lock);
+    return;
+  }
+#if defined(__SANITIZE_THREAD__)
+  // The thread sanitizer of g++ 12 does not see the wait on a steady clock give up the mutex.
+  condition.wait_until(lock, std::chrono::system_clock::now() + (deadline - Clock::now()));
+#else
+  condition.wait_until(lock, deadline);
+#endif
+}
+
+}  // namespace rr::channel

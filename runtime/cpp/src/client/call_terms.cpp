@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/client/call_terms.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "rr/error.hpp"
+#include "runtime/cpp/src/client/session.hpp"
+
+namespace rr {
+namespace {
+
+thread_local const CallScope* innermost_scope = nullptr;
+
+}  // namespace
+
+Cancellation::Cancellation() : state_(std::make_shared<State>()) {}
+void Cancellation::cancel() { state_->cancel(); }
+bool Cancellation::is_cancelled() const { return state_->is_cancelled(); }
+
+CallScope::CallScope(std::chrono::milliseconds timeout)
+    : timeout_(timeout), outer_(std::exchange(innermost_scope, this)) {}
+CallScope::CallScope(const Cancellation& cancellation)
+    : cancellation_(cancellation.state()), outer_(std::exchange(innermost_scope, this)) {}
+CallScope::CallScope(std::chrono::milliseconds timeout, const Cancellation& cancellation)
+    : timeout_(timeout),
+      cancellation_(cancellation.state()),
+      outer_(std::exchange(innermost_scope, this)) {}
+CallScope::~CallScope() { innermost_scope = outer_; }
+
+CallTerms CallTerms::current() {
+  CallTerms terms;
+  for (const CallScope* scope = innermost_scope; scope != nullptr; scope = scope->outer_) {
+    if (terms.timeout.count() == 0) terms.timeout = scope->timeout_;
+    if (!terms.cancellation) terms.cancellation = scope->cancellation_;
+  }
+  return terms;
+}
+
+void Cancellation::State::add(std::shared_ptr<Session> session, endpoint::Pending& call) {
+  const std::lock_guard lock(mutex_);
+  if (is_cancelled_) throw Error(ErrorCode::operation_cancelled, "the call was cancelled");
+  calls_.push_back({std::move(session), &call});
+}
+
+void Cancellation::State::remove(const endpoint::Pending& call) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(calls_, [&](const Call& item) { return item.pending == &call; });
+}
+
+void Cancellation::State::cancel() {
+  std::vector<std::pair<std::shared_ptr<Session>, channel::Laters>> left_over;
+  {
+    const std::lock_guard lock(mutex_);
+    is_cancelled_ = true;
+    for (const Call& call : calls_) {
+      left_over.emplace_back(call.session, channel::Laters());
+      call.session->cancel(*call.pending, left_over.back().second);
+    }
+  }
+  for (auto& [session, laters] : left_over) session->post(std::move(laters));
+}
+
+bool Cancellation::State::is_cancelled() {
+  const std::lock_guard lock(mutex_);
+  return is_cancelled_;
+}
+
+}  // namespace rr

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rr/client.hpp"
+
+#include <utility>
+
+#include "runtime/cpp/src/client/session.hpp"
+
+namespace rr {
+
+ClientBase::ClientBase(std::shared_ptr<Session> session) : session_(std::move(session)) {}
+
+ClientBase& ClientBase::operator=(ClientBase&& other) noexcept {
+  if (this != &other) {
+    close();
+    session_ = std::move(other.session_);
+  }
+  return *this;
+}
+
+ClientBase::~ClientBase() { close(); }
+
+void ClientBase::close() {
+  if (session_) session_->close();
+}
+
+bool ClientBase::is_open() const { return session_ && session_->is_open(); }
+void ClientBase::cancel_calls() {
+  if (session_) session_->cancel_calls();
+}
+const std::map<std::string, VarValue>& ClientBase::attributes() const {
+  return session_->attributes();
+}
+const NodeId& ClientBase::remote_node() const { return session_->remote_node(); }
+const std::string& ClientBase::remote_name() const { return session_->remote_name(); }
+const std::string& ClientBase::object_type() const { return session_->object_type(); }
+std::map<std::string, std::string> ClientBase::definitions() const {
+  return session_->definitions();
+}
+std::string ClientBase::find_object_type(const std::string& path) const {
+  return session_->ask_object_type(path, std::chrono::milliseconds(0));
+}
+std::map<std::string, VarValue> ClientBase::fetch_attributes() const {
+  return session_->ask_attributes();
+}
+
+}  // namespace rr

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "rr/client.hpp"
+#include "rr/definition.hpp"
+#include "rr/reader.hpp"
+#include "rr/registry.hpp"
+#include "rr/stub.hpp"
+#include "rr/url.hpp"
+#include "rr/wire.hpp"
+#include "runtime/cpp/src/channel/connection.hpp"
+#include "runtime/cpp/src/client/call_terms.hpp"
+#include "runtime/cpp/src/client/definition_text.hpp"
+#include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/endpoint/pending.hpp"
+
+namespace rr {
+
+/// What a request says: the values become its elements.
+struct Outgoing {
+  EntryType type;
+  std::string_view path;
+  std::string_view member;
+  std::span<const Parameter> parameters{};
+  const void* const* values = nullptr;
+};
+
+/// What is read of its answer: one element, or nothing when the type is null.
+struct Incoming {
+  std::string_view element;
+  const Type* type = nullptr;
+  void* value = nullptr;
+};
+
+/// A client's end of a connection: the session of one client with one service.
+class Session final : public channel::Receiver,
+                      public endpoint::Attended,
+                      public std::enable_shared_from_this<Session> {
+ public:
+  using Milliseconds = std::chrono::milliseconds;
+  /// Reads an answer on whichever thread has received it: may not wait nor run user code. Throws
+  /// rr::Error.
+  using AnswerReader = std::function<void(Decoder&, const Message&, const Entry&)>;
+
+  Session(std::shared_ptr<endpoint::Core> core, const Url& url, ConnectOptions options);
+  ~Session() override;
+
+  /// Connects and makes the root's stub, which has the type `wanted` or one that implements it when
+  /// that is not null. Throws rr::Error.
+  std::shared_ptr<Stub> connect(const Url& url, const ObjectType* wanted);
+  /// See ClientBase.
+  void close();
+  /// Tells the service and ends the connection without waiting.
+  void drop();
+  void cancel_calls();
+  [[nodiscard]] bool is_open() const;
+
+  [[nodiscard]] const std::map<std::string, VarValue>& attributes() const { return attributes_; }
+  [[nodiscard]] const NodeId& remote_node() const { return remote_node_; }
+  [[nodiscard]] const std::string& remote_name() const { return remote_name_; }
+  [[nodiscard]] const std::string& object_type() const { return object_type_; }
+  [[nodiscard]] std::map<std::string, std::string> definitions() const;
+
+  /// Sends a request and waits for its answer. Throws rr::Error, or what the service has thrown.
+  void call(const Outgoing& request, const Incoming& answer, Milliseconds timeout);
+  void call(const Outgoing& request, const AnswerReader& read, Milliseconds timeout);
+  /// Sends a request now; the completion gets the answer.
+  void start(const Outgoing& request, const Incoming& answer, Milliseconds timeout,
+             std::shared_ptr<Completion> completion);
+  void start(const Outgoing& request, AnswerReader read, Milliseconds timeout,
+             std::shared_ptr<Completion> completion);
+  /// Ends a call that nobody else has ended.
+  void cancel(endpoint::Pending& call, channel::Laters& laters);
+  /// Runs what ending calls has left over, on a thread of the node.
+  void post(channel::Laters laters);
+
+  /// The stub of the object at a path, whose type is or implements `wanted` unless that is empty.
+  /// The service is asked unless there is a stub already.
+  std::shared_ptr<Stub> find(const std::string& path, std::string_view wanted,
+                             Milliseconds timeout);
+  void start_find(std::string path, std::string wanted, Milliseconds timeout,
+                  std::shared_ptr<Completion> completion);
+  std::string ask_object_type(const std::string& path, Milliseconds timeout);
+  std::map<std::string, VarValue> ask_attributes();
+
+  void add_handler(const std::shared_ptr<Subscription::Handler>& handler);
+  /// A stub goes away, and with it its handlers.
+  void forget(const Stub& stub);
+
+  // From the connection
+  void take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
+                   channel::Laters& laters) override;
+  void handle(const Message& message, const Entry& first, const MemoryRef& owner) override;
+  void lost(const Error& why, channel::Laters& laters) override;
+  void closed() override;
+
+  void attend(channel::Time now) override;
+
+ private:
+  class BlockingCall;
+  template <class Read>
+  class BlockingCallOf;
+  class AsyncCall;
+  class Search;
+
+  // Requests (session_calls.cpp)
+  [[nodiscard]] Milliseconds timeout_for(Milliseconds timeout, const CallTerms& terms) const;
+  void perform(const Outgoing& request, BlockingCall& call, Milliseconds timeout);
+  struct Numbers {
+    std::uint32_t request = 0;
+    std::uint16_t message = 0;
+    bool is_connected = false;
+  };
+  [[nodiscard]] Writer& write(const Outgoing& request) const;
+  Numbers draw(endpoint::Pending* call, bool has_number);
+  void send_numbered(const Outgoing& request, Writer& writer, const Numbers& numbers,
+                     channel::Time now);
+  void send(const Outgoing& request, bool has_number);
+  bool take(endpoint::Pending& call);
+  void fail_all(const Error& why, channel::Laters& laters);
+
+  // Connecting (session_connect.cpp)
+  void connect_combined(Milliseconds timeout);
+  void connect_in_steps(Milliseconds timeout);
+  void authenticate(Milliseconds timeout);
+  void pull_definition(const std::string& name, Milliseconds timeout);
+  void pull_imports(Milliseconds timeout);
+  void keep_definition(std::string_view text);
+  void take_remote(const Message& message, bool is_success);
+
+  // Objects (session_objects.cpp)
+  std::shared_ptr<Stub> make_stub(const std::string& told, const std::string& path,
+                                  std::string_view wanted,
+                                  const std::vector<std::string>& implements);
+  [[nodiscard]] std::vector<std::string> implemented(const std::string& type) const;
+  void pull_type(const std::string& type, Milliseconds timeout);
+  std::shared_ptr<Stub> known_stub(const std::string& path);
+  void release_path(std::string_view path);
+  void handle_event(const Message& message, const Entry& entry, const MemoryRef& owner);
+
+  // Requests of the other node
+  void handle_entry(const Message& message, const Entry& entry, const MemoryRef& owner);
+  void answer_request(const Message& message, const Entry& entry);
+  void give_up(const Error& why);
+
+  const std::shared_ptr<endpoint::Core> core_;
+  const std::shared_ptr<const TypeRegistry> types_;
+  const std::string service_;
+  ConnectOptions options_;
+  std::shared_ptr<channel::Connection> connection_;
+
+  // Written while connecting, by one thread.
+  std::uint32_t endpoint_ = 0;
+  std::uint32_t remote_endpoint_ = 0;
+  NodeId remote_node_;
+  std::string remote_name_;
+  std::string object_type_;
+  std::vector<std::string> object_implements_;
+  std::map<std::string, VarValue> attributes_;
+
+  mutable std::mutex mutex_;
+  endpoint::PendingTable pending_;
+  std::uint16_t next_message_id_ = 0;
+  bool is_connected_ = false;  // the service knows this client
+  bool is_ending_ = false;     // one side has said that the session ends
+  std::optional<Error> why_closed_;
+  std::unordered_map<std::string, std::weak_ptr<Stub>> stubs_;
+  std::vector<std::shared_ptr<Subscription::Handler>> handlers_;
+  std::map<std::string, std::string> texts_;
+  std::map<std::string, client::DefinitionOutline> outlines_;
+  std::uint16_t seen_message_id_ = 0;  // at quiet_since_
+  channel::Time quiet_since_;
+};
+
+}  // namespace rr

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+// The objects of a service as a client sees them: stubs by path, and what the service sends
+// unasked.
+#include <algorithm>
+#include <utility>
+
+#include "rr/error.hpp"
+#include "rr/type.hpp"
+#include "runtime/cpp/src/channel/scratch.hpp"
+#include "runtime/cpp/src/client/session.hpp"
+#include "runtime/cpp/src/client/subscription.hpp"
+#include "runtime/cpp/src/endpoint/arguments.hpp"
+#include "runtime/cpp/src/endpoint/client_version.hpp"
+#include "runtime/cpp/src/endpoint/errors.hpp"
+#include "runtime/cpp/src/endpoint/requests.hpp"
+#include "runtime/cpp/src/endpoint/service_path.hpp"
+
+namespace rr {
+namespace {
+
+std::string service_of(const std::string& type) { return type.substr(0, type.rfind('.')); }
+
+}  // namespace
+
+// Types that `type` implements, directly or not, itself first: as the compiled definitions say, or
+// the texts that the service has sent.
+std::vector<std::string> Session::implemented(const std::string& type) const {
+  std::vector<std::string> found = {type};
+  const std::lock_guard lock(mutex_);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const std::string name = found[i];  // the vector grows
+    const std::string service = service_of(name);
+    const auto add = [&](std::string other) {
+      if (other.find('.') == std::string::npos) other = service + "." + other;
+      if (std::find(found.begin(), found.end(), other) == found.end()) {
+        found.push_back(std::move(other));
+      }
+    };
+    if (const ObjectType* const known = types_->find_object(name)) {
+      for (const std::string_view other : known->implements) add(std::string(other));
+    }
+    const auto outline = outlines_.find(service);
+    if (outline == outlines_.end() || name.size() <= service.size()) continue;
+    const auto object = outline->second.objects.find(name.substr(service.size() + 1));
+    if (object == outline->second.objects.end()) continue;
+    for (const std::string& other : object->second) add(other);
+  }
+  return found;
+}
+
+// The stub of an object of which the service has told the type, and perhaps what it implements. Of
+// all its types that this program knows the most derived one is taken.
+std::shared_ptr<Stub> Session::make_stub(const std::string& told, const std::string& path,
+                                         std::string_view wanted,
+                                         const std::vector<std::string>& implements) {
+  std::vector<std::string> types = implemented(told);
+  for (const std::string& other : implements) {
+    types.push_back(other.find('.') == std::string::npos ? service_of(told) + "." + other : other);
+  }
+  if (!wanted.empty() && std::find(types.begin(), types.end(), wanted) == types.end()) {
+    throw Error(ErrorCode::service_error,
+                "Invalid object type: `" + path + "` is a `" + told + "`");
+  }
+  const ObjectType* known = nullptr;
+  for (const std::string& type : types) {
+    if (known == nullptr) known = types_->find_object(type);
+  }
+  if (known == nullptr) {
+    throw Error(ErrorCode::service_error,
+                "Invalid object type: this program does not know `" + told + "`");
+  }
+  std::shared_ptr<Stub> stub = known->make_stub();
+  stub->rr_session_ = shared_from_this();
+  stub->rr_path_ = path;
+  const std::lock_guard lock(mutex_);
+  std::weak_ptr<Stub>& cached = stubs_[path];
+  if (auto other = cached.lock()) return other;  // somebody was faster
+  cached = stub;
+  return stub;
+}
+
+std::shared_ptr<Stub> Session::known_stub(const std::string& path) {
+  const std::lock_guard lock(mutex_);
+  const auto found = stubs_.find(path);
+  return found == stubs_.end() ? nullptr : found->second.lock();
+}
+
+// A type's definition may not have come with the service's own (07, section 5).
+void Session::pull_type(const std::string& type, Milliseconds timeout) {
+  const std::string service = service_of(type);
+  if (service == type || service.empty()) return;
+  pull_definition(service, timeout);
+  pull_imports(timeout);
+}
+
+std::shared_ptr<Stub> Session::find(const std::string& path, std::string_view wanted,
+                                    Milliseconds timeout) {
+  if (auto stub = known_stub(path)) return stub;
+  const std::string told = ask_object_type(path, timeout);
+  pull_type(told, timeout);
+  return make_stub(told, path, wanted, {});
+}
+
+void Session::release_path(std::string_view path) {
+  std::function<void(const std::string&)> notify;
+  {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(stubs_, [&](const auto& item) {
+      return endpoint::is_at_or_below(item.first, path) && item.first != service_;
+    });
+    notify = options_.on_path_released;
+  }
+  if (notify) notify(std::string(path));
+}
+
+void Session::add_handler(const std::shared_ptr<Subscription::Handler>& handler) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(handlers_, [](const auto& item) { return !item->is_connected(); });
+  handlers_.push_back(handler);
+}
+
+void Session::forget(const Stub& stub) {
+  std::vector<std::shared_ptr<Subscription::Handler>> removed;
+  {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(handlers_, [&](const auto& item) {
+      if (item->stub == &stub) removed.push_back(item);
+      return item->stub == &stub;
+    });
+    const auto cached = stubs_.find(stub.rr_path());
+    if (cached != stubs_.end() && cached->second.expired()) stubs_.erase(cached);
+  }
+  for (const auto& handler : removed) handler->disconnect();
+}
+
+void Session::handle(const Message& message, const Entry& /*first*/, const MemoryRef& owner) {
+  EntryReader entries(message);
+  for (Entry entry; entries.next(entry);) {
+    try {
+      handle_entry(message, entry, owner);
+    } catch (const std::exception& error) {
+      core_->log(LogLevel::error, std::string("a handler has thrown: ") + error.what());
+    } catch (...) {
+      core_->log(LogLevel::error, "a handler has thrown");
+    }
+  }
+}
+
+void Session::handle_entry(const Message& message, const Entry& entry, const MemoryRef& owner) {
+  if (static_cast<ErrorCode>(entry.error) == ErrorCode::invalid_endpoint) {
+    close();
+    return;
+  }
+  switch (entry.type) {
+    case EntryType::service_closed:
+      give_up(Error(ErrorCode::service_not_found, "the service was closed"));
+      break;
+    case EntryType::service_path_released_req:
+      release_path(entry.service_path);
+      break;
+    case EntryType::event_req:
+      handle_event(message, entry, owner);
+      break;
+    default:
+      if (static_cast<std::uint16_t>(entry.type) % 2 != 0) answer_request(message, entry);
+      break;
+  }
+}
+
+void Session::handle_event(const Message& message, const Entry& entry, const MemoryRef& owner) {
+  std::vector<std::shared_ptr<Subscription::Handler>> handlers;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& handler : handlers_) {
+      if (handler->path == entry.service_path && handler->member->name == entry.member) {
+        handlers.push_back(handler);
+      }
+    }
+  }
+  const Arguments::Source source{message, entry, owner, *types_};
+  for (const auto& handler : handlers) {
+    try {
+      handler->call(Arguments(source));
+    } catch (const std::exception& error) {
+      core_->log(LogLevel::error, "a handler of the event `" + std::string(entry.member) +
+                                      "` has thrown: " + error.what());
+    }
+  }
+}
+
+// What a service may ask of its clients; what is not served here is refused (07, sections 2, 4,
+// 12).
+void Session::answer_request(const Message& message, const Entry& entry) {
+  Writer& writer = channel::thread_writer();
+  writer.reset(connection_->version());
+  MessageHeader header{.sender_node = core_->options().id,
+                       .receiver_node = message.sender_node,
+                       .sender_endpoint = message.receiver_endpoint,
+                       .receiver_endpoint = message.sender_endpoint,
+                       .routing = false};
+  switch (entry.type) {
+    case EntryType::get_node_info:
+      endpoint::write_empty_answer(writer, entry);
+      break;
+    case EntryType::node_check_capability:
+    case EntryType::endpoint_check_capability:
+      endpoint::write_capability_answer(writer, entry);
+      break;
+    case EntryType::callback_call_req: {
+      const bool has_object = known_stub(std::string(entry.service_path)) != nullptr;
+      endpoint::write_error_answer(
+          writer, entry,
+          has_object ? Error(ErrorCode::member_not_found, "Member not found")
+                     : Error(ErrorCode::service_error, "the client does not use this object"));
+      break;
+    }
+    default:
+      if (static_cast<std::uint16_t>(entry.type) >= 500) return;  // packets that nobody wants
+      endpoint::write_error_answer(writer, entry,
+                                   Error(ErrorCode::protocol_error, "Invalid Special Operation"));
+      break;
+  }
+  if (static_cast<std::uint16_t>(entry.type) < 500) {
+    header.sender_name = core_->options().name;
+    header.receiver_name = message.sender_name;
+    header.routing = true;
+  } else {
+    const std::lock_guard lock(mutex_);
+    header.message_id = next_message_id_++;
+  }
+  writer.message(header, 1);
+  connection_->reply(writer);
+}
+
+// Asynchronous search: the answer brings the type, and the rest may ask more, on a thread of the
+// node.
+class Session::Search final : public Completion {
+ public:
+  Search(std::shared_ptr<Session> session, std::string path, std::string wanted,
+         Milliseconds timeout, std::shared_ptr<Completion> completion)
+      : session_(std::move(session)),
+        path_(std::move(path)),
+        wanted_(std::move(wanted)),
+        timeout_(timeout),
+        completion_(std::move(completion)) {}
+
+  void* result() override { return &told_; }
+  void succeed() override {
+    try {
+      session_->pull_type(told_, timeout_);
+      auto stub = session_->make_stub(told_, path_, wanted_, {});
+      *static_cast<std::shared_ptr<Stub>*>(completion_->result()) = std::move(stub);
+    } catch (...) {
+      completion_->fail(std::current_exception());
+      return;
+    }
+    completion_->succeed();
+  }
+  void fail(std::exception_ptr error) override { completion_->fail(std::move(error)); }
+
+ private:
+  const std::shared_ptr<Session> session_;
+  const std::string path_;
+  const std::string wanted_;
+  const Milliseconds timeout_;
+  const std::shared_ptr<Completion> completion_;
+  std::string told_;
+};
+
+void Session::start_find(std::string path, std::string wanted, Milliseconds timeout,
+                         std::shared_ptr<Completion> completion) {
+  if (auto stub = known_stub(path)) {
+    *static_cast<std::shared_ptr<Stub>*>(completion->result()) = std::move(stub);
+    post({[completion = std::move(completion)] { completion->succeed(); }});
+    return;
+  }
+  const std::string version(endpoint::own_version);
+  const Parameter parameter{"clientversion", &type_of<std::string>};
+  const void* const value = &version;
+  auto search = std::make_shared<Search>(shared_from_this(), path, std::move(wanted), timeout,
+                                         std::move(completion));
+  void* const told = search->result();
+  start({EntryType::object_type_name, path, {}, {&parameter, 1}, &value},
+        {"objecttype", &type_of<std::string>, told}, timeout, std::move(search));
+}
+
+}  // namespace rr

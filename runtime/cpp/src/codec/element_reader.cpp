@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+
+#include "runtime/cpp/src/codec/parse.hpp"
+
+namespace rr {
+
+std::optional<std::int32_t> Element::index() const {
+  if (has_name) {
+    std::string_view digits = name;
+    // from_chars knows only the minus.
+    if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
+    std::int32_t value = 0;
+    const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error == std::errc() && stop == digits.data() + digits.size()) return value;
+  }
+  if (has_number) return number;
+  return std::nullopt;
+}
+
+bool ElementReader::next(Element& element) {
+  return decoder_->version() == MessageVersion::v4 ? next_v4(element) : next_v2(element);
+}
+
+bool ElementReader::next_v4(Element& element) {
+  if (left_ == 0) return false;
+  const std::byte* at = at_;
+  const char* wrong =
+      codec::parse_element_v4<codec::UnknownCode::refuse>(at, end_, decoder_->strings(), element);
+  if (wrong != nullptr) [[unlikely]]
+    return stop(wrong);
+  at_ = at;
+  --left_;
+  return true;
+}
+
+bool ElementReader::next_v2(Element& element) {
+  if (left_ == 0) return false;
+  const std::byte* at = at_;
+  const char* wrong = codec::parse_element_v2(at, end_, element);
+  if (wrong != nullptr) [[unlikely]]
+    return stop(wrong);
+  at_ = at;
+  --left_;
+  return true;
+}
+
+bool ElementReader::stop(const char* wrong) {
+  left_ = 0;
+  return decoder_->fail(ErrorCode::protocol_error, wrong);
+}
+
+bool find_element(Decoder& decoder, std::span<const std::byte> bytes, std::uint32_t count,
+                  std::string_view name, Element& element) {
+  ElementReader reader(decoder, bytes, count);
+  while (reader.next(element)) {
+    if (element.has_name && element.name == name) return true;
+  }
+  return false;
+}
+
+}  // namespace rr

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/endpoint/core.hpp"
+
+#include <algorithm>
+#include <random>
+#include <utility>
+
+#include "rr/error.hpp"
+
+namespace rr::endpoint {
+namespace {
+
+constexpr std::chrono::seconds longest_round{5};
+
+std::shared_ptr<const NodeOptions> with_id(NodeOptions options) {
+  if (options.id.is_any()) options.id = NodeId::random();
+  return std::make_shared<const NodeOptions>(std::move(options));
+}
+
+}  // namespace
+
+class Core::Rounds final : public channel::Timer, public std::enable_shared_from_this<Rounds> {
+ public:
+  Rounds(std::shared_ptr<channel::Reactor> reactor, channel::Milliseconds period)
+      : reactor_(std::move(reactor)), period_(period) {}
+  ~Rounds() { reactor_->cancel(*this); }
+
+  void add(std::weak_ptr<Attended> endpoint) {
+    {
+      const std::lock_guard lock(mutex_);
+      attended_.push_back(std::move(endpoint));
+      if (attended_.size() != 1) return;
+    }
+    schedule();
+  }
+
+ private:
+  void on_timer() override {
+    std::vector<std::shared_ptr<Attended>> alive;
+    {
+      const std::lock_guard lock(mutex_);
+      std::erase_if(attended_, [&](const std::weak_ptr<Attended>& endpoint) {
+        alive.push_back(endpoint.lock());
+        return alive.back() == nullptr;
+      });
+    }
+    std::erase(alive, nullptr);
+    const channel::Time now = channel::Clock::now();
+    for (const std::shared_ptr<Attended>& endpoint : alive) endpoint->attend(now);
+    if (!alive.empty()) {
+      schedule();
+      return;
+    }
+    const std::lock_guard lock(mutex_);
+    if (!attended_.empty()) schedule();
+  }
+
+  void schedule() { reactor_->schedule(*this, weak_from_this(), channel::Clock::now() + period_); }
+
+  const std::shared_ptr<channel::Reactor> reactor_;
+  const channel::Milliseconds period_;
+  std::mutex mutex_;
+  std::vector<std::weak_ptr<Attended>> attended_;
+};
+
+Core::Core(NodeOptions options)
+    : options_(with_id(std::move(options))),
+      reactor_(std::make_shared<channel::Reactor>(options_->max_threads)),
+      types_(std::make_shared<const TypeRegistry>()) {
+  const auto limit = std::min(options_->keep_alive_period, options_->client_timeout);
+  const auto period = std::clamp<channel::Milliseconds>(limit / 4, channel::Milliseconds(10),
+                                                        channel::Milliseconds(longest_round));
+  rounds_ = std::make_shared<Rounds>(reactor_, period);
+  const std::shared_ptr<channel::Channel> tcp = channel::make_tcp_channel(ground());
+  channels_ = {{"rr+tcp", tcp}, {"tcp", tcp}};
+}
+
+Core::~Core() { stop(); }
+
+void Core::log(LogLevel level, std::string_view text) const {
+  if (options_->log) options_->log(level, text);
+}
+
+void Core::add_definition(const Definition& definition) {
+  const std::lock_guard lock(mutex_);
+  if (types_->find_definition(definition.name) == &definition) return;
+  auto types = std::make_shared<TypeRegistry>(*types_);
+  types->add(definition);
+  types_ = std::move(types);
+}
+
+std::shared_ptr<const TypeRegistry> Core::types() const {
+  const std::lock_guard lock(mutex_);
+  return types_;
+}
+
+std::uint32_t Core::new_endpoint() {
+  std::random_device random;
+  const std::lock_guard lock(mutex_);
+  while (true) {
+    const std::uint32_t number = random();
+    if (number != 0 && endpoints_.insert(number).second) return number;
+  }
+}
+
+void Core::release_endpoint(std::uint32_t number) {
+  const std::lock_guard lock(mutex_);
+  endpoints_.erase(number);
+}
+
+channel::Channel& Core::channel(const std::string& scheme) {
+  const std::lock_guard lock(mutex_);
+  const auto found = channels_.find(scheme);
+  if (found == channels_.end()) {
+    throw Error(ErrorCode::invalid_argument, "there is no channel for `" + scheme + "://`");
+  }
+  return *found->second;
+}
+
+void Core::add_channel(const std::string& scheme, std::shared_ptr<channel::Channel> channel) {
+  const std::lock_guard lock(mutex_);
+  channels_[scheme] = std::move(channel);
+}
+
+void Core::attend(std::weak_ptr<Attended> endpoint) { rounds_->add(std::move(endpoint)); }
+
+}  // namespace rr::endpoint

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <unordered_set>
+#include <vector>
+
+#include "rr/definition.hpp"
+#include "rr/options.hpp"
+#include "rr/registry.hpp"
+#include "runtime/cpp/src/channel/channel.hpp"
+#include "runtime/cpp/src/channel/reactor.hpp"
+
+namespace rr::endpoint {
+
+/// An endpoint that wants to be looked after every few seconds.
+class Attended {
+ public:
+  virtual ~Attended() = default;
+  /// On the watching thread: short, no user code.
+  virtual void attend(channel::Time now) = 0;
+};
+
+/// What all of a node shares: who it is, its threads, the definitions it knows, its channels.
+class Core : public std::enable_shared_from_this<Core> {
+ public:
+  explicit Core(NodeOptions options);
+  ~Core();
+
+  [[nodiscard]] const NodeOptions& options() const { return *options_; }
+  [[nodiscard]] channel::Reactor& reactor() const { return *reactor_; }
+  [[nodiscard]] channel::Ground ground() const { return {reactor_, options_}; }
+  /// Starts the threads unless they run.
+  void start() { reactor_->start(); }
+  /// Waits for all threads to end. No connection may be left.
+  void stop() { reactor_->stop(); }
+
+  void log(LogLevel level, std::string_view text) const;
+
+  /// Makes a definition and its imports known.
+  void add_definition(const Definition& definition);
+  /// What is known now; does not change any more.
+  [[nodiscard]] std::shared_ptr<const TypeRegistry> types() const;
+
+  /// A number that no endpoint of this node has.
+  std::uint32_t new_endpoint();
+  void release_endpoint(std::uint32_t number);
+
+  /// The channel for a scheme. Throws rr::Error (invalid_argument).
+  channel::Channel& channel(const std::string& scheme);
+  void add_channel(const std::string& scheme, std::shared_ptr<channel::Channel> channel);
+
+  void attend(std::weak_ptr<Attended> endpoint);
+
+ private:
+  class Rounds;  // the timer of those that are attended
+
+  std::shared_ptr<const NodeOptions> options_;
+  std::shared_ptr<channel::Reactor> reactor_;
+  mutable std::mutex mutex_;
+  std::shared_ptr<const TypeRegistry> types_;
+  std::unordered_set<std::uint32_t> endpoints_;
+  std::map<std::string, std::shared_ptr<channel::Channel>> channels_;
+  std::shared_ptr<Rounds> rounds_;
+};
+
+}  // namespace rr::endpoint

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rr/node.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <thread>
+
+#include "rr/url.hpp"
+#include "runtime/cpp/src/channel/channel.hpp"
+#include "runtime/cpp/src/client/session.hpp"
+#include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/service/directory.hpp"
+
+namespace rr {
+
+struct Node::State {
+  std::shared_ptr<endpoint::Core> core;
+  std::shared_ptr<service::Directory> directory;
+  // Threads of asynchronous connects, and whether they have done their work.
+  struct Worker {
+    std::thread thread;
+    std::shared_ptr<std::atomic<bool>> is_done;
+  };
+
+  std::mutex mutex;
+  bool is_shut_down = false;
+  std::vector<std::unique_ptr<channel::Listener>> listeners;
+  std::vector<std::weak_ptr<channel::Connection>> accepted;
+  std::vector<std::weak_ptr<Session>> sessions;
+  std::vector<Worker> workers;
+
+  // Gives each new connection a receiver, and remembers it for the end.
+  channel::AcceptHandler accept_handler() {
+    return [this](std::shared_ptr<channel::Connection> connection) {
+      {
+        const std::lock_guard lock(mutex);
+        if (is_shut_down) throw Error(ErrorCode::connection_error, "the node is shut down");
+        remember(accepted, connection);
+      }
+      return directory->accept(std::move(connection));
+    };
+  }
+
+  // Drops what has gone whenever the list would grow.
+  template <class T>
+  static void remember(std::vector<std::weak_ptr<T>>& list, const std::shared_ptr<T>& item) {
+    if (list.size() == list.capacity()) {
+      std::erase_if(list, [](const std::weak_ptr<T>& other) { return other.expired(); });
+    }
+    list.push_back(item);
+  }
+
+  void join_done() {
+    std::erase_if(workers, [](Worker& worker) {
+      if (!*worker.is_done) return false;
+      worker.thread.join();
+      return true;
+    });
+  }
+};
+
+Node::Node(NodeOptions options) : state_(std::make_unique<State>()) {
+  state_->core = std::make_shared<endpoint::Core>(std::move(options));
+  state_->directory = std::make_shared<service::Directory>(state_->core);
+  state_->directory->start();
+}
+
+Node::~Node() { shutdown(); }
+
+const NodeId& Node::id() const { return state_->core->options().id; }
+const std::string& Node::name() const { return state_->core->options().name; }
+
+std::uint16_t Node::listen(std::string_view url) {
+  const Url parsed = Url::parse(url);
+  state_->core->start();
+  auto listener = state_->core->channel(parsed.scheme).listen(parsed, state_->accept_handler());
+  const std::uint16_t port = Url::parse(listener->urls().front()).port;
+  const std::lock_guard lock(state_->mutex);
+  state_->listeners.push_back(std::move(listener));
+  return port;
+}
+
+std::uint16_t Node::listen_tcp(std::uint16_t port, std::string_view host) {
+  const bool needs_brackets = host.find(':') != std::string_view::npos && !host.starts_with('[');
+  const std::string place = needs_brackets ? "[" + std::string(host) + "]" : std::string(host);
+  return listen("rr+tcp://" + place + ":" + std::to_string(port));
+}
+
+std::vector<std::string> Node::urls(std::string_view service) const {
+  std::vector<std::string> result;
+  const std::lock_guard lock(state_->mutex);
+  for (const auto& listener : state_->listeners) {
+    for (const std::string& url : listener->urls()) {
+      result.push_back(url + "/?nodeid=" + id().text() + "&service=" + std::string(service));
+    }
+  }
+  return result;
+}
+
+Service Node::register_service(std::string name, std::shared_ptr<Skeleton> root,
+                               ServiceOptions options) {
+  return Service(state_->directory->add(std::move(name), std::move(root), std::move(options)));
+}
+
+void Node::add_definition(const Definition& definition) {
+  state_->core->add_definition(definition);
+}
+
+void Node::refuse() {
+  throw Error(ErrorCode::service_error, "Invalid object type: the root object has another class");
+}
+
+Node::Opened Node::open(std::string_view url, ConnectOptions options, const ObjectType* type) {
+  const Url parsed = Url::parse(url);
+  if (type != nullptr) state_->core->add_definition(type->definition);
+  auto session = std::make_shared<Session>(state_->core, parsed, std::move(options));
+  {
+    const std::lock_guard lock(state_->mutex);
+    if (state_->is_shut_down) throw Error(ErrorCode::invalid_operation, "the node is shut down");
+    State::remember(state_->sessions, session);
+  }
+  auto stub = session->connect(parsed, type);
+  return {std::move(session), std::move(stub)};
+}
+
+void Node::run_aside(std::function<void()> work) {
+  auto is_done = std::make_shared<std::atomic<bool>>(false);
+  const std::lock_guard lock(state_->mutex);
+  if (state_->is_shut_down) throw Error(ErrorCode::invalid_operation, "the node is shut down");
+  state_->join_done();
+  state_->workers.push_back({std::thread([work = std::move(work), is_done] {
+                               work();
+                               *is_done = true;
+                             }),
+                             is_done});
+}
+
+void Node::adopt(int descriptor) {
+  state_->core->start();
+  channel::adopt_socket(state_->core->ground(), descriptor, state_->accept_handler());
+}
+
+void Node::shutdown() {
+  std::vector<std::unique_ptr<channel::Listener>> listeners;
+  std::vector<std::weak_ptr<channel::Connection>> accepted;
+  std::vector<std::weak_ptr<Session>> sessions;
+  std::vector<State::Worker> workers;
+  {
+    const std::lock_guard lock(state_->mutex);
+    if (std::exchange(state_->is_shut_down, true)) return;
+    listeners.swap(state_->listeners);
+    accepted.swap(state_->accepted);
+    sessions.swap(state_->sessions);
+    workers.swap(state_->workers);
+  }
+  listeners.clear();
+  for (const auto& session : sessions) {
+    if (const auto alive = session.lock()) alive->drop();
+  }
+  for (State::Worker& worker : workers) worker.thread.join();
+  state_->directory->close();
+  for (const auto& connection : accepted) {
+    if (const auto alive = connection.lock()) {
+      alive->close(Error(ErrorCode::connection_error, "the node is shut down"));
+    }
+  }
+  state_->core->stop();
+}
+
+}  // namespace rr

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "rr/node.hpp"
+#include "runtime/cpp/src/node/testing/counter.hpp"
+
+namespace rr::testing {
+
+/// A node that offers a counter, and another that can connect to it, on the loopback interface.
+struct Pair {
+  explicit Pair(NodeOptions server_options = {}, NodeOptions client_options = {},
+                std::shared_ptr<Counter> offered = std::make_shared<Counter>(),
+                ServiceOptions service_options = {})
+      : object(std::move(offered)),
+        server(std::move(server_options)),
+        client(std::move(client_options)) {
+    service = server.register_service("counter", object, std::move(service_options));
+    port = server.listen_tcp(0, "127.0.0.1");
+  }
+
+  [[nodiscard]] std::string url(const std::string& name = "counter") const {
+    return "rr+tcp://127.0.0.1:" + std::to_string(port) + "/?service=" + name;
+  }
+  Client<CounterStub> connect(ConnectOptions options = {}) {
+    return client.connect<CounterStub>(url(), std::move(options));
+  }
+
+  std::shared_ptr<Counter> object;
+  Node server;
+  Node client;
+  Service service;
+  std::uint16_t port = 0;
+};
+
+/// Waits until something holds, for some seconds at most; whether it does.
+inline bool eventually(const std::function<bool()>& holds) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (!holds()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+/// The error that something throws; its code is none when nothing is thrown.
+inline Error error_of(const std::function<void()>& what) {
+  try {
+    what();
+  } catch (const Error& error) {
+    return error;
+  }
+  return {ErrorCode::none, "", ""};
+}
+
+}  // namespace rr::testing

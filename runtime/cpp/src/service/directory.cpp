@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/service/directory.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "rr/error.hpp"
+#include "runtime/cpp/src/endpoint/service_path.hpp"
+#include "runtime/cpp/src/service/server_endpoint.hpp"
+#include "runtime/cpp/src/service/service_index.hpp"
+
+namespace rr::service {
+
+Directory::Directory(std::shared_ptr<endpoint::Core> core) : core_(std::move(core)) {}
+
+void Directory::start() {
+  index_ = std::make_shared<ServiceIndex>(weak_from_this());
+  add(std::string(service_index_name), index_, {});
+}
+
+std::shared_ptr<ServiceHost> Directory::add(std::string name, std::shared_ptr<Skeleton> root,
+                                            ServiceOptions options) {
+  if (!root) throw Error(ErrorCode::invalid_argument, "a service needs a root object");
+  const auto segments = endpoint::parse_path(name);
+  if (!segments || segments->size() != 1) {
+    throw Error(ErrorCode::invalid_argument,
+                "`" + name + "` is no name for a service: a letter, then letters, digits and `_`");
+  }
+  core_->add_definition(root->rr_object_type().definition);
+  for (const Definition* definition : options.extra_imports) core_->add_definition(*definition);
+  auto host = std::make_shared<ServiceHost>(core_, weak_from_this(), std::move(name),
+                                            std::move(root), std::move(options));
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& other : services_) {
+      if (other->name() == host->name()) {
+        throw Error(ErrorCode::invalid_operation,
+                    "there is a service `" + host->name() + "` already");
+      }
+    }
+    services_.push_back(host);
+  }
+  host->start();
+  if (index_) index_->fire_changed();
+  return host;
+}
+
+void Directory::remove(const ServiceHost& host) {
+  {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(services_, [&](const auto& other) { return other.get() == &host; });
+  }
+  if (index_) index_->fire_changed();
+}
+
+void Directory::close() {
+  for (const auto& host : all()) host->close();
+}
+
+std::shared_ptr<ServiceHost> Directory::find(std::string_view name) const {
+  const std::lock_guard lock(mutex_);
+  for (const auto& host : services_) {
+    if (host->name() == name) return host;
+  }
+  return nullptr;
+}
+
+std::vector<std::shared_ptr<ServiceHost>> Directory::all() const {
+  const std::lock_guard lock(mutex_);
+  return {services_.rbegin(), services_.rend()};
+}
+
+std::shared_ptr<channel::Receiver> Directory::accept(
+    std::shared_ptr<channel::Connection> connection) {
+  auto endpoint = std::make_shared<ServerEndpoint>(shared_from_this(), std::move(connection));
+  core_->attend(endpoint);
+  return endpoint;
+}
+
+}  // namespace rr::service

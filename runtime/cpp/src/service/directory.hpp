@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rr/service.hpp"
+#include "runtime/cpp/src/channel/channel.hpp"
+#include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/service/service_host.hpp"
+
+namespace rr::service {
+
+class ServiceIndex;
+
+/// The services of a node, by name.
+class Directory : public std::enable_shared_from_this<Directory> {
+ public:
+  explicit Directory(std::shared_ptr<endpoint::Core> core);
+  /// Registers the service index, which every node has.
+  void start();
+
+  /// Throws rr::Error: invalid_argument for a name that is none, invalid_operation for one in use.
+  std::shared_ptr<ServiceHost> add(std::string name, std::shared_ptr<Skeleton> root,
+                                   ServiceOptions options);
+  void remove(const ServiceHost& host);
+  /// Closes all services.
+  void close();
+
+  /// Null when there is none.
+  [[nodiscard]] std::shared_ptr<ServiceHost> find(std::string_view name) const;
+  /// Newest first.
+  [[nodiscard]] std::vector<std::shared_ptr<ServiceHost>> all() const;
+
+  /// A receiver for a new incoming connection.
+  std::shared_ptr<channel::Receiver> accept(std::shared_ptr<channel::Connection> connection);
+
+  [[nodiscard]] const std::shared_ptr<endpoint::Core>& core() const { return core_; }
+
+ private:
+  const std::shared_ptr<endpoint::Core> core_;
+  mutable std::mutex mutex_;
+  std::vector<std::shared_ptr<ServiceHost>> services_;  // oldest first
+  std::shared_ptr<ServiceIndex> index_;
+};
+
+}  // namespace rr::service

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rr/service.hpp"
+#include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/service/object_tree.hpp"
+
+namespace rr::service {
+
+class Directory;
+class ServerEndpoint;
+
+/// A service of a node: its objects, and the clients that use it.
+class ServiceHost final : public ServiceContext, public std::enable_shared_from_this<ServiceHost> {
+ public:
+  ServiceHost(std::shared_ptr<endpoint::Core> core, std::weak_ptr<Directory> directory,
+              std::string name, std::shared_ptr<Skeleton> root, ServiceOptions options);
+  /// Attaches the root object.
+  void start();
+
+  [[nodiscard]] const std::string& name() const override { return name_; }
+  [[nodiscard]] const Skeleton& root() const override { return *objects_.root()->skeleton; }
+  [[nodiscard]] std::map<std::string, VarValue> attributes() const override;
+  void set_attributes(std::map<std::string, VarValue> attributes) override;
+  void release_path(const std::string& path) override;
+  [[nodiscard]] std::vector<ServiceClient> clients() const override;
+  void disconnect(std::uint32_t endpoint) override;
+  void close() override;
+
+  [[nodiscard]] ObjectTree& objects() { return objects_; }
+  [[nodiscard]] const std::shared_ptr<const TypeRegistry>& types() const { return types_; }
+  /// Of the root object, of extra imports, and of all they import, sorted.
+  [[nodiscard]] const std::vector<const Definition*>& definitions() const { return definitions_; }
+  [[nodiscard]] const std::vector<const Definition*>& extra_imports() const {
+    return options_.extra_imports;
+  }
+  /// The type of the root object for a client of this version, if any.
+  [[nodiscard]] std::optional<std::string> root_type_for(
+      const std::optional<DefinitionVersion>& client) const;
+
+  /// False when the service has been closed.
+  bool add_client(const std::shared_ptr<ServerEndpoint>& client);
+  void remove_client(const ServerEndpoint& client);
+  /// Sends an event to all clients.
+  void fire(const std::string& path, const Member& member, const void* const* arguments);
+
+ private:
+  using Clients = std::vector<std::shared_ptr<ServerEndpoint>>;
+  [[nodiscard]] std::shared_ptr<const Clients> connected() const;
+  void attach(const ServedObject& object);
+  void detach(const ServedObject& object);
+  void notify(const std::function<void(const ServiceClient&)>& function,
+              const ServiceClient& client) const;
+
+  const std::shared_ptr<endpoint::Core> core_;
+  const std::weak_ptr<Directory> directory_;
+  const std::string name_;
+  ServiceOptions options_;  // its attributes are guarded
+  const std::shared_ptr<const TypeRegistry> types_;
+  const std::vector<const Definition*> definitions_;
+  ObjectTree objects_;
+
+  mutable std::mutex mutex_;
+  std::shared_ptr<const Clients> clients_;  // replaced, never changed
+  bool is_closed_ = false;
+};
+
+}  // namespace rr::service

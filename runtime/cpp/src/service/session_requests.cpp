@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+// Requests within a session (07, sections 2, 6, 8 and 14).
+#include <utility>
+
+#include "rr/type.hpp"
+#include "runtime/cpp/src/endpoint/client_version.hpp"
+#include "runtime/cpp/src/endpoint/errors.hpp"
+#include "runtime/cpp/src/endpoint/requests.hpp"
+#include "runtime/cpp/src/endpoint/values.hpp"
+#include "runtime/cpp/src/service/directory.hpp"
+#include "runtime/cpp/src/service/gathering.hpp"
+#include "runtime/cpp/src/service/object_types.hpp"
+#include "runtime/cpp/src/service/request.hpp"
+#include "runtime/cpp/src/service/server_endpoint.hpp"
+#include "runtime/cpp/src/service/service_host.hpp"
+
+namespace rr::service {
+namespace {
+
+thread_local ServerEndpoint* current_endpoint = nullptr;
+
+// While a handler runs.
+class CurrentEndpoint {
+ public:
+  explicit CurrentEndpoint(ServerEndpoint& endpoint)
+      : outer_(std::exchange(current_endpoint, &endpoint)) {}
+  ~CurrentEndpoint() { current_endpoint = outer_; }
+  CurrentEndpoint(const CurrentEndpoint&) = delete;
+  CurrentEndpoint& operator=(const CurrentEndpoint&) = delete;
+
+ private:
+  ServerEndpoint* const outer_;
+};
+
+bool is_odd(EntryType type) { return static_cast<std::uint16_t>(type) % 2 != 0; }
+
+bool is_special(EntryType type) {
+  return is_odd(type) && static_cast<std::uint16_t>(type) < 500 &&
+         type != EntryType::service_closed;
+}
+
+}  // namespace
+
+ServerEndpoint* ServerEndpoint::current() { return current_endpoint; }
+
+void ServerEndpoint::handle(const Message& message, const Entry& first, const MemoryRef& owner) {
+  last_heard_.store(channel::coarse_now(), std::memory_order_relaxed);
+  const bool asks_type_in_session = first.type == EntryType::object_type_name &&
+                                    message.entry_count == 1 && message.receiver_endpoint != 0;
+  if (is_special(first.type) && !asks_type_in_session) {
+    handle_special(message);
+  } else if (is_in_session(message)) {
+    handle_session(message, first, owner);
+  }
+  // Anything else is for nobody here, and nobody could be answered.
+}
+
+// Whether both ends that a message names are those of the session.
+bool ServerEndpoint::is_in_session(const Message& message) const {
+  if (!is_member_.load(std::memory_order_relaxed)) return false;
+  return message.receiver_endpoint == client_.endpoint &&
+         message.sender_endpoint == remote_endpoint_ &&
+         (!message.has_routing || (message.receiver_node == directory_->core()->options().id &&
+                                   message.sender_node == client_.node));
+}
+
+void ServerEndpoint::handle_session(const Message& message, const Entry& first,
+                                    const MemoryRef& owner) {
+  if (message.entry_count == 1) {
+    handle_question({message, first, owner, nullptr, 0});
+    return;
+  }
+  EntryReader entries(message);
+  Entry entry;
+  const auto gathering =
+      std::make_shared<Gathering>(shared_from_this(), connection_->version(), message.entry_count);
+  for (std::size_t place = 0; entries.next(entry); ++place) {
+    handle_question({message, entry, owner, gathering, place});
+  }
+}
+
+void ServerEndpoint::handle_question(const Question& question) {
+  const Entry& entry = question.entry;
+  const bool is_answered =
+      is_odd(entry.type) && static_cast<ErrorCode>(entry.error) != ErrorCode::invalid_endpoint;
+  if (!is_answered) {
+    if (is_odd(entry.type)) leave();  // the client does not know of the session any more
+    if (question.gathering) question.gathering->put(question.place, {});
+    return;
+  }
+  const CurrentEndpoint current(*this);
+  std::exception_ptr exception;
+  try {
+    answer_question(question);
+    return;
+  } catch (...) {
+    exception = std::current_exception();
+  }
+  try {
+    answer_error(question, endpoint::describe(exception));
+  } catch (const Error& error) {
+    directory_->core()->log(LogLevel::error, error.what());
+  }
+}
+
+void ServerEndpoint::answer_question(const Question& question) {
+  switch (question.entry.type) {
+    case EntryType::property_get_req:
+    case EntryType::property_set_req:
+      answer_member(question, MemberKind::property);
+      break;
+    case EntryType::function_call_req:
+      answer_member(question, MemberKind::function);
+      break;
+    case EntryType::object_type_name:
+      if (question.gathering) {
+        throw Error(ErrorCode::protocol_error, "Unknown request type");
+      }
+      answer_session_object_type(question);
+      break;
+    case EntryType::client_keep_alive_req:
+      answer_empty(question);
+      break;
+    case EntryType::service_check_capability_req:
+    case EntryType::endpoint_check_capability: {
+      const std::uint32_t level = 0;
+      answer_value(question, "return", type_of<std::uint32_t>, &level);
+      break;
+    }
+    case EntryType::client_session_op_req:
+      answer_session_operation(question);
+      break;
+    default:
+      answer_unserved(question);
+      break;
+  }
+}
+
+void ServerEndpoint::answer_session_object_type(const Question& question) {
+  const Entry& entry = question.entry;
+  const auto object = find_object(entry.service_path);
+  Decoder decoder(question.message.version, &question.message.strings);
+  std::optional<DefinitionVersion> version;
+  std::string_view text;
+  if (endpoint::find_text(decoder, entry, "clientversion", text)) {
+    version = endpoint::parse_version(text);
+  }
+  const auto type = type_for(*object->type, version);
+  if (!type) throw Error(ErrorCode::object_not_found, "no type for this version of the client");
+  answer_value(question, "objecttype", type_of<std::string>, &*type);
+}
+
+// A service without users: there is nobody to authenticate and nobody to lock for.
+void ServerEndpoint::answer_session_operation(const Question& question) {
+  const std::string_view operation = question.entry.member;
+  if (operation == "AuthenticateUser" || operation == "LogoutUser" ||
+      operation == "RequestObjectLock" || operation == "RequestClientObjectLock" ||
+      operation == "ReleaseObjectLock" || operation == "ReleaseClientObjectLock") {
+    throw Error(ErrorCode::invalid_operation, "User authentication not activated for this service");
+  }
+  if (operation == "MonitorEnter" || operation == "MonitorContinueEnter" ||
+      operation == "MonitorExit") {
+    find_object(question.entry.service_path);
+    throw Error(ErrorCode::invalid_argument, "Object is not monitor lockable");
+  }
+  throw Error(ErrorCode::protocol_error, "Invalid ClientSessionOp command");
+}
+
+std::shared_ptr<const ServedObject> ServerEndpoint::find_object(std::string_view path) {
+  ObjectTree& objects = host_->objects();
+  const std::uint32_t generation = objects.generation();
+  if (last_object_ && last_path_ == path && last_generation_ == generation) return last_object_;
+  auto object = objects.find(path);
+  last_path_ = path;
+  last_object_ = object;
+  last_member_ = nullptr;
+  last_generation_ = generation;
+  return object;
+}
+
+const Member& ServerEndpoint::find_member(const ServedObject& object, std::string_view name,
+                                          MemberKind kind) {
+  if (last_member_ != nullptr && last_member_->name == name && last_member_->kind == kind) {
+    return *last_member_;
+  }
+  const auto place = object.members->find(name);
+  if (!place || object.type->members[*place].kind != kind) {
+    throw Error(ErrorCode::member_not_found, "Member not found");
+  }
+  last_member_ = &object.type->members[*place];
+  return *last_member_;
+}
+
+void ServerEndpoint::answer_member(const Question& question, MemberKind kind) {
+  const auto object = find_object(question.entry.service_path);
+  const Member& member = find_member(*object, question.entry.member, kind);
+  if (member.generator != GeneratorForm::none) {
+    throw Error(ErrorCode::not_implemented_error, "generators are not served");
+  }
+  const bool is_set = question.entry.type == EntryType::property_set_req;
+  if (is_set && (member.access & readonly) != 0) {
+    throw Error(ErrorCode::read_only_member, "Read only property");
+  }
+  if (!is_set && (member.access & writeonly) != 0) {
+    throw Error(ErrorCode::write_only_member, "Write only property");
+  }
+  Request::Source source{*this, question, *host_->types(), member, is_set};
+  Request request(source);
+  try {
+    const auto place = static_cast<std::size_t>(&member - object->type->members.data());
+    object->skeleton->rr_dispatch(place, request);
+  } catch (const std::exception& error) {
+    if (source.state == Request::Source::State::open) throw;
+    directory_->core()->log(
+        LogLevel::error,
+        "`" + std::string(member.name) + "` has thrown after it had answered: " + error.what());
+  }
+  source.complete();
+}
+
+// Members of the kinds that are not served are as if they were not there.
+void ServerEndpoint::answer_unserved(const Question& question) {
+  switch (question.entry.type) {
+    case EntryType::pipe_packet:
+    case EntryType::pipe_connect_req:
+    case EntryType::pipe_disconnect_req:
+    case EntryType::wire_packet:
+    case EntryType::wire_connect_req:
+    case EntryType::wire_disconnect_req:
+    case EntryType::wire_peek_in_value_req:
+    case EntryType::wire_peek_out_value_req:
+    case EntryType::wire_poke_out_value_req:
+    case EntryType::memory_read:
+    case EntryType::memory_write:
+    case EntryType::memory_get_param:
+      find_object(question.entry.service_path);
+      throw Error(ErrorCode::member_not_found, "Member not found");
+    case EntryType::generator_next_req: {
+      find_object(question.entry.service_path);
+      Decoder decoder(question.message.version, &question.message.strings);
+      std::int32_t index = 0;
+      endpoint::read_value(decoder, question.entry, "index", type_of<std::int32_t>, &index);
+      throw Error(ErrorCode::invalid_operation, "Invalid generator");
+    }
+    default:
+      throw Error(ErrorCode::protocol_error, "Unknown request type");
+  }
+}
+
+}  // namespace rr::service
+
+namespace rr {
+
+std::uint32_t ServiceContext::current_client() {
+  const service::ServerEndpoint* const endpoint = service::ServerEndpoint::current();
+  return endpoint != nullptr ? endpoint->client().endpoint : 0;
+}
+
+}  // namespace rr

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+// Requests that need no session (07, sections 1, 4 and 5).
+#include <optional>
+#include <utility>
+
+#include "runtime/cpp/src/endpoint/client_version.hpp"
+#include "runtime/cpp/src/endpoint/errors.hpp"
+#include "runtime/cpp/src/endpoint/requests.hpp"
+#include "runtime/cpp/src/endpoint/values.hpp"
+#include "runtime/cpp/src/service/directory.hpp"
+#include "runtime/cpp/src/service/object_types.hpp"
+#include "runtime/cpp/src/service/server_endpoint.hpp"
+#include "runtime/cpp/src/service/service_host.hpp"
+
+namespace rr::service {
+namespace {
+
+// Whatever goes wrong with a special request is told in these words; the names are the reference's.
+Error service_not_found() {
+  return {ErrorCode::service_not_found, "RobotRaconteur.ServiceNotFoundException",
+          "Service not found"};
+}
+Error object_not_found() {
+  return {ErrorCode::object_not_found, "RobotRaconteur.ObjectNotFoundException",
+          "Object not found"};
+}
+Error attributes_not_found() { return {ErrorCode::service_error, "Service not found"}; }
+
+std::optional<DefinitionVersion> client_version(Decoder& decoder, const Entry& entry) {
+  std::string_view text;
+  if (!endpoint::find_text(decoder, entry, "clientversion", text)) return std::nullopt;
+  return endpoint::parse_version(text);
+}
+
+std::uint32_t write_texts(Writer& writer, std::string_view name,
+                          std::span<const std::string_view> texts) {
+  if (texts.empty()) return 0;
+  const std::vector<std::string> list(texts.begin(), texts.end());
+  type_of<std::vector<std::string>>.write(writer, name, &list);
+  return 1;
+}
+
+std::uint32_t write_map(Writer& writer, std::string_view name,
+                        const std::map<std::string, VarValue>& map) {
+  type_of<VarStringMap>.write(writer, name, &map);
+  return 1;
+}
+
+bool wants_definitions(Decoder& decoder, const Entry& entry) {
+  std::string_view text;
+  if (!endpoint::find_text(decoder, entry, "returnservicedefs", text)) return true;
+  std::string lower(text);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  return lower != "false" && lower != "0";
+}
+
+}  // namespace
+
+void ServerEndpoint::handle_special(const Message& message) {
+  const NodeOptions& own = directory_->core()->options();
+  const bool is_for_us = message.receiver_node == own.id ||
+                         (message.receiver_node.is_any() &&
+                          (message.receiver_name.empty() || message.receiver_name == own.name));
+  std::uint32_t own_endpoint = message.receiver_endpoint;
+
+  Writer writer;  // not the thread's: user code runs on the way to objects, and hears of clients
+  const MessageVersion version = connection_->version();
+  std::vector<std::vector<std::byte>> answers;
+  EntryReader entries(message);
+  for (Entry entry; entries.next(entry);) {
+    writer.reset(version);
+    if (is_for_us) {
+      write_special_answer(writer, message, entry, own_endpoint);
+    } else {
+      endpoint::write_error_answer(
+          writer, entry, Error(ErrorCode::node_not_found, "Could not find route to remote node"));
+    }
+    if (connection_->is_closed()) return;
+    answers.push_back(writer.copy());
+  }
+  writer.reset(version);
+  for (auto answer = answers.rbegin(); answer != answers.rend(); ++answer) {
+    writer.prepend_bytes(answer->data(), answer->size());
+  }
+  // What is not for us is answered in the name of whom it was for.
+  writer.message({.sender_node = is_for_us ? own.id : message.receiver_node,
+                  .receiver_node = message.sender_node,
+                  .sender_name = is_for_us ? std::string_view(own.name) : message.receiver_name,
+                  .receiver_name = message.sender_name,
+                  .sender_endpoint = own_endpoint,
+                  .receiver_endpoint = message.sender_endpoint},
+                 static_cast<std::uint32_t>(answers.size()));
+  try {
+    connection_->reply(writer);
+  } catch (const Error& error) {
+    directory_->core()->log(LogLevel::error, error.what());
+  }
+  if (is_leaving_) leave();
+}
+
+// One whole entry.
+void ServerEndpoint::write_special_answer(Writer& writer, const Message& message,
+                                          const Entry& entry, std::uint32_t& own_endpoint) {
+  Decoder decoder(message.version, &message.strings);
+  const auto attempt = [&](const Error& failure, auto&& write) {
+    const MessageVersion version = writer.version();
+    std::optional<Error> error;
+    try {
+      const std::uint32_t count = write();
+      if (!writer.failed()) {
+        writer.entry(endpoint::answer_header(entry), count, 0);
+        return;
+      }
+      error = failure;
+    } catch (const Error& thrown) {
+      const bool is_told = thrown.code() == ErrorCode::authentication_error;
+      error = is_told ? thrown : failure;
+    } catch (const std::exception&) {  // user code, on the way to an object
+      error = failure;
+    }
+    writer.reset(version);
+    endpoint::write_error_answer(writer, entry, *error);
+  };
+  switch (entry.type) {
+    case EntryType::get_node_info:
+      endpoint::write_empty_answer(writer, entry);
+      break;
+    case EntryType::node_check_capability:
+      endpoint::write_capability_answer(writer, entry);
+      break;
+    case EntryType::get_service_desc:
+      attempt(service_not_found(),
+              [&] { return write_service_definition(writer, decoder, entry); });
+      break;
+    case EntryType::object_type_name:
+      attempt(object_not_found(), [&] { return write_object_type(writer, decoder, entry); });
+      break;
+    case EntryType::get_service_attributes:
+      attempt(attributes_not_found(), [&] { return write_attributes(writer, entry); });
+      break;
+    case EntryType::connect_client:
+    case EntryType::connect_client_combined:
+      if (host_) {  // a second one ends the connection (04, section 8)
+        connection_->close(Error(ErrorCode::protocol_error, "a client connects a second time"));
+        return;
+      }
+      attempt(service_not_found(),
+              [&] { return connect(writer, decoder, message, entry, own_endpoint); });
+      break;
+    case EntryType::disconnect_client:
+      attempt(service_not_found(), [&] { return disconnect(decoder, message, entry); });
+      break;
+    default:
+      endpoint::write_error_answer(writer, entry,
+                                   Error(ErrorCode::protocol_error, "Invalid Special Operation"));
+      break;
+  }
+}
+
+// Elements are written last first, here and below.
+std::uint32_t ServerEndpoint::write_service_definition(Writer& writer, Decoder& decoder,
+                                                       const Entry& entry) {
+  std::string_view name;
+  if (endpoint::find_text(decoder, entry, "ServiceType", name) ||
+      endpoint::find_text(decoder, entry, "servicetype", name)) {
+    const Definition* const definition = directory_->core()->types()->find_definition(name);
+    if (definition == nullptr) throw service_not_found();
+    writer.string_element("servicedef", definition->text);
+    return 1;
+  }
+  const auto host = directory_->find(entry.service_path);
+  if (!host) throw service_not_found();
+  std::vector<std::string_view> extra;
+  for (const Definition* definition : host->extra_imports()) extra.push_back(definition->name);
+  writer.string_element("servicedef", host->root().rr_object_type().definition.text);
+  std::uint32_t count = 1;
+  count += write_texts(writer, "extraimports", extra);
+  count += write_map(writer, "attributes", host->attributes());
+  return count;
+}
+
+std::uint32_t ServerEndpoint::write_object_type(Writer& writer, Decoder& decoder,
+                                                const Entry& entry) {
+  const std::string_view path = entry.service_path;
+  const auto host = directory_->find(path.substr(0, path.find('.')));
+  if (!host) throw object_not_found();
+  const auto object = host->objects().find(path);
+  const auto type = type_for(*object->type, client_version(decoder, entry));
+  if (!type) throw object_not_found();
+  const std::uint32_t count = write_texts(writer, "objectimplements", object->type->implements);
+  writer.string_element("objecttype", *type);
+  return count + 1;
+}
+
+std::uint32_t ServerEndpoint::write_attributes(Writer& writer, const Entry& entry) {
+  const auto host = directory_->find(entry.service_path);
+  if (!host) throw attributes_not_found();
+  return write_map(writer, "return", host->attributes());
+}
+
+std::uint32_t ServerEndpoint::connect(Writer& writer, Decoder& decoder, const Message& message,
+                                      const Entry& entry, std::uint32_t& own_endpoint) {
+  const auto host = directory_->find(entry.service_path);
+  if (!host) throw service_not_found();
+  if (entry.type == EntryType::connect_client) {
+    own_endpoint = join(host, message);
+    return 0;
+  }
+  const auto type = host->root_type_for(client_version(decoder, entry));
+  if (!type) throw service_not_found();
+  const bool with_definitions = wants_definitions(decoder, entry);
+  std::string_view user;
+  Element credentials;
+  const bool has_user =
+      endpoint::find_text(decoder, entry, "username", user) &&
+      find_element(decoder, entry.elements, entry.element_count, "credentials", credentials);
+  own_endpoint = join(host, message);
+  if (has_user) {  // to a service without users it is an error to name one
+    quit();
+    throw Error(ErrorCode::authentication_error, "Authentication Failed");
+  }
+  std::uint32_t count = write_map(writer, "attributes", host->attributes());
+  if (with_definitions) {
+    std::vector<std::string_view> texts;
+    for (const Definition* definition : host->definitions()) texts.push_back(definition->text);
+    count += write_texts(writer, "servicedefs", texts);
+  }
+  count += write_texts(writer, "objectimplements", host->root().rr_object_type().implements);
+  writer.string_element("objecttype", *type);
+  return count + 1;
+}
+
+// Makes a session; returns its number.
+std::uint32_t ServerEndpoint::join(const std::shared_ptr<ServiceHost>& host,
+                                   const Message& message) {
+  const std::uint32_t number = directory_->core()->new_endpoint();
+  client_ = {number, message.sender_node, std::string(message.sender_name)};
+  remote_endpoint_ = message.sender_endpoint;
+  host_ = host;
+  is_member_ = true;
+  if (!host->add_client(shared_from_this())) {
+    is_member_ = false;
+    host_.reset();
+    throw service_not_found();
+  }
+  connection_->set_endpoints(number, remote_endpoint_);
+  connection_->set_authorised();
+  return number;
+}
+
+// Undoes join(): the connection stays, and another attempt may follow.
+void ServerEndpoint::quit() {
+  if (is_member_.exchange(false)) host_->remove_client(*this);
+  host_.reset();
+  directory_->core()->release_endpoint(client_.endpoint);
+  client_ = {};
+  connection_->set_endpoints(0, 0);
+}
+
+std::uint32_t ServerEndpoint::disconnect(Decoder& decoder, const Message& message,
+                                         const Entry& entry) {
+  std::string_view name;
+  if (!is_member_ || message.receiver_endpoint != client_.endpoint ||
+      !endpoint::find_text(decoder, entry, "servicename", name) || name != host_->name()) {
+    throw service_not_found();
+  }
+  is_leaving_ = true;
+  return 0;
+}
+
+}  // namespace rr::service

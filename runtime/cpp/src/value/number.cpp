@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstring>
+#include <string>
+
+#include "rr/type_of.hpp"
+#include "runtime/cpp/src/value/items.hpp"
+
+namespace rr {
+
+void NumberType::write(Writer& writer, const ElementName& name, const void* value) const {
+  const std::size_t end = writer.position();
+  writer.prepend_bytes(value, item_size(number_));
+  writer.element(name, number_, {}, 1, end);
+}
+
+bool NumberType::read(Decoder& decoder, const Element& element, void* value) const {
+  if (element.type != number_) return value::fail_type(decoder, element);
+  if (element.count == 0) {
+    return decoder.fail(ErrorCode::out_of_range, "no number", element.name);
+  }
+  // The first one counts, as in the reference (03, section 4).
+  if (number_ == ElementType::bool_) {
+    *static_cast<bool*>(value) = element.payload[0] != std::byte{0};
+  } else {
+    std::memcpy(value, element.payload.data(), item_size(number_));
+  }
+  return true;
+}
+
+void StringType::write(Writer& writer, const ElementName& name, const void* value) const {
+  writer.string_element(name, *static_cast<const std::string*>(value));
+}
+
+bool StringType::read(Decoder& decoder, const Element& element, void* value) const {
+  if (element.type != ElementType::string) {
+    // A null has its own code for every type but this one (03, section 3).
+    if (element.type == ElementType::void_) {
+      return decoder.fail(ErrorCode::data_type_error, "null where a string must be", element.name);
+    }
+    return value::fail_type(decoder, element);
+  }
+  static_cast<std::string*>(value)->assign(element.text());
+  return true;
+}
+
+}  // namespace rr

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rr/registry.hpp"
+
+#include "rr/time_spec.hpp"
+
+namespace rr {
+namespace {
+
+constexpr std::string_view own_service = "RobotRaconteur";
+
+template <class Map>
+typename Map::mapped_type find_in(const Map& map, std::string_view name) {
+  const auto found = map.find(name);
+  return found != map.end() ? found->second : nullptr;
+}
+
+}  // namespace
+
+TypeRegistry::TypeRegistry() { records_.emplace(time_spec_type.name(), &time_spec_type); }
+
+void TypeRegistry::add(const Definition& definition) {
+  if (!definitions_.emplace(definition.name, &definition).second) return;
+  for (const RecordType* record : definition.records) records_.emplace(record->name(), record);
+  for (const ObjectType* object : definition.objects) objects_.emplace(object->name, object);
+  for (const ExceptionType& exception : definition.exceptions) {
+    exceptions_.emplace(exception.name, &exception);
+  }
+  for (const Definition* imported : definition.imports) add(*imported);
+}
+
+const Definition* TypeRegistry::find_definition(std::string_view service) const {
+  return find_in(definitions_, service);
+}
+const RecordType* TypeRegistry::find_record(std::string_view name) const {
+  return find_in(records_, name);
+}
+const ObjectType* TypeRegistry::find_object(std::string_view name) const {
+  return find_in(objects_, name);
+}
+const ExceptionType* TypeRegistry::find_exception(std::string_view name) const {
+  return find_in(exceptions_, name);
+}
+bool TypeRegistry::knows_service(std::string_view service) const {
+  return service == own_service || find_definition(service) != nullptr;
+}
+
+}  // namespace rr

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rr/registry.hpp"
+
+#include <gtest/gtest.h>
+
+#include "rr/time_spec.hpp"
+#include "runtime/cpp/src/value/conformance_types.hpp"
+
+namespace rr {
+namespace {
+
+using conformance::types::rr_definition;
+using conformance::types::rr_Stats;
+
+extern const Definition arm;
+constexpr Definition hand{.name = "example.hand",
+                          .text = {},
+                          .version = {},
+                          .imports = {},
+                          .records = {},
+                          .exceptions = {},
+                          .objects = {}};
+// Two definitions that import each other end the walk all the same.
+constexpr const Definition* arm_imports[] = {&rr_definition, &hand, &arm};
+constexpr ExceptionType arm_exceptions[] = {{"example.arm.Stuck", nullptr}};
+constexpr ObjectType arm_object{.name = "example.arm.Arm",
+                                .definition = arm,
+                                .implements = {},
+                                .members = {},
+                                .make_stub = nullptr};
+constexpr const ObjectType* arm_objects[] = {&arm_object};
+constinit const Definition arm{.name = "example.arm",
+                               .text = {},
+                               .version = {},
+                               .imports = arm_imports,
+                               .records = {},
+                               .exceptions = arm_exceptions,
+                               .objects = arm_objects};
+
+TEST(TypeRegistry, KnowsADefinitionAndItsImports) {
+  const TypeRegistry types(arm);
+  EXPECT_EQ(types.find_definition("example.arm"), &arm);
+  EXPECT_EQ(types.find_definition("example.hand"), &hand);
+  EXPECT_TRUE(types.knows_service("conformance.types"));
+  EXPECT_EQ(types.find_record("conformance.types.Stats"), &rr_Stats);
+  EXPECT_EQ(types.find_object("example.arm.Arm"), &arm_object);
+  EXPECT_EQ(types.find_exception("example.arm.Stuck"), &arm_exceptions[0]);
+}
+
+TEST(TypeRegistry, FindsNothingElse) {
+  const TypeRegistry types(arm);
+  EXPECT_EQ(types.find_definition("example.leg"), nullptr);
+  EXPECT_FALSE(types.knows_service("example"));
+  EXPECT_EQ(types.find_record("example.arm.Stats"), nullptr);
+  EXPECT_EQ(types.find_record("Stats"), nullptr);
+  EXPECT_EQ(types.find_object("example.arm.Stuck"), nullptr);
+  EXPECT_EQ(types.find_exception("example.arm.Arm"), nullptr);
+}
+
+TEST(TypeRegistry, KnowsTheTypeOfTheProtocolItself) {
+  const TypeRegistry types;
+  EXPECT_EQ(types.find_record("RobotRaconteur.TimeSpec"), &time_spec_type);
+  EXPECT_TRUE(types.knows_service("RobotRaconteur"));
+}
+
+}  // namespace
+}  // namespace rr

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rr/varvalue.hpp"
+
+#include <memory>
+#include <new>
+
+#include "rr/complex.hpp"
+#include "rr/registry.hpp"
+#include "runtime/cpp/src/value/items.hpp"
+
+namespace rr {
+namespace {
+
+// Sits in front of the value that it owns, in one allocation.
+class alignas(16) HeldValue final : public Memory {
+ public:
+  explicit HeldValue(const ValueOperations& operations) : operations_(&operations) {}
+  [[nodiscard]] void* place() { return this + 1; }
+
+ private:
+  ~HeldValue() = default;
+  void destroy() noexcept override {
+    operations_->destroy(place());
+    this->~HeldValue();
+    ::operator delete(this);
+  }
+
+  const ValueOperations* operations_;
+};
+static_assert(__STDCPP_DEFAULT_NEW_ALIGNMENT__ >= alignof(HeldValue));
+
+struct BlockDeleter {
+  void operator()(void* block) const { ::operator delete(block); }
+};
+
+template <class T>
+bool read_as(Decoder& decoder, const Element& element, VarValue& value) {
+  value = VarValue(type_of<T>, value_operations<T>);
+  return type_of<T>.read(decoder, element, value.place());
+}
+
+bool read_multi_array(Decoder& decoder, const Element& element, VarValue& value) {
+  Element array;
+  if (!find_element(decoder, element.payload, element.count, "array", array)) {
+    return decoder.fail(ErrorCode::message_element_not_found, "no such element", "array");
+  }
+  switch (array.type) {
+    case ElementType::double_:
+      return read_as<MultiArray<double>>(decoder, element, value);
+    case ElementType::single:
+      return read_as<MultiArray<float>>(decoder, element, value);
+    case ElementType::int8:
+      return read_as<MultiArray<std::int8_t>>(decoder, element, value);
+    case ElementType::uint8:
+      return read_as<MultiArray<std::uint8_t>>(decoder, element, value);
+    case ElementType::int16:
+      return read_as<MultiArray<std::int16_t>>(decoder, element, value);
+    case ElementType::uint16:
+      return read_as<MultiArray<std::uint16_t>>(decoder, element, value);
+    case ElementType::int32:
+      return read_as<MultiArray<std::int32_t>>(decoder, element, value);
+    case ElementType::uint32:
+      return read_as<MultiArray<std::uint32_t>>(decoder, element, value);
+    case ElementType::int64:
+      return read_as<MultiArray<std::int64_t>>(decoder, element, value);
+    case ElementType::uint64:
+      return read_as<MultiArray<std::uint64_t>>(decoder, element, value);
+    case ElementType::cdouble:
+      return read_as<MultiArray<std::complex<double>>>(decoder, element, value);
+    case ElementType::csingle:
+      return read_as<MultiArray<std::complex<float>>>(decoder, element, value);
+    case ElementType::bool_:
+      return read_as<MultiArray<bool>>(decoder, element, value);
+    default:
+      return value::fail_type(decoder, array);
+  }
+}
+
+const RecordType* find_record(Decoder& decoder, const Element& element) {
+  const std::size_t dot = element.type_name.rfind('.');
+  if (dot == std::string_view::npos) {
+    decoder.fail(ErrorCode::invalid_argument, "type name is not qualified", element.name);
+    return nullptr;
+  }
+  const RecordType* record =
+      decoder.types() != nullptr ? decoder.types()->find_record(element.type_name) : nullptr;
+  if (record == nullptr) {
+    decoder.fail(ErrorCode::service_error, "unknown type", element.name);
+  }
+  return record;
+}
+
+// A struct, or an array of pods or namedarrays.
+bool read_named(Decoder& decoder, const Element& element, VarValue& value) {
+  const RecordType* record = find_record(decoder, element);
+  if (record == nullptr) return false;
+  const RecordOperations& operations = record->operations();
+  const Type* type = record;
+  const ValueOperations* of_value = operations.value;
+  if (element.type == ElementType::pod_array || element.type == ElementType::namedarray_array) {
+    type = operations.array;
+    of_value = operations.array_value;
+  } else if (element.type != ElementType::structure) {
+    type = operations.multi_array;
+    of_value = operations.multi_array_value;
+  }
+  // A pod's name on a struct, and the like.
+  if (type == nullptr || type->element_type() != element.type) {
+    return decoder.fail(ErrorCode::data_type_error, "type name of another kind", element.name);
+  }
+  value = VarValue(*type, *of_value);
+  return type->read(decoder, element, value.place());
+}
+
+}  // namespace
+
+VarValue::VarValue(const Type& type, const ValueOperations& operations) : type_(&type) {
+  std::unique_ptr<void, BlockDeleter> block(::operator new(sizeof(HeldValue) + operations.size));
+  auto* held = ::new (block.get()) HeldValue(operations);
+  operations.construct(held->place());
+  static_cast<void>(block.release());
+  place_ = held->place();
+  memory_ = MemoryRef(held);
+}
+
+bool operator==(const VarValue& a, const VarValue& b) {
+  if (a.type_ != b.type_) return false;
+  if (a.place_ == b.place_) return true;
+  // So that no type of a definition needs a comparison compiled for it.
+  Writer first;
+  Writer second;
+  first.reset(MessageVersion::v4);
+  second.reset(MessageVersion::v4);
+  a.type_->write(first, "", a.place_);
+  b.type_->write(second, "", b.place_);
+  return first.copy() == second.copy();
+}
+
+void VarValue::throw_mismatch() {
+  throw Error(ErrorCode::data_type_mismatch, "the varvalue holds another type");
+}
+
+void VarValueType::write(Writer& writer, const ElementName& name, const void* value) const {
+  const auto& self = *static_cast<const VarValue*>(value);
+  if (self.is_null()) {
+    writer.null_element(name);
+  } else {
+    self.type()->write(writer, name, self.value());
+  }
+}
+
+bool VarValueType::read(Decoder& decoder, const Element& element, void* value) const {
+  auto& self = *static_cast<VarValue*>(value);
+  switch (element.type) {
+    case ElementType::void_:
+      self = VarValue();
+      return true;
+    case ElementType::double_:
+      return read_as<Array<double>>(decoder, element, self);
+    case ElementType::single:
+      return read_as<Array<float>>(decoder, element, self);
+    case ElementType::int8:
+      return read_as<Array<std::int8_t>>(decoder, element, self);
+    case ElementType::uint8:
+      return read_as<Array<std::uint8_t>>(decoder, element, self);
+    case ElementType::int16:
+      return read_as<Array<std::int16_t>>(decoder, element, self);
+    case ElementType::uint16:
+      return read_as<Array<std::uint16_t>>(decoder, element, self);
+    case ElementType::int32:
+      return read_as<Array<std::int32_t>>(decoder, element, self);
+    case ElementType::uint32:
+      return read_as<Array<std::uint32_t>>(decoder, element, self);
+    case ElementType::int64:
+      return read_as<Array<std::int64_t>>(decoder, element, self);
+    case ElementType::uint64:
+      return read_as<Array<std::uint64_t>>(decoder, element, self);
+    case ElementType::cdouble:
+      return read_as<Array<std::complex<double>>>(decoder, element, self);
+    case ElementType::csingle:
+      return read_as<Array<std::complex<float>>>(decoder, element, self);
+    case ElementType::bool_:
+      return read_as<Array<bool>>(decoder, element, self);
+    case ElementType::string:
+      return read_as<std::string>(decoder, element, self);
+    case ElementType::vector:
+      return read_as<VarIntMap>(decoder, element, self);
+    case ElementType::dictionary:
+      return read_as<VarStringMap>(decoder, element, self);
+    case ElementType::list:
+      return read_as<VarList>(decoder, element, self);
+    case ElementType::structure:
+    case ElementType::pod_array:
+    case ElementType::pod_multidimarray:
+    case ElementType::namedarray_array:
+    case ElementType::namedarray_multidimarray:
+      return read_named(decoder, element, self);
+    case ElementType::multidimarray:
+      return read_multi_array(decoder, element, self);
+    case ElementType::pod:
+      break;
+  }
+  return decoder.fail(ErrorCode::data_type_error, "no type of a varvalue", element.name);
+}
+
+}  // namespace rr

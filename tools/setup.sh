@@ -1,0 +1,158 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# What ./try and ./check share: packages, progress of long steps, the table of parts.
+# Sourced by both. Run by itself: `tools/setup.sh --list [try|check|long]` prints the packages,
+# `tools/setup.sh --missing [try|check|long]` those that are not installed.
+
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+jobs_count=$(nproc)
+
+say() { printf '%s\n' "$*"; }
+fail() {
+  printf 'error: %s\n' "$*" >&2
+  exit 1
+}
+is_ci() { [ "${CI:-}" = true ]; }
+
+# packages LEVEL: what LEVEL (try, check or long) needs, one name a line.
+packages() {
+  local wanted='try' name level why
+  case $1 in
+    try) ;;
+    check) wanted='try check' ;;
+    long) wanted='try check long' ;;
+    *) fail "tools/setup.sh: no such level: $1 (try, check or long)" ;;
+  esac
+  while read -r name level why; do
+    case $name in '' | '#'*) continue ;; esac
+    case " $wanted " in *" $level "*) say "$name" ;; esac
+  done <"$top/tools/packages"
+}
+
+# missing_packages LEVEL: those that are not installed.
+missing_packages() {
+  local name
+  for name in $(packages "$1"); do
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || say "$name"
+  done
+}
+
+install_packages() {
+  local missing
+  missing=$(missing_packages "$1" | tr '\n' ' ')
+  [ -n "$missing" ] || return 0
+  if [ "$(id -u)" != 0 ]; then
+    fail "packages are missing; as root: apt-get install --no-install-recommends $missing"
+  fi
+  say "installing $missing"
+  export DEBIAN_FRONTEND=noninteractive
+  with_progress apt-update apt-get update -q
+  # shellcheck disable=SC2086  # a list of names
+  with_progress apt-install apt-get install -q -y --no-install-recommends $missing
+}
+
+# with_progress NAME COMMAND...: runs COMMAND with its output in build/log/NAME.log. Shows the last
+# line while it runs: in place on a terminal, else one line every ten seconds. Shows the end of the
+# log when COMMAND fails, and returns its status.
+with_progress() {
+  local name=$1 log status=0 line ticks=0
+  shift
+  log=$top/build/log/$name.log
+  mkdir -p "$top/build/log"
+  set -m # a process group of its own, so that stop_jobs ends all of it
+  "$@" >"$log" 2>&1 </dev/null &
+  running_job=$!
+  set +m
+  while kill -0 "$running_job" 2>/dev/null; do
+    sleep 0.5
+    ticks=$((ticks + 1))
+    line=$(tail -n 1 "$log" | tr -d '\r' |
+      sed 's|Building [A-Z]* object ||; s|CMakeFiles/[^/]*/||; s|^\(.\{100\}\).*|\1|')
+    if [ -t 1 ]; then
+      printf '\r\033[K  %s' "$line"
+    elif [ $((ticks % 20)) = 0 ]; then
+      say "  $name, $((ticks / 2)) s: $line"
+    fi
+  done
+  wait "$running_job" || status=$?
+  running_job=
+  [ ! -t 1 ] || printf '\r\033[K'
+  if [ $status != 0 ]; then
+    tail -n 60 "$log"
+    say "$name failed (status $status); all of its output: build/log/$name.log"
+  fi
+  return $status
+}
+
+running_job=
+stop_jobs() {
+  [ -z "$running_job" ] || kill -TERM -- "-$running_job" 2>/dev/null || true
+}
+
+# part NAME COMMAND...: one line of the table that print_parts shows; ends the script when COMMAND
+# fails.
+part_rows=()
+script_start=$SECONDS
+part() {
+  local name=$1 start=$SECONDS status=0
+  shift
+  say "[$(date +%H:%M:%S)] $name"
+  "$@" || status=$?
+  local row
+  printf -v row '%-34s %5d s  %s' "$name" $((SECONDS - start)) \
+    "$([ $status = 0 ] && echo ok || echo FAILED)"
+  part_rows+=("$row")
+  [ $status = 0 ] || exit $status
+}
+
+print_parts() {
+  [ ${#part_rows[@]} != 0 ] || return 0
+  say ""
+  printf '%s\n' "${part_rows[@]}"
+  printf '%-34s %5d s\n' total $((SECONDS - script_start))
+}
+
+# configure PRESET [OPTION...], build PRESET [TARGET...]
+configure() {
+  local preset=$1
+  shift
+  with_progress "configure-$preset" cmake --preset "$preset" -S "$top" "$@"
+}
+build() {
+  local preset=$1
+  shift
+  NINJA_STATUS='[%f/%t] ' with_progress "build-$preset" \
+    ninja -C "$top/build/$preset" -j "$jobs_count" "$@"
+}
+
+# The .NET SDK is the one thing that Debian does not have; C# needs it.
+look_for_dotnet() {
+  if command -v dotnet >/dev/null 2>&1; then
+    return 0
+  fi
+  ! is_ci || fail "the .NET SDK is not installed, and CI=true leaves nothing out"
+  say "The .NET SDK is not installed: C# is left out."
+}
+
+# The standard definitions are not part of this tree.
+look_for_standard_definitions() {
+  local folder=${ROBDEF_STANDARD_DIR:-$top/../shared/robdef/standard}
+  if [ -d "$folder" ]; then
+    ROBDEF_STANDARD_DIR=$(cd "$folder" && pwd)
+    export ROBDEF_STANDARD_DIR
+    return 0
+  fi
+  ! is_ci || fail "no standard definitions at ROBDEF_STANDARD_DIR or ../shared/robdef/standard, and CI=true leaves nothing out"
+  say "No standard definitions at ROBDEF_STANDARD_DIR or ../shared/robdef/standard: their tests are left out."
+}
+
+if [ "${BASH_SOURCE[0]}" = "$0" ]; then
+  case ${1:-} in
+    --list) packages "${2:-long}" ;;
+    --missing) missing_packages "${2:-long}" ;;
+    *)
+      say "usage: tools/setup.sh --list|--missing [try|check|long]"
+      exit 2
+      ;;
+  esac
+fi
