@@ -16,26 +16,22 @@
 #
 # Works with the target robdef of this tree and with robdef::robdef of an installed package.
 
-# Depth of a path in OUTPUT_DIR and its endings, by language. The names follow from the service
-# line, so they are known before the compiler is built; `robdef generate --list-outputs` prints
-# the same ones, and a test compares them.
-set(ROBDEF_CPP_ENDINGS .hpp .cpp)
-
-# The paths below OUTPUT_DIR that are generated for `file`.
+# The paths below OUTPUT_DIR that are generated for `file`. They follow from the service line, so they
+# are known before the compiler is built; a test compares them with what is generated.
 function(robdef_output_names file language result)
+  if(language STREQUAL "cpp")
+    set(endings .hpp .cpp)
+  else()
+    message(FATAL_ERROR "robdef_generate: unknown LANGUAGE `${language}`; known: cpp")
+  endif()
   file(READ "${file}" text)
   # The first statement; in front of it may stand blanks and a byte order mark.
   if(NOT text MATCHES "(^|\n)[^A-Za-z0-9_#\n]*service[ \t\r\n\\\\]+([A-Za-z0-9_.]+)")
     message(FATAL_ERROR "${file}: there is no service line")
   endif()
-  set(service "${CMAKE_MATCH_2}")
-  string(TOUPPER "${language}" language)
-  set(names "")
-  string(REPLACE "." "/" path "${service}")
-  foreach(ending IN LISTS ROBDEF_${language}_ENDINGS)
-    list(APPEND names "${path}${ending}")
-  endforeach()
-  set(${result} "${names}" PARENT_SCOPE)
+  string(REPLACE "." "/" path "${CMAKE_MATCH_2}")
+  list(TRANSFORM endings PREPEND "${path}")
+  set(${result} "${endings}" PARENT_SCOPE)
 endfunction()
 
 function(robdef_generate target)
@@ -45,9 +41,6 @@ function(robdef_generate target)
   endif()
   if(NOT TARGET ${target})
     message(FATAL_ERROR "robdef_generate: there is no target ${target}")
-  endif()
-  if(NOT arg_LANGUAGE STREQUAL "cpp")
-    message(FATAL_ERROR "robdef_generate: unknown LANGUAGE `${arg_LANGUAGE}`; known: cpp")
   endif()
   if(NOT arg_OUTPUT_DIR)
     set(arg_OUTPUT_DIR "${target}_robdef")
@@ -75,7 +68,7 @@ function(robdef_generate target)
   foreach(file IN LISTS files)
     # A new service name means new file names.
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
-    robdef_output_names("${file}" ${arg_LANGUAGE} names)
+    robdef_output_names("${file}" "${arg_LANGUAGE}" names)
     list(TRANSFORM names PREPEND "${arg_OUTPUT_DIR}/" OUTPUT_VARIABLE outputs)
     cmake_path(GET file FILENAME name)
     set(stamp "${CMAKE_CURRENT_BINARY_DIR}/${target}_robdef.stamps/${name}")

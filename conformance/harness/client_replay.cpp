@@ -47,11 +47,12 @@ class ClientReplay::Play {
     result_.run = {scenario.name, scenario.version, Role::client};
   }
 
-  Result whole() {
+  Result whole(bool until_fault) {
     replay_.client_.begin(scenario_, replay_.listener_.port());
     for (const Step& step : scenario_.steps) {
       play(step);
       ++result_.checked;
+      if (until_fault && !result_.faults.empty()) break;
     }
     return std::move(result_);
   }
@@ -251,6 +252,8 @@ ClientReplay::ClientReplay(const Comparison& comparison, const Deviations& devia
                            Listener& listener, TestedClient& client)
     : comparison_(comparison), deviations_(deviations), listener_(listener), client_(client) {}
 
-Result ClientReplay::play(const Scenario& scenario) { return Play(*this, scenario).whole(); }
+Result ClientReplay::play(const Scenario& scenario, bool until_fault) {
+  return Play(*this, scenario).whole(until_fault);
+}
 
 }  // namespace rr::conformance

@@ -33,7 +33,8 @@ class ClientReplay {
   ClientReplay(const Comparison& comparison, const Deviations& deviations, Listener& listener,
                TestedClient& client);
 
-  Result play(const Scenario& scenario);
+  /// With `until_fault`, nothing more is played once something went otherwise than recorded.
+  Result play(const Scenario& scenario, bool until_fault = false);
 
  private:
   struct Line;

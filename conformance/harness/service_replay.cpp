@@ -99,10 +99,11 @@ class ServiceReplay::Play {
     result_.run = {scenario.name, scenario.version, Role::service};
   }
 
-  Result whole() {
+  Result whole(bool until_fault) {
     for (const Step& step : scenario_.steps) {
       play(step);
       ++result_.checked;
+      if (until_fault && !result_.faults.empty()) break;
     }
     return std::move(result_);
   }
@@ -342,6 +343,8 @@ ServiceReplay::ServiceReplay(const Comparison& comparison, const Deviations& dev
       address_(std::move(address)),
       close_service_(std::move(close_service)) {}
 
-Result ServiceReplay::play(const Scenario& scenario) { return Play(*this, scenario).whole(); }
+Result ServiceReplay::play(const Scenario& scenario, bool until_fault) {
+  return Play(*this, scenario).whole(until_fault);
+}
 
 }  // namespace rr::conformance

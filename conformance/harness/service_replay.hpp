@@ -26,7 +26,8 @@ class ServiceReplay {
   ServiceReplay(const Comparison& comparison, const Deviations& deviations, Address address,
                 std::function<void(const std::string&)> close_service);
 
-  Result play(const Scenario& scenario);
+  /// With `until_fault`, nothing more is played once something went otherwise than recorded.
+  Result play(const Scenario& scenario, bool until_fault = false);
 
  private:
   struct Line;  // one connection while it is played

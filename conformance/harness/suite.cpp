@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/harness/suite.hpp"
 
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
@@ -80,6 +81,7 @@ class Suite {
 
   // A run that cannot even be carried out is a fault of the whole.
   void add(const Run& run, const std::function<Result()>& play) {
+    const auto begun = std::chrono::steady_clock::now();
     Result result;
     try {
       result = play();
@@ -87,6 +89,11 @@ class Suite {
       result.run = run;
       result.fail(std::string(whole_run), "", error.what());
     }
+    const auto spent = std::chrono::steady_clock::now() - begun;
+    std::clog << name_of(run.role) << " " << run.scenario << " " << run.version << ": "
+              << (result.faults.empty() ? "as recorded"
+                                        : std::to_string(result.faults.size()) + " faults")
+              << ", " << std::chrono::duration_cast<Milliseconds>(spent).count() << " ms\n";
     report_.add(std::move(result));
   }
 
@@ -144,14 +151,20 @@ class Suite {
                          [&](const std::string& service) {
                            runner.ask({{"do", "close_service"}, {"service", service}});
                          });
-    return replay.play(scenario);
+    return replay.play(scenario, is_expected_to_fail(scenario, Role::service));
   }
 
   Result call(const Scenario& scenario) {
     if (scenario.web_socket) return not_playable(scenario, Role::client);
     RunnerClient client(options_.runner);
     Listener listener(0);
-    return ClientReplay(comparison_, deviations_, listener, client).play(scenario);
+    return ClientReplay(comparison_, deviations_, listener, client)
+        .play(scenario, is_expected_to_fail(scenario, Role::client));
+  }
+
+  // One fault is enough to know that it still does.
+  [[nodiscard]] bool is_expected_to_fail(const Scenario& scenario, Role role) const {
+    return expected_.find({scenario.name, scenario.version, role}, whole_run) != nullptr;
   }
 
   Result serve_malformed(int version) {

@@ -48,6 +48,15 @@ std::string on_one_line(const List& list) {
 
 bool fits(std::string_view text, std::size_t indent) { return indent + text.size() <= line_width; }
 
+/// A declaration whose only parameter fills a line: broken between its type and its name.
+std::string break_parameter(const List& list, std::size_t indent) {
+  const std::string& parameter = list.items.front();
+  const std::size_t blank = parameter.rfind(' ');
+  return list.before + parameter.substr(0, blank) + "\n" +
+         blanks(indent + list.before.size() + continuation) + parameter.substr(blank + 1) +
+         list.after;
+}
+
 /// Items behind the bracket, lines aligned with it; or all below it. A declaration is broken behind
 /// its bracket only when nothing else helps, a call when that saves a line.
 std::string break_list(const List& list, std::size_t indent, bool is_declaration) {
@@ -60,6 +69,7 @@ std::string break_list(const List& list, std::size_t indent, bool is_declaration
   }
   const std::string items =
       below ? *below : join(list.items, ",\n" + blanks(indent + continuation)) + list.after;
+  if (is_declaration && !below && list.items.size() == 1) return break_parameter(list, indent);
   const std::string break_here = "\n" + blanks(indent + continuation);
   const std::size_t angle = list.before.find('<');
   if (fits(list.before, indent) || angle == std::string::npos) {
@@ -151,13 +161,11 @@ std::string definition(const Signature& signature, const std::string& statement,
   return definition(signature, List{.before = statement}, indent);
 }
 
-std::string long_definition(const Signature& signature, const std::vector<std::string>& statements,
-                            std::size_t indent) {
-  std::string result = opening(signature, indent);
-  for (const std::string& statement : statements) {
-    result += "\n" + blanks(indent + 2) + statement;
-  }
-  return result + "\n" + blanks(indent) + "}";
+std::string long_definition(const Signature& signature, const List& first,
+                            const std::string& second, std::size_t indent) {
+  const std::string begin = "\n" + blanks(indent + 2);
+  return opening(signature, indent) + begin + list(first, indent + 2) + begin + second + "\n" +
+         blanks(indent) + "}";
 }
 
 std::string list(const List& list, std::size_t indent) { return break_list(list, indent, false); }

@@ -37,9 +37,9 @@ std::string definition(const Signature& signature, const List& statement, std::s
 /// The same with a statement that is short.
 std::string definition(const Signature& signature, const std::string& statement,
                        std::size_t indent);
-/// With two or more statements that are short.
-std::string long_definition(const Signature& signature, const std::vector<std::string>& statements,
-                            std::size_t indent);
+/// A function with a statement and a second one that is short.
+std::string long_definition(const Signature& signature, const List& first,
+                            const std::string& second, std::size_t indent);
 /// The first line or lines of a function, to its `{`.
 std::string opening(const Signature& signature, std::size_t indent);
 

@@ -268,8 +268,10 @@ class MemberMaker {
                .items = {},
                .after = "};"};
     for (const ParameterView& parameter : view.parameters) {
-      table.items.push_back("::rr::parameter<" + parameter.descriptor + ">(" +
-                            quoted(parameter.wire_name) + ")");
+      table.items.push_back(list({.before = "::rr::parameter<" + parameter.descriptor + ">(",
+                                  .items = {quoted(parameter.wire_name)},
+                                  .after = ")"},
+                                 in_class + 4));
     }
     view.parameter_table = braced_list(table, in_class);
   }
@@ -410,15 +412,17 @@ class MemberMaker {
         .result = "void",
         .name = "async_" + view.name,
         .parameters = with(parameters, "::rr::Answer<" + view.type + "> " + answer)};
-    const std::string call = view.name + "(" + view.arguments + ")";
-    if (view.has_result) return definition(signature, answer + "(" + call + ");", in_class);
-    return long_definition(signature, {call + ";", answer + "();"}, in_class);
+    List call{.before = view.name + "(", .items = names_of(view.parameters), .after = ");"};
+    if (!view.has_result) return long_definition(signature, call, answer + "();", in_class);
+    call.before.insert(0, answer + "(");
+    call.after = "));";
+    return definition(signature, call, in_class);
   }
 
   static void make_event(MemberView& view) {
     std::vector<std::string> types;
     for (const ParameterView& parameter : view.parameters) types.push_back(parameter.type);
-    view.type = "::rr::Event<" + join(types, ", ") + ">";
+    view.type = list({.before = "::rr::Event<", .items = types, .after = ">"}, in_class);
     view.stub_event = definition({.result = view.type, .name = view.name},
                                  "return {*this, " + view.entry + "};", in_class);
     view.skeleton_fire = definition(

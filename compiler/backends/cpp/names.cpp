@@ -154,6 +154,12 @@ std::string Names::object_class(const model::Object& object, std::string_view cl
   return is_plain ? name : qualified(*object.definition, name);
 }
 
+bool Names::is_variable(std::string_view name) const {
+  const auto is_called = [&](const auto& declared) { return identifier(declared.name) == name; };
+  return std::ranges::any_of(definition_->constants, is_called) ||
+         std::ranges::any_of(definition_->aliases, is_called);
+}
+
 std::string Names::local(std::string_view name, std::set<std::string>& taken) const {
   std::string result = identifier(name);
   const bool begins_badly = !result.empty() && result.front() >= '0' && result.front() <= '9';

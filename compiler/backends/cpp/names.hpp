@@ -55,6 +55,9 @@ class Names {
   [[nodiscard]] std::string object_class(const model::Object& object, std::string_view class_name,
                                          const std::set<std::string>& hidden) const;
 
+  /// Whether a constant or alias of the namespace has this C++ name.
+  [[nodiscard]] bool is_variable(std::string_view name) const;
+
   /// A parameter or local variable: changed where it would hide a name of the namespace, is
   /// reserved, begins like ours, or is taken; then it is taken.
   [[nodiscard]] std::string local(std::string_view name, std::set<std::string>& taken) const;

@@ -19,7 +19,12 @@
 namespace robdef::cpp {
 
 std::vector<std::string> doc_lines(const std::string& documentation, std::size_t indent) {
-  return prose(documentation, "/// ", line_width - indent);
+  std::vector<std::string> lines = prose(documentation, "/// ", line_width - indent - 1);
+  // A backslash at its end would draw the next line into the comment.
+  for (std::string& line : lines) {
+    if (line.ends_with('\\')) line += '.';
+  }
+  return lines;
 }
 
 std::string variable(const CppType& type, const std::string& name, std::size_t indent) {
@@ -72,10 +77,14 @@ ExceptionView make_exception(const model::Exception& exception, const Context& c
   for (const char* header : {"<rr/error.hpp>", "<rr/varvalue.hpp>", "<string>", "<utility>"}) {
     context.types.include(header);
   }
-  std::set<std::string> taken;
+  // A parameter called like its class would hide it.
+  std::set<std::string> taken{view.name};
+  view.error = context.names.local("error", taken);
   const std::string message = context.names.local("message", taken);
   const std::string subname = context.names.local("subname", taken);
   const std::string parameter = context.names.local("parameter", taken);
+  std::set<std::string> other;
+  view.parameter = context.names.local("error", other);
   const std::string head =
       list({.before = "explicit " + view.name + "(",
             .items = {"::std::string " + message, "::std::string " + subname + " = {}",
@@ -290,6 +299,10 @@ class DefinitionMaker {
     types_.include("<cstdint>");
     DeclarationView view;
     view.enumeration = make_enum(enumeration);
+    view.is_early = std::ranges::any_of(view.enumeration->values, [&](const EnumValueView& value) {
+      return names_.is_variable(value.name);
+    });
+    view_.has_early |= view.is_early;
     return view;
   }
   DeclarationView make(const model::Record& record) {
@@ -336,7 +349,7 @@ class DefinitionMaker {
     for (std::size_t i = 0; i < view_.declarations.size(); ++i) {
       const bool joins = i + 1 < view_.declarations.size() && is_short(view_.declarations[i]) &&
                          is_short(view_.declarations[i + 1]);
-      view_.declarations[i].ends_group = !joins;
+      view_.declarations[i].ends_group = !joins && !view_.declarations[i].is_early;
     }
   }
 

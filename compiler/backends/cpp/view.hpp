@@ -52,6 +52,8 @@ struct ExceptionView {
   std::string qualified;
   std::vector<std::string> doc;
   std::string constructor;  ///< from message, sub-name and parameter
+  std::string parameter;    ///< a name for the parameter of the other constructor
+  std::string error;        ///< what the constructor from an error calls its parameter
 };
 
 struct FieldView {
@@ -233,6 +235,9 @@ struct DeclarationView {
   std::optional<RecordView> record;
   std::optional<ObjectView> object;
   bool ends_group = false;  ///< an empty line follows
+  /// An enum with a value that is called like a constant or alias: it comes before these, since g++
+  /// sees the value hide them otherwise.
+  bool is_early = false;
 };
 
 /// Something of the definition that is declared before it is defined.
@@ -258,6 +263,7 @@ struct DefinitionView {
   std::vector<std::string> import_includes;  ///< `"example/geometry.hpp"`
   std::vector<ImportView> imports;
   bool has_imports = false;
+  bool has_early = false;  ///< one of the declarations is early
   std::vector<AliasView> aliases;
   bool has_aliases = false;
   std::vector<ForwardView> forwards;

@@ -44,10 +44,13 @@ const ViewType& view_type<EnumView>() {
 
 template <>
 const ViewType& view_type<ExceptionView>() {
-  static const ViewType type{
-      view_field<&ExceptionView::wire_name>("wire_name"), view_field<&ExceptionView::name>("name"),
-      view_field<&ExceptionView::qualified>("qualified"), view_field<&ExceptionView::doc>("doc"),
-      view_field<&ExceptionView::constructor>("constructor")};
+  static const ViewType type{view_field<&ExceptionView::wire_name>("wire_name"),
+                             view_field<&ExceptionView::name>("name"),
+                             view_field<&ExceptionView::qualified>("qualified"),
+                             view_field<&ExceptionView::doc>("doc"),
+                             view_field<&ExceptionView::constructor>("constructor"),
+                             view_field<&ExceptionView::parameter>("parameter"),
+                             view_field<&ExceptionView::error>("error")};
   return type;
 }
 
@@ -233,7 +236,8 @@ const ViewType& view_type<DeclarationView>() {
                              view_field<&DeclarationView::enumeration>("enumeration"),
                              view_field<&DeclarationView::record>("record"),
                              view_field<&DeclarationView::object>("object"),
-                             view_field<&DeclarationView::ends_group>("ends_group")};
+                             view_field<&DeclarationView::ends_group>("ends_group"),
+                             view_field<&DeclarationView::is_early>("is_early")};
   return type;
 }
 
@@ -263,6 +267,7 @@ const ViewType& view_type<DefinitionView>() {
                              view_field<&DefinitionView::import_includes>("import_includes"),
                              view_field<&DefinitionView::imports>("imports"),
                              view_field<&DefinitionView::has_imports>("has_imports"),
+                             view_field<&DefinitionView::has_early>("has_early"),
                              view_field<&DefinitionView::aliases>("aliases"),
                              view_field<&DefinitionView::has_aliases>("has_aliases"),
                              view_field<&DefinitionView::forwards>("forwards"),

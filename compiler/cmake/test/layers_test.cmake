@@ -31,7 +31,7 @@ foreach(row IN LISTS forbidden)
 endforeach()
 plant(compiler/somewhere/m.cpp vector)
 plant(compiler/driver/allowed.cpp compiler/model/model.hpp)
-plant(runtime/cpp/src/channel/allowed.cpp boost/asio.hpp)
+plant(runtime/cpp/src/channel/allowed.cpp sys/epoll.h)
 plant(compiler/syntax/allowed.cpp antlr4-runtime.h)
 plant(compiler/model/allowed_test.cpp compiler/output/json.hpp)
 

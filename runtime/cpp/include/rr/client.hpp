@@ -19,20 +19,20 @@ namespace rr {
 /// How to connect.
 struct ConnectOptions {
   /// Of a service that has users; then `credentials` usually holds `password`.
-  std::string username;
-  std::map<std::string, VarValue> credentials;
+  std::string username{};
+  std::map<std::string, VarValue> credentials{};
   /// Qualified name of the type that the root object must have or implement. Empty: that of the
   /// stub.
-  std::string object_type;
+  std::string object_type{};
   /// For calls of this client's stubs; 0: the node's request timeout.
   std::chrono::milliseconds request_timeout{0};
   /// Called once when the session has ended, whoever ended it, on a thread of the node: the reason.
   /// operation_aborted means that this side closed it, connection_error a lost connection,
   /// service_not_found that the service was closed.
-  std::function<void(const Error&)> on_closed;
+  std::function<void(const Error&)> on_closed{};
   /// Called when the service has released the object at a path, on a thread of the node. Stubs for
   /// it and for what lies below may still be used and reach the object that is there then, if any.
-  std::function<void(const std::string&)> on_path_released;
+  std::function<void(const std::string&)> on_path_released{};
 };
 
 /// A session with a service: closes it when destroyed. The stubs found through it stay, but their

@@ -26,13 +26,13 @@ struct ServiceClient {
 
 struct ServiceOptions {
   /// What clients are told about the service: numbers, arrays and strings.
-  std::map<std::string, VarValue> attributes;
+  std::map<std::string, VarValue> attributes{};
   /// Definitions, besides those that the root object's imports, whose types may be used in
   /// varvalues or varobjects.
-  std::vector<const Definition*> extra_imports;
+  std::vector<const Definition*> extra_imports{};
   /// Called on a thread of the node, before the first and after the last request of a client.
-  std::function<void(const ServiceClient&)> on_client_connected;
-  std::function<void(const ServiceClient&)> on_client_disconnected;
+  std::function<void(const ServiceClient&)> on_client_connected{};
+  std::function<void(const ServiceClient&)> on_client_disconnected{};
 };
 
 /// A service while it is offered.

@@ -59,7 +59,11 @@ void StreamConnection::send_or_queue(Writer& message, Time now) {
   // A large array is not to be kept until this thread sends again.
   if (size >= Writer::attach_threshold) message.reset(message.version());
   if (is_broken) fail_sending();
-  if (has_rest) watch_for_room();
+  if (has_rest) {
+    watch_for_room();
+    // There may have been room before anybody knew that it was wanted.
+    flush();
+  }
 }
 
 void StreamConnection::fail_sending() {

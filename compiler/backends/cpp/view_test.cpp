@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/backends/cpp/view.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "compiler/backends/cpp/backend.hpp"
+#include "compiler/backends/cpp/order.hpp"
+#include "compiler/model/compiled.hpp"
+
+namespace robdef::cpp {
+namespace {
+
+using model::Compiled;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+DefinitionView view_of(const Compiled& compiled, std::size_t index = 0) {
+  Report report;
+  return make_view(compiled.model, report).definitions.at(index);
+}
+
+/// Names of records and objects in the order of the header.
+std::vector<std::string> order_of(const std::string& lines) {
+  const Compiled compiled = model::compiled_lines(lines);
+  std::vector<std::string> names;
+  for (const DeclarationView& declaration : view_of(compiled).declarations) {
+    if (declaration.record) names.push_back(declaration.record->name);
+    if (declaration.object) names.push_back(declaration.object->short_name);
+  }
+  return names;
+}
+
+/// The type of the only field of the last struct.
+FieldView field_of(const std::string& type, const std::string& before = "") {
+  const Compiled compiled =
+      model::compiled_lines(before + "struct S\n field " + type + " x\nend\n");
+  return view_of(compiled).declarations.back().record->fields.at(0);
+}
+
+TEST(Order, KeepsTheDefinitionsWhereItCan) {
+  EXPECT_THAT(order_of("object O\nend\nstruct A\n field int32 x\nend\nstruct B\n field A a\nend\n"),
+              ElementsAre("O", "A", "B"));
+}
+
+TEST(Order, PutsWhatIsUsedFirst) {
+  EXPECT_THAT(order_of("struct A\n field B{list} b\nend\nstruct B\n field int32 x\nend\n"),
+              ElementsAre("B", "A"));
+  EXPECT_THAT(order_of("object O\n property A a\nend\nstruct A\n field int32 x\nend\n"),
+              ElementsAre("A", "O"));
+  EXPECT_THAT(order_of("object O\n implements P\nend\nobject P\nend\n"), ElementsAre("P", "O"));
+}
+
+TEST(Order, DeclaresWhatIsNamedEarly) {
+  const Compiled compiled = model::compiled_lines(
+      "struct A\n field B b\nend\nstruct B\n field A a\nend\n"
+      "object O\n objref P p\n objref O o\nend\nobject P\nend\n");
+  std::vector<std::string> forwards;
+  for (const ForwardView& forward : view_of(compiled).forwards) {
+    forwards.push_back(forward.declaration);
+  }
+  EXPECT_THAT(forwards, ElementsAre("struct B;", "class PStub;", "class PSkeleton;"));
+}
+
+TEST(Types, FollowTheTable) {
+  EXPECT_EQ(field_of("single").declaration, "float x = 0;");
+  EXPECT_EQ(field_of("string").declaration, "::std::string x{};");
+  EXPECT_EQ(field_of("cdouble[]").type, "::rr::Array<::std::complex<double>>");
+  EXPECT_EQ(field_of("uint8[4]").type, "::std::array<::std::uint8_t, 4>");
+  EXPECT_EQ(field_of("double[3,3]").type, "::rr::FixedMultiArray<double, 3, 3>");
+  EXPECT_EQ(field_of("int16[8-]").type, "::rr::BoundedArray<::std::int16_t, 8>");
+  EXPECT_EQ(field_of("bool[*]").type, "::rr::MultiArray<bool>");
+  EXPECT_EQ(field_of("varvalue{string}").type,
+            "::std::optional<::std::map<::std::string, ::rr::VarValue>>");
+}
+
+TEST(Types, StoreLongArraysOutside) {
+  EXPECT_EQ(field_of("double[2048]").type, "::std::array<double, 2048>");
+  const FieldView fixed = field_of("double[2049]");
+  EXPECT_EQ(fixed.type, "::rr::Array<double>");
+  EXPECT_EQ(fixed.descriptor, "::rr::FixedLength<double, 2049>");
+  EXPECT_EQ(fixed.declaration, "::rr::Array<double> x = ::rr::Array<double>(2049);");
+  EXPECT_EQ(field_of("uint8[20000-]").descriptor, "::rr::MaximumLength<::std::uint8_t, 20000>");
+  EXPECT_EQ(field_of("uint8[200,100]").descriptor, "::rr::FixedShape<::std::uint8_t, 200, 100>");
+  EXPECT_EQ(field_of("double[2049]{list}").type,
+            "::std::optional<::std::vector<::std::array<double, 2049>>>");
+}
+
+TEST(Types, MakeStructsNullableAndCyclesRecursive) {
+  const std::string point = "struct P\n field double y\nend\n";
+  EXPECT_EQ(field_of("P", point).type, "::std::optional<P>");
+  EXPECT_EQ(field_of("P{int32}", point).type,
+            "::std::optional<::std::map<::std::int32_t, ::std::optional<P>>>");
+  EXPECT_EQ(field_of("S").type, "::rr::Recursive<S>");
+  EXPECT_EQ(field_of("S{list}").type, "::std::optional<::std::vector<::rr::Recursive<S>>>");
+}
+
+TEST(Types, AreQualifiedWhereAMemberHasTheirName) {
+  const Compiled compiled = model::compiled_lines(
+      "enum Color\n red = 0\nend\nstruct S\n field Color Color\n field Color other\nend\n"
+      "object O\n function Color Color(Color Color)\nend\n");
+  const DefinitionView view = view_of(compiled);
+  EXPECT_EQ(view.declarations.at(1).record->fields.at(1).type, "::example::t::Color");
+  const MemberView& function = view.declarations.at(2).object->members.at(0);
+  EXPECT_EQ(function.type, "::example::t::Color");
+  EXPECT_EQ(function.parameters.at(0).name, "Color_");
+}
+
+TEST(Types, AreWrittenByTheirAlias) {
+  const Compiled compiled = model::compiled(
+      {"service a.b\nstdver 0.10\nstruct P\n field int32 x\nend\nstruct Q\n field int32 x\nend\n",
+       "service c.d\nstdver 0.10\nimport a.b\nusing a.b.P as R\nstruct S\n field R r\n"
+       " field a.b.Q q\nend\n"});
+  const DefinitionView view = view_of(compiled, 1);
+  EXPECT_EQ(view.aliases.at(0).definition, "using R = ::a::b::P;");
+  const std::vector<FieldView>& fields = view.declarations.at(0).record->fields;
+  EXPECT_EQ(fields.at(0).type, "::std::optional<R>");
+  EXPECT_EQ(fields.at(1).type, "::std::optional<::a::b::Q>");
+}
+
+TEST(Members, OfOneImplementedObjectAreInherited) {
+  const Compiled compiled = model::compiled_lines(
+      "object A\n property int32 x\nend\n"
+      "object B\n implements A\n property int32 x\n property int32 y\nend\n"
+      "object C\n implements B\n implements A\n property int32 x\n property int32 y\nend\n");
+  const DefinitionView view = view_of(compiled);
+  const std::vector<MemberView>& members = view.declarations.at(2).object->members;
+  EXPECT_TRUE(members.at(0).is_inherited);
+  EXPECT_TRUE(members.at(1).is_inherited);
+  EXPECT_FALSE(view.declarations.at(1).object->members.at(1).is_inherited);
+}
+
+TEST(Members, OfTwoImplementedObjectsAreMadeAnew) {
+  const Compiled compiled = model::compiled_lines(
+      "object A\n property int32 x\nend\nobject B\n property int32 x\nend\n"
+      "object C\n implements A\n implements B\n property int32 x\nend\n");
+  EXPECT_FALSE(view_of(compiled).declarations.at(2).object->members.at(0).is_inherited);
+}
+
+TEST(View, IsPrintedAsJson) {
+  const Compiled compiled = model::compiled_lines("object O\n wire double w [readonly]\nend\n");
+  Report report;
+  const std::string json = CppBackend().view(compiled.model, report);
+  EXPECT_THAT(json, HasSubstr("\"wire_name\": \"example.t\""));
+  EXPECT_THAT(json, HasSubstr("\"is_wire\": true,"));
+  EXPECT_THAT(json, HasSubstr("\"is_served\": false,"));
+}
+
+}  // namespace
+}  // namespace robdef::cpp
