@@ -110,6 +110,7 @@ std::vector<Step> steps_of(const Json& json, const fs::path& folder) {
     for (const Json& made : json.at("steps")) {
       Step step = step_of(made.at("i"), made.at("frames"));
       step.label = made.at("label");
+      step.is_unanswered = made.value("answer", "") == "none";
       steps.push_back(std::move(step));
     }
     return steps;

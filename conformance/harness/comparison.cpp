@@ -60,6 +60,11 @@ void align_message_id(const Json& recorded, Json& live, PlayedConnection& connec
     connection.message_id_lead = message_id(recorded) - message_id(live);
     connection.take_next_message_id = false;
   }
+  if (connection.left_out != 0 && counts_messages(live) && message_id(recorded) != 0) {
+    const int more = message_id(recorded) - message_id(live) - connection.message_id_lead;
+    if (more > 0 && more <= connection.left_out) connection.message_id_lead += more;
+    connection.left_out = 0;
+  }
   if (connection.message_id_lead == 0 || message_id(recorded) == 0) return;
   set_message_id(live, (message_id(live) + connection.message_id_lead) & 0xFFFF);
 }
@@ -88,6 +93,18 @@ void put_aside_client_version(const Json& recorded, Json& live) {
     if (element.value("name", "") != "clientversion" || !is_text(element)) continue;
     Json* other = find_named(live, "clientversion");
     if (other != nullptr && is_text(*other)) take_over_value(element, *other);
+  }
+}
+
+// The texts of a message's own string table come in any order.
+void put_aside_table_order(const Json& recorded, Json& live) {
+  if (!recorded.contains("string_table") || !live.contains("string_table")) return;
+  const auto sorted = [](std::vector<Json> table) {
+    std::sort(table.begin(), table.end());
+    return table;
+  };
+  if (sorted(recorded["string_table"]) == sorted(live["string_table"])) {
+    live["string_table"] = recorded["string_table"];
   }
 }
 
@@ -200,6 +217,7 @@ std::optional<std::string> Comparison::difference(const Frame& recorded,
   for (const auto& [before, now] : connection.live_endpoints) recorded_names[now] = before;
   rename_endpoints(header, recorded_names);
   align_message_id(recorded.header(), header, connection);
+  put_aside_table_order(recorded.header(), header);
   const Json nothing = Json::array();
   Json& entries = decoded.at("entries");
   for (std::size_t i = 0; i < std::min(entries.size(), recorded.entries().size()); ++i) {

@@ -19,6 +19,8 @@ struct PlayedConnection {
   std::map<std::uint32_t, std::uint32_t> live_endpoints;
   /// How many messages more than the played side the recorded one had counted.
   int message_id_lead = 0;
+  /// Answers that the played side leaves out as listed; it may count them or not.
+  int left_out = 0;
   /// Set after a step that went otherwise than recorded: the next message id is taken as it comes.
   bool take_next_message_id = false;
 };

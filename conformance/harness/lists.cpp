@@ -123,6 +123,7 @@ const ListEntry* ExpectedFailures::find(const Run& run, std::string_view place) 
 
 std::string step_place(int step) { return "step " + std::to_string(step); }
 std::string frame_place(int frame) { return "frame " + std::to_string(frame); }
+std::string request_place(std::string_view label) { return "request " + std::string(label); }
 std::string host_error_place(std::string_view error_name) {
   return "host error " + std::string(error_name);
 }

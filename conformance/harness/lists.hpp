@@ -76,10 +76,13 @@ class ExpectedFailures {
 std::string step_place(int step);
 std::string frame_place(int frame);
 std::string case_place(std::string_view name);
+/// A step of a hand-made scenario by its label.
+std::string request_place(std::string_view label);
 /// An answer with code 100 and a name that the recorded library's language gave to an exception.
 std::string host_error_place(std::string_view error_name);
 inline constexpr std::string_view whole_run = "*";
 inline constexpr std::string_view repeated_type_answer = "repeated ObjectTypeNameRet";
+inline constexpr std::string_view even_type = "entry of an even type";
 inline constexpr std::string_view no_entries = "message without entries";
 inline constexpr std::string_view high_index_byte = "index byte above 0x7f";
 

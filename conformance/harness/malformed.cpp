@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/harness/malformed.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <rr/message_tree.hpp>
 #include <stdexcept>
@@ -98,6 +99,33 @@ Bytes cook(const Json& recipe, const Captures& captures, const MalformedCase& br
   return bytes;
 }
 
+// A message that is right in itself, with the endpoint number that the service gave out now.
+Bytes readdressed(std::span<const std::byte> bytes, std::uint32_t endpoint) {
+  MessageTree message;
+  const bool is_right = rr::read_tree(bytes, message) && message.receiver_endpoint != 0 &&
+                        std::ranges::equal(rr::write_tree(message), bytes);
+  if (!is_right) return {bytes.begin(), bytes.end()};
+  message.receiver_endpoint = endpoint;
+  return rr::write_tree(message);
+}
+
+// The captures name the endpoint of their own service where `{ep}` does not stand for it.
+Bytes readdressed_all(std::span<const std::byte> bytes, std::uint32_t endpoint) {
+  constexpr std::size_t size_offset = 4;
+  Bytes all;
+  while (!bytes.empty()) {
+    std::uint32_t size = 0;
+    if (bytes.size() >= size_offset + sizeof size) {
+      std::memcpy(&size, bytes.data() + size_offset, sizeof size);
+    }
+    const std::size_t count = size == 0 || size > bytes.size() ? bytes.size() : size;
+    const Bytes one = readdressed(bytes.first(count), endpoint);
+    all.insert(all.end(), one.begin(), one.end());
+    bytes = bytes.subspan(count);
+  }
+  return all;
+}
+
 void send_in_pieces(Stream& stream, std::span<const std::byte> bytes, int pieces) {
   const std::size_t size =
       std::max<std::size_t>(1, bytes.size() / static_cast<std::size_t>(pieces));
@@ -187,8 +215,9 @@ std::string play(const Captures& captures, const MalformedCase& broken, const Sc
   }
   std::string hex = broken.hex;
   replace_endpoint(hex, endpoint);
-  const Bytes bytes = broken.recipe.is_null() ? bytes_of_hex(hex, captures.blobs)
-                                              : cook(broken.recipe, captures, broken, endpoint);
+  Bytes bytes = broken.recipe.is_null() ? bytes_of_hex(hex, captures.blobs)
+                                        : cook(broken.recipe, captures, broken, endpoint);
+  if (broken.connected) bytes = readdressed_all(bytes, endpoint);
   send_in_pieces(stream, bytes, broken.pieces);
   std::string text = reaction(stream, broken.result, broken.answers.size());
   if (!is_served(address, scenario)) return text + ", and serves nobody else";

@@ -126,6 +126,7 @@ class ServiceReplay::Play {
       if (connection_of(frame).closed_after_frame == frame.number) end(frame);
     }
     if (pause.count() > 0) std::this_thread::sleep_until(begun + pause + quiet);
+    if (step.is_unanswered && step.frame_count != 0) expect_nothing(step);
     if (step_failed_) calm_down();
   }
 
@@ -135,15 +136,31 @@ class ServiceReplay::Play {
       return replay_.deviations_.find(result_.run, place);
     };
     if (const ListEntry* entry = listed(step_place(step.index))) return entry;
+    if (scenario_.hand_made) {
+      if (const ListEntry* entry = listed(request_place(step.label))) return entry;
+    }
     for (int i = 0; i < step.frame_count; ++i) {
       const Frame& frame = scenario_.frames[static_cast<std::size_t>(step.first_frame + i)];
       const std::string host_error = host_error_of(frame);
-      const ListEntry* entry = frame.entries().empty() ? listed(no_entries)
-                               : host_error.empty()    ? nullptr
-                                                       : listed(host_error_place(host_error));
+      const ListEntry* entry = nullptr;
+      if (frame.entries().empty()) {
+        entry = listed(no_entries);
+      } else if (!host_error.empty()) {
+        entry = listed(host_error_place(host_error));
+      } else if (answers_even_type(step, frame)) {
+        entry = listed(even_type);
+      }
       if (entry != nullptr) return entry;
     }
     return nullptr;
+  }
+
+  // An entry of an even type is an answer, and no request: the recorded library answers it
+  // nevertheless.
+  [[nodiscard]] bool answers_even_type(const Step& step, const Frame& frame) const {
+    if (!frame.from_client || frame.entry_type() % 2 != 0) return false;
+    const auto last = static_cast<std::size_t>(step.first_frame + step.frame_count - 1);
+    return !scenario_.frames[last].from_client;
   }
 
   // How long a step with connection tests takes: they are spread over it.
@@ -230,7 +247,7 @@ class ServiceReplay::Play {
     if (repeats_type_answer(scenario_, frame)) {
       const ListEntry* listed = replay_.deviations_.find(result_.run, repeated_type_answer);
       if (listed != nullptr) {
-        ++line.played.message_id_lead;
+        ++line.played.left_out;
         result_.deviations.push_back(listed);
         return;
       }
@@ -254,6 +271,16 @@ class ServiceReplay::Play {
     const auto different =
         replay_.comparison_.difference(frame, message, line.played, line.last_sent);
     if (different) fault("frame " + std::to_string(frame.number) + ": " + *different);
+  }
+
+  // What a service says too much would otherwise be met in a later step, or not at all.
+  void expect_nothing(const Step& step) {
+    Line& line = line_of(scenario_.frames[static_cast<std::size_t>(step.first_frame)]);
+    if (line.is_gone) return;
+    Bytes message;
+    if (receive(line, message, optional_limit) == Arrival::message) {
+      fault("a message more than recorded, of type " + std::to_string(entry_type_of(message)));
+    }
   }
 
   // The recorded connection ended after this frame.
@@ -304,11 +331,17 @@ class ServiceReplay::Play {
 
   void check_instead(Line& line, const Frame& sent, const Frame* recorded, const ListEntry& entry) {
     Bytes message;
-    const Arrival arrival = receive(line, message, answer_limit);
+    const bool is_silent = entry.instead() == "nothing";
+    const Arrival arrival = receive(line, message, is_silent ? optional_limit : answer_limit);
     const std::string listed = " (" + entry.where_listed() + " says: " + entry.instead() + ")";
     if (entry.instead() == "closed") {
       if (arrival != Arrival::closed) fault("did not close the connection" + listed);
       line.is_gone = arrival == Arrival::closed;
+      return;
+    }
+    if (is_silent) {
+      if (recorded == nullptr) fault("the recording says the same" + listed);
+      if (arrival != Arrival::nothing) fault("did not stay silent" + listed);
       return;
     }
     const std::string wanted = entry.instead();

@@ -27,6 +27,8 @@ class TypeRegistry {
   [[nodiscard]] bool knows_service(std::string_view service) const;
 
  private:
+  void take_stubs(const Definition& definition);
+
   std::map<std::string_view, const Definition*> definitions_;
   std::map<std::string_view, const RecordType*> records_;
   std::map<std::string_view, const ObjectType*> objects_;

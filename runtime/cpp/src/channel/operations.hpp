@@ -15,6 +15,7 @@ namespace rr::channel {
 
 inline constexpr std::string_view create_connection = "CreateConnection";
 inline constexpr std::string_view get_remote_node_id = "GetRemoteNodeID";
+inline constexpr std::string_view start_tls = "STARTTLS";
 
 /// An array of uint32, before what was written so far.
 void write_codes(Writer& writer, std::string_view name, std::span<const std::uint32_t> codes);

@@ -78,9 +78,15 @@ void StreamConnection::answer_stream_op(const Message& message, const Entry& ent
   Writer& writer = thread_writer();
   writer.reset(version());
   const std::size_t end = writer.position();
-  const bool is_known = entry.member == get_remote_node_id;
-  const ErrorCode error = is_known ? ErrorCode::none : ErrorCode::protocol_error;
-  const std::uint32_t count = is_known ? 0 : write_error(writer, error, "Invalid Stream Operation");
+  ErrorCode error = ErrorCode::none;
+  std::uint32_t count = 0;
+  if (entry.member == start_tls && role_ == Role::server) {
+    error = ErrorCode::connection_error;
+    count = write_error(writer, error, "Server certificate not loaded");
+  } else if (entry.member != get_remote_node_id) {
+    error = ErrorCode::protocol_error;
+    count = write_error(writer, error, "Invalid Stream Operation");
+  }
   writer.entry(answer_header(entry, error), count, end);
   writer.message({.sender_node = options_->id,
                   .receiver_node = message.sender_node,

@@ -243,10 +243,21 @@ void Session::send(const Outgoing& request, bool has_number) {
   send_numbered(request, write(request), draw(nullptr, has_number), channel::coarse_now());
 }
 
+namespace {
+
+// A session that one side has ended on purpose is not there any more; a lost connection is an error
+// of the connection, whenever it is met.
+[[noreturn]] void refuse_closed(const Error& why) {
+  if (why.code() == ErrorCode::connection_error) throw Error(why);
+  throw Error(ErrorCode::invalid_operation, "the session has ended: " + why.message());
+}
+
+}  // namespace
+
 // The numbers of the next message; a request that waits for its answer is open from now on.
 Session::Numbers Session::draw(endpoint::Pending* call, bool has_number) {
   const std::lock_guard lock(mutex_);
-  if (why_closed_) throw Error(*why_closed_);
+  if (why_closed_) refuse_closed(*why_closed_);
   Numbers numbers;
   if (call != nullptr) {
     numbers.request = pending_.add(*call);

@@ -65,7 +65,7 @@ std::shared_ptr<Stub> Session::make_stub(const std::string& told, const std::str
   for (const std::string& type : types) {
     if (known == nullptr) known = types_->find_object(type);
   }
-  if (known == nullptr) {
+  if (known == nullptr || known->make_stub == nullptr) {
     throw Error(ErrorCode::service_error,
                 "Invalid object type: this program does not know `" + told + "`");
   }

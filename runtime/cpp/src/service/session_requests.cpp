@@ -55,13 +55,12 @@ void ServerEndpoint::handle(const Message& message, const Entry& first, const Me
   // Anything else is for nobody here, and nobody could be answered.
 }
 
-// Whether both ends that a message names are those of the session.
+// Whether a message is for this session. What it says of its sender counts for nothing: answers go
+// to the client that has connected, whose connection this is.
 bool ServerEndpoint::is_in_session(const Message& message) const {
   if (!is_member_.load(std::memory_order_relaxed)) return false;
   return message.receiver_endpoint == client_.endpoint &&
-         message.sender_endpoint == remote_endpoint_ &&
-         (!message.has_routing || (message.receiver_node == directory_->core()->options().id &&
-                                   message.sender_node == client_.node));
+         (!message.has_routing || message.receiver_node == directory_->core()->options().id);
 }
 
 void ServerEndpoint::handle_session(const Message& message, const Entry& first,

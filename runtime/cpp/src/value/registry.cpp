@@ -19,13 +19,26 @@ typename Map::mapped_type find_in(const Map& map, std::string_view name) {
 TypeRegistry::TypeRegistry() { records_.emplace(time_spec_type.name(), &time_spec_type); }
 
 void TypeRegistry::add(const Definition& definition) {
-  if (!definitions_.emplace(definition.name, &definition).second) return;
+  const auto [known, is_new] = definitions_.emplace(definition.name, &definition);
+  if (!is_new) {
+    if (known->second != &definition) take_stubs(definition);
+    return;
+  }
   for (const RecordType* record : definition.records) records_.emplace(record->name(), record);
   for (const ObjectType* object : definition.objects) objects_.emplace(object->name, object);
   for (const ExceptionType& exception : definition.exceptions) {
     exceptions_.emplace(exception.name, &exception);
   }
   for (const Definition* imported : definition.imports) add(*imported);
+}
+
+// The runtime's own description of the service index has no stubs; code generated from the same
+// definition has.
+void TypeRegistry::take_stubs(const Definition& definition) {
+  for (const ObjectType* object : definition.objects) {
+    const ObjectType*& known = objects_[object->name];
+    if (known == nullptr || known->make_stub == nullptr) known = object;
+  }
 }
 
 const Definition* TypeRegistry::find_definition(std::string_view service) const {
