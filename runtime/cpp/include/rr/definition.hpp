@@ -83,6 +83,38 @@ consteval Member function(std::string_view name, std::span<const Parameter> para
   if constexpr (!std::is_void_v<R>) member.type = &type_of<R>;
   return member;
 }
+/// A function whose call gives a generator: `R` is what each step gives, `P` what it takes, either
+/// may be void.
+template <class R, class P>
+consteval Member generator(std::string_view name, std::span<const Parameter> parameters = {},
+                           std::uint8_t access = plain) {
+  Member member = function<R>(name, parameters, access);
+  member.generator = std::is_void_v<P>   ? GeneratorForm::returns
+                     : std::is_void_v<R> ? GeneratorForm::takes
+                                         : GeneratorForm::both;
+  if constexpr (!std::is_void_v<P>) member.generator_parameter = &type_of<P>;
+  return member;
+}
+template <class T>
+consteval Member pipe(std::string_view name, std::uint8_t access = plain) {
+  return {.kind = MemberKind::pipe, .access = access, .name = name, .type = &type_of<T>};
+}
+template <class R>
+consteval Member callback(std::string_view name, std::span<const Parameter> parameters = {},
+                          std::uint8_t access = plain) {
+  Member member = function<R>(name, parameters, access);
+  member.kind = MemberKind::callback;
+  return member;
+}
+template <class T>
+consteval Member wire(std::string_view name, std::uint8_t access = plain) {
+  return {.kind = MemberKind::wire, .access = access, .name = name, .type = &type_of<T>};
+}
+/// `T` is an Array or a MultiArray.
+template <class T>
+consteval Member memory(std::string_view name, std::uint8_t access = plain) {
+  return {.kind = MemberKind::memory, .access = access, .name = name, .type = &type_of<T>};
+}
 consteval Member event(std::string_view name, std::span<const Parameter> parameters = {},
                        std::uint8_t access = plain) {
   return {.kind = MemberKind::event, .access = access, .name = name, .parameters = parameters};

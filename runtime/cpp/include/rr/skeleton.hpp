@@ -11,6 +11,8 @@
 
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
+#include "rr/generators.hpp"
+#include "rr/memories.hpp"
 #include "rr/stub.hpp"
 #include "rr/type.hpp"
 #include "rr/varvalue.hpp"
@@ -73,6 +75,9 @@ class Request {
   void answer(const void* value);
   /// Leaves the answer for later: the next request of this client is handled meanwhile.
   ReplyHandle defer();
+  /// Answers the call of a generator function: the client may step through `sequence` from now on.
+  template <class R, class P>
+  void answer(Sequence<R, P> sequence);
 
   struct Source;  // internal
   explicit Request(Source& source) : source_(&source) {}
@@ -105,6 +110,8 @@ class Skeleton {
   // Implemented by generated code. `member` counts in rr_object_type().members.
   virtual void rr_dispatch(std::size_t member, Request& request) = 0;
   virtual std::shared_ptr<Skeleton> rr_child(std::size_t member, const ObjectIndex& index) = 0;
+  /// Null for a member that is no memory.
+  virtual std::shared_ptr<MemorySource> rr_memory(std::size_t member);
 
   struct Places;  // internal: where the object is attached
 
@@ -116,6 +123,12 @@ class Skeleton {
     const void* const values[] = {&arguments..., nullptr};
     rr_fire(member, values);
   }
+
+  /// Calls a callback of one client, `client` being the number of its endpoint in this node
+  /// (ServiceContext::current_client()), and waits for what it returns. Throws rr::Error, or what
+  /// the client has thrown.
+  template <class R, class... Arguments>
+  R rr_call_back(const Member& member, std::uint32_t client, const Arguments&... arguments) const;
 
  private:
   const std::shared_ptr<Places> rr_places_;

@@ -22,10 +22,12 @@ namespace rr {
 
 /// Number of the contract between generated code and this runtime. Generated headers refuse
 /// another.
-inline constexpr int stub_api = 1;
+inline constexpr int stub_api = 2;
 
 class Session;
 class Stub;
+template <class R, class P>
+class Generator;
 
 /// Ends a handler's connection to an event when it is destroyed, or by disconnect().
 class [[nodiscard]] Subscription {
@@ -155,6 +157,10 @@ class Stub {
     if (!stub) rr_refuse(member);
     return stub;
   }
+
+  /// Calls a generator function; see rr/generators.hpp.
+  template <class R, class P, class... Arguments>
+  Generator<R, P> rr_generate(const Member& member, const Arguments&... arguments);
 
   // The asynchronous forms: encode and send now, complete later. Defined in rr/async.hpp, which a
   // program includes that calls an async_ member.

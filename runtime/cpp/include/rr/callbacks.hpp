@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "rr/definition.hpp"
+#include "rr/stub.hpp"
+
+/// Callbacks: functions of a client that the service calls (07, section 12).
+namespace rr {
+
+/// Reads the parameters of a callback and calls the program's function. Made by Callback::set.
+class CallbackFunction {
+ public:
+  virtual ~CallbackFunction() = default;
+  /// The result to be sent, of the member's type; null for void. What it throws is sent as an
+  /// error.
+  virtual std::shared_ptr<const void> call(const Arguments& arguments) = 0;
+
+ protected:
+  explicit CallbackFunction(const Member& member) : member_(&member) {}
+  [[nodiscard]] const Member& member() const { return *member_; }
+
+ private:
+  const Member* member_;
+};
+
+/// A callback of an object on another node, without its type.
+class CallbackMember {
+ public:
+  /// From now on the service is told that there is no function (invalid_operation). Returns when a
+  /// call that runs has ended, unless it is the caller itself.
+  void clear();
+
+ protected:
+  CallbackMember(Stub& stub, const Member& member) : stub_(&stub), member_(&member) {}
+  void set_function(std::unique_ptr<CallbackFunction> function);
+
+  Stub* stub_;
+  const Member* member_;
+};
+
+template <class Signature>
+class Callback;
+
+/// A callback of an object on another node: `stub->ask().set(function)`. The function is called on
+/// a thread of the node, never under a lock and never inside a call that the program makes: it may
+/// make calls itself, while a call of the same client waits, too. It is kept by the stub.
+template <class R, class... Parameters>
+class Callback<R(Parameters...)> : public CallbackMember {
+ public:
+  Callback(Stub& stub, const Member& member) : CallbackMember(stub, member) {}
+
+  template <class Function>
+  void set(Function function) {
+    class Bound final : public CallbackFunction {
+     public:
+      Bound(const Member& member, Function&& call)
+          : CallbackFunction(member), call_(std::move(call)) {}
+      std::shared_ptr<const void> call(const Arguments& arguments) override {
+        std::tuple<Parameters...> values;
+        return std::apply(
+            [&](auto&... value) -> std::shared_ptr<const void> {
+              void* const places[] = {&value..., nullptr};
+              arguments.read(this->member(), places);
+              if constexpr (std::is_void_v<R>) {
+                call_(value...);
+                return nullptr;
+              } else {
+                return std::make_shared<R>(call_(value...));
+              }
+            },
+            values);
+      }
+
+     private:
+      Function call_;
+    };
+    set_function(std::make_unique<Bound>(*member_, std::move(function)));
+  }
+};
+
+}  // namespace rr

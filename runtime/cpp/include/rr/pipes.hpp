@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "rr/definition.hpp"
+#include "rr/holding.hpp"
+#include "rr/stub.hpp"
+
+/// Pipes: packets in order, in both directions (07, section 11). A pipe has any number of endpoints
+/// for each client, told apart by an index.
+namespace rr {
+
+class Skeleton;
+
+/// What becomes of a packet for which a queue has no room.
+enum class WhenFull : std::uint8_t {
+  drop_oldest,  ///< the packet that has waited longest is lost, and counted
+  drop_newest,  ///< the packet itself is lost, and counted
+  close,        ///< the endpoint is closed: nothing is lost unnoticed
+};
+
+/// One end of a pipe endpoint, whatever its packets are. Copies are handles of the same end, which
+/// stays connected until it is closed, its session ends or its object is released. Any thread may
+/// use it.
+class PipeEnd {
+ public:
+  PipeEnd() = default;
+  /// Disconnects. A client waits for the service's answer for at most half a second.
+  void close();
+  [[nodiscard]] bool is_open() const;
+  [[nodiscard]] std::int32_t index() const;
+  /// True when both sides have agreed that packets may be lost or come in another order.
+  [[nodiscard]] bool is_unreliable() const;
+  /// On the service's side: number of the client's endpoint in this node. 0 on the client's side.
+  [[nodiscard]] std::uint32_t client() const;
+  /// Called once when the end is closed, whoever closed it, on a thread of the node.
+  void on_closed(std::function<void()> function);
+  /// Packets that wait to be received.
+  [[nodiscard]] std::size_t available() const;
+  /// Waits until a packet is there. False when the time was over, or the end closed, before.
+  [[nodiscard]] bool wait(std::chrono::milliseconds limit) const;
+  /// At most so many packets wait to be received (65,536, close).
+  void set_queue_limit(std::size_t packets, WhenFull when_full = WhenFull::close);
+  /// Packets that were lost because the queue was full.
+  [[nodiscard]] std::size_t lost_count() const;
+  /// Whether packets are acknowledged; then on_acknowledged gets their numbers, and
+  /// unacknowledged() says how many are still on their way. Off at first.
+  void ask_for_acknowledgements(bool on = true);
+  void on_acknowledged(std::function<void(std::uint32_t)> function);
+  [[nodiscard]] std::size_t unacknowledged() const;
+
+  struct State;  // internal
+  explicit PipeEnd(std::shared_ptr<State> state) : state_(std::move(state)) {}
+
+ protected:
+  /// Takes the packet that has waited longest; null for none. Its value belongs to the caller.
+  std::shared_ptr<void> take();
+  /// The same without taking it.
+  [[nodiscard]] std::shared_ptr<const void> peek() const;
+  /// Sends a packet; returns its number. Throws rr::Error (invalid_operation when closed;
+  /// read_only_member, write_only_member; buffer_limit_violation when the connection's send queue
+  /// is full; data_type_error for what may not travel).
+  std::uint32_t send(const void* value);
+  /// While there is a function, packets go to it, in order, on a thread of the node, and none
+  /// waits.
+  Subscription on_received(std::function<void(std::shared_ptr<void>)> function);
+  [[noreturn]] static void throw_no_packet();  // invalid_operation
+
+  std::shared_ptr<State> state_;
+};
+
+/// An end of a pipe for packets of a T: the client's, or the service's for one client.
+template <class T>
+class PipeEndpoint : public PipeEnd {
+ public:
+  PipeEndpoint() = default;
+  explicit PipeEndpoint(PipeEnd end) : PipeEnd(std::move(end)) {}
+
+  /// Returns the number of the packet: 1, 2, ...
+  std::uint32_t send(const T& packet) { return PipeEnd::send(&packet); }
+  /// Throws rr::Error (invalid_operation) when none waits.
+  T receive() {
+    auto packet = try_receive();
+    if (!packet) throw_no_packet();
+    return std::move(*packet);
+  }
+  [[nodiscard]] std::optional<T> try_receive() {
+    const std::shared_ptr<void> packet = take();
+    if (!packet) return std::nullopt;
+    return std::move(*static_cast<T*>(packet.get()));
+  }
+  /// Waits for one. Nothing when the time was over, or the end closed, before.
+  [[nodiscard]] std::optional<T> receive_for(std::chrono::milliseconds limit) {
+    return wait(limit) ? try_receive() : std::nullopt;
+  }
+  /// The next packet, which stays.
+  [[nodiscard]] std::optional<T> peek() const {
+    const std::shared_ptr<const void> packet = PipeEnd::peek();
+    if (!packet) return std::nullopt;
+    return *static_cast<const T*>(packet.get());
+  }
+  /// Calls `function(T)` for packets, those that wait first, instead of keeping them.
+  template <class Function>
+  Subscription on_packet(Function function) {
+    return on_received([function = std::move(function)](std::shared_ptr<void> packet) {
+      function(std::move(*static_cast<T*>(packet.get())));
+    });
+  }
+};
+
+struct PipeOptions {
+  std::int32_t index = -1;  ///< wanted; the service decides, and -1 leaves it to it
+  bool unreliable = false;  ///< asked for; the pipe must be declared so
+};
+
+/// A pipe of an object on another node, without its type.
+class PipeMember {
+ protected:
+  PipeMember(Stub& stub, const Member& member, const Holding& holding)
+      : stub_(&stub), member_(&member), holding_(&holding) {}
+  PipeEnd connect_end(const PipeOptions& options);
+
+  Stub* stub_;
+  const Member* member_;
+  const Holding* holding_;
+};
+
+/// A pipe of an object on another node: `stub->frames()`.
+template <class T>
+class Pipe : public PipeMember {
+ public:
+  Pipe(Stub& stub, const Member& member) : PipeMember(stub, member, holding_of<T>) {}
+
+  /// Packets that the service sends before it answers are kept. Throws rr::Error.
+  PipeEndpoint<T> connect(const PipeOptions& options = {}) {
+    return PipeEndpoint<T>(connect_end(options));
+  }
+};
+
+/// A pipe that an object offers, without its type. What is set up here is kept by the object.
+class PipeServerBase {
+ public:
+  [[nodiscard]] std::size_t endpoint_count() const;
+  /// For send_all: endpoints with more unacknowledged packets are passed over. 0: packets are not
+  /// acknowledged and nobody is passed over (the default); see PipeEnd for single endpoints.
+  void set_backlog_limit(std::size_t packets) const;
+
+ protected:
+  PipeServerBase(const Skeleton& skeleton, const Member& member, const Holding& holding);
+  void send_all(const void* value) const;
+  [[nodiscard]] std::vector<PipeEnd> ends() const;
+  void set_connected(std::function<void(PipeEnd)> function) const;
+
+  const Skeleton* skeleton_;
+  const Member* member_;
+  const Holding* holding_;
+};
+
+/// A pipe that an object offers: `frames()` of its skeleton.
+template <class T>
+class PipeServer : public PipeServerBase {
+ public:
+  PipeServer(const Skeleton& skeleton, const Member& member)
+      : PipeServerBase(skeleton, member, holding_of<T>) {}
+
+  /// Sends a packet to all endpoints of all clients, encoded once for each message version. An
+  /// endpoint whose connection does not take it any more is closed.
+  void send(const T& packet) const { send_all(&packet); }
+  [[nodiscard]] std::vector<PipeEndpoint<T>> endpoints() const {
+    std::vector<PipeEndpoint<T>> result;
+    for (PipeEnd& end : ends()) result.emplace_back(std::move(end));
+    return result;
+  }
+  /// Calls `function(PipeEndpoint<T>)` for each endpoint that is connected, before its answer is
+  /// sent.
+  template <class Function>
+  void on_connect(Function function) const {
+    set_connected([function = std::move(function)](PipeEnd end) {
+      function(PipeEndpoint<T>(std::move(end)));
+    });
+  }
+};
+
+}  // namespace rr

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "rr/time_spec.hpp"
+
+namespace rr {
+
+/// A value and the moment it was sent, by the sender's clock.
+template <class T>
+struct Timed {
+  T value{};
+  TimeSpec time{};
+};
+
+}  // namespace rr

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "rr/definition.hpp"
+#include "rr/holding.hpp"
+#include "rr/stub.hpp"
+#include "rr/timed.hpp"
+
+/// Wires: values of which only the newest counts (07, section 13). The client's "in" is what the
+/// service sends, its "out" what it sends itself; the service's side uses the same words.
+namespace rr {
+
+class Skeleton;
+
+/// One end of a connected wire, whatever its values are. Copies are handles of the same end, which
+/// stays connected until it is closed, its session ends or its object is released, whether or not
+/// somebody holds a handle. Any thread may use it.
+class WireEnd {
+ public:
+  WireEnd() = default;
+  /// Disconnects. A client waits for the service's answer for at most half a second. Nothing
+  /// happens the second time.
+  void close();
+  [[nodiscard]] bool is_open() const;
+  /// Called once when the end is closed, whoever closed it, on a thread of the node; at once when
+  /// it is closed already.
+  void on_closed(std::function<void()> function);
+  /// On the service's side: number of the client's endpoint in this node. 0 on the client's side.
+  [[nodiscard]] std::uint32_t client() const;
+
+  struct State;  // internal
+  explicit WireEnd(std::shared_ptr<State> state) : state_(std::move(state)) {}
+
+ protected:
+  /// The newest value that has arrived and has not expired; null for none.
+  std::shared_ptr<const void> received(TimeSpec& time) const;
+  /// Waits until there is one. False when the time was over, or the end closed, before.
+  bool wait_received(std::chrono::milliseconds limit) const;
+  void set_lifespan(std::chrono::milliseconds lifespan);
+  /// Calls `function` with each value that arrives and is newer than those before it, in order, on
+  /// a thread of the node; a function that is slow misses values, never the newest.
+  Subscription on_received(std::function<void(const void*, const TimeSpec&)> function);
+  /// Sends; throws rr::Error (invalid_operation when closed; read_only_member, write_only_member
+  /// for a direction that the wire does not have; data_type_error for what may not travel).
+  void send(const void* value);
+  /// What was sent last; null for nothing yet.
+  std::shared_ptr<const void> sent(TimeSpec& time) const;
+  [[noreturn]] static void throw_no_value();  // value_not_set
+
+  std::shared_ptr<State> state_;
+};
+
+/// What WireConnection and ServedWire have in common: values of a T that arrive and that are sent.
+template <class T>
+class TypedWireEnd : public WireEnd {
+ public:
+  TypedWireEnd() = default;
+  explicit TypedWireEnd(WireEnd end) : WireEnd(std::move(end)) {}
+
+  /// A value older than this, counted from its arrival, is as none; 0: values never expire.
+  void set_lifespan(std::chrono::milliseconds lifespan) { WireEnd::set_lifespan(lifespan); }
+
+ protected:
+  std::optional<Timed<T>> try_received() const {
+    Timed<T> result;
+    const std::shared_ptr<const void> value = received(result.time);
+    if (!value) return std::nullopt;
+    result.value = *static_cast<const T*>(value.get());
+    return result;
+  }
+  T need_received() const {
+    auto result = try_received();
+    if (!result) throw_no_value();
+    return std::move(result->value);
+  }
+  std::optional<Timed<T>> try_sent() const {
+    Timed<T> result;
+    const std::shared_ptr<const void> value = sent(result.time);
+    if (!value) return std::nullopt;
+    result.value = *static_cast<const T*>(value.get());
+    return result;
+  }
+  template <class Function>
+  Subscription on_value(Function function) {
+    return on_received([function = std::move(function)](const void* value, const TimeSpec& time) {
+      function(*static_cast<const T*>(value), time);
+    });
+  }
+};
+
+/// A client's end of a wire.
+template <class T>
+class WireConnection : public TypedWireEnd<T> {
+ public:
+  using TypedWireEnd<T>::TypedWireEnd;
+
+  /// The newest value from the service. Throws rr::Error (value_not_set) while there is none.
+  T in() const { return this->need_received(); }
+  [[nodiscard]] std::optional<Timed<T>> try_in() const { return this->try_received(); }
+  /// Waits until there is a value. False when there was none in time, or the wire was closed.
+  [[nodiscard]] bool wait_in(std::chrono::milliseconds limit) const {
+    return this->wait_received(limit);
+  }
+  /// Calls `function(value, time)` for values that arrive.
+  template <class Function>
+  Subscription on_in(Function function) {
+    return this->on_value(std::move(function));
+  }
+  /// Sends a value to the service.
+  void set_out(const T& value) { this->send(&value); }
+  [[nodiscard]] std::optional<Timed<T>> out() const { return this->try_sent(); }
+};
+
+/// A service's end of a wire: that of one client.
+template <class T>
+class ServedWire : public TypedWireEnd<T> {
+ public:
+  using TypedWireEnd<T>::TypedWireEnd;
+
+  /// Sends a value to this client.
+  void set_in(const T& value) { this->send(&value); }
+  [[nodiscard]] std::optional<Timed<T>> in() const { return this->try_sent(); }
+  /// The newest value from this client. Throws rr::Error (value_not_set) while there is none.
+  T out() const { return this->need_received(); }
+  [[nodiscard]] std::optional<Timed<T>> try_out() const { return this->try_received(); }
+  [[nodiscard]] bool wait_out(std::chrono::milliseconds limit) const {
+    return this->wait_received(limit);
+  }
+  template <class Function>
+  Subscription on_out(Function function) {
+    return this->on_value(std::move(function));
+  }
+};
+
+/// A wire of an object on another node, without its type.
+class WireMember {
+ protected:
+  WireMember(Stub& stub, const Member& member, const Holding& holding)
+      : stub_(&stub), member_(&member), holding_(&holding) {}
+
+  WireEnd connect_end();
+  /// Peeks and pokes are requests, and need no connection.
+  void peek_in(void* value, TimeSpec& time);
+  void peek_out(void* value, TimeSpec& time);
+  void poke_out(const void* value);
+
+  Stub* stub_;
+  const Member* member_;
+  const Holding* holding_;
+};
+
+/// A wire of an object on another node: `stub->force()`.
+template <class T>
+class Wire : public WireMember {
+ public:
+  Wire(Stub& stub, const Member& member) : WireMember(stub, member, holding_of<T>) {}
+
+  /// Throws rr::Error: invalid_operation when the client has connected it already.
+  WireConnection<T> connect() { return WireConnection<T>(connect_end()); }
+  /// The service's value now. Throws rr::Error (value_not_set, write_only_member, ...).
+  Timed<T> peek_in() {
+    Timed<T> result;
+    WireMember::peek_in(&result.value, result.time);
+    return result;
+  }
+  /// The value that the service has last received. Throws as above, read_only_member.
+  Timed<T> peek_out() {
+    Timed<T> result;
+    WireMember::peek_out(&result.value, result.time);
+    return result;
+  }
+  void poke_out(const T& value) { WireMember::poke_out(&value); }
+};
+
+/// A wire that an object offers, without its type. What is set up here is kept by the object, so a
+/// copy, or another handle of the same wire, is the same.
+class WireServerBase {
+ public:
+  /// Number of clients that have connected the wire.
+  [[nodiscard]] std::size_t connection_count() const;
+  void set_lifespan(std::chrono::milliseconds lifespan);
+
+ protected:
+  struct Functions {
+    std::function<void(WireEnd)> connected;
+    std::function<std::shared_ptr<void>()> peek_in;
+    std::function<std::shared_ptr<void>()> peek_out;
+    std::function<void(const void*, const TimeSpec&, std::uint32_t)> received;
+  };
+  WireServerBase(const Skeleton& skeleton, const Member& member, const Holding& holding);
+  void send_all(const void* value) const;
+  std::shared_ptr<const void> received(TimeSpec& time) const;
+  [[nodiscard]] std::vector<WireEnd> ends() const;
+  void set_connected(std::function<void(WireEnd)> function) const;
+  void set_peek_in(std::function<std::shared_ptr<void>()> function) const;
+  void set_peek_out(std::function<std::shared_ptr<void>()> function) const;
+  void set_received(
+      std::function<void(const void*, const TimeSpec&, std::uint32_t)> function) const;
+
+  const Skeleton* skeleton_;
+  const Member* member_;
+  const Holding* holding_;
+};
+
+/// A wire that an object offers: `force()` of its skeleton. Without any of the on_ functions it
+/// does what most services want: set_in() goes to all clients, and to each that connects later;
+/// out() is the newest value that any client has sent or poked; peeks are answered with these two.
+template <class T>
+class WireServer : public WireServerBase {
+ public:
+  WireServer(const Skeleton& skeleton, const Member& member)
+      : WireServerBase(skeleton, member, holding_of<T>) {}
+
+  /// Sends a value to all connected clients, encoded once for each message version.
+  void set_in(const T& value) const { send_all(&value); }
+  /// The newest value from any client that has not expired.
+  [[nodiscard]] std::optional<Timed<T>> out() const {
+    Timed<T> result;
+    const std::shared_ptr<const void> value = received(result.time);
+    if (!value) return std::nullopt;
+    result.value = *static_cast<const T*>(value.get());
+    return result;
+  }
+  [[nodiscard]] std::vector<ServedWire<T>> connections() const {
+    std::vector<ServedWire<T>> result;
+    for (WireEnd& end : ends()) result.emplace_back(std::move(end));
+    return result;
+  }
+  /// Calls `function(ServedWire<T>)` for each client that connects, before its answer is sent.
+  template <class Function>
+  void on_connect(Function function) const {
+    set_connected(
+        [function = std::move(function)](WireEnd end) { function(ServedWire<T>(std::move(end))); });
+  }
+  /// Calls `function(value, time, client)` for each value that a client sends or pokes.
+  template <class Function>
+  void on_out(Function function) const {
+    set_received([function = std::move(function)](const void* value, const TimeSpec& time,
+                                                  std::uint32_t client) {
+      function(*static_cast<const T*>(value), time, client);
+    });
+  }
+  /// Answers peeks with what `function()` returns, instead.
+  template <class Function>
+  void on_peek_in(Function function) const {
+    set_peek_in([function = std::move(function)] {
+      return std::static_pointer_cast<void>(std::make_shared<T>(function()));
+    });
+  }
+  template <class Function>
+  void on_peek_out(Function function) const {
+    set_peek_out([function = std::move(function)] {
+      return std::static_pointer_cast<void>(std::make_shared<T>(function()));
+    });
+  }
+};
+
+}  // namespace rr
