@@ -17,7 +17,7 @@
 #include "experimental/implements.hpp"
 #include "experimental/imports.hpp"
 #include "experimental/line_ends.hpp"
-#include "experimental/members_to_come.hpp"
+#include "experimental/members.hpp"
 #include "experimental/namedarrays.hpp"
 #include "experimental/pods.hpp"
 #include "experimental/properties.hpp"

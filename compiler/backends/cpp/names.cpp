@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "compiler/backends/cpp/backend.hpp"
 #include "compiler/backends/words.hpp"
 
 namespace robdef::cpp {
@@ -57,7 +58,8 @@ std::string default_name(const model::Object& object) { return object.name + "De
 
 bool has_default(const model::Object& object) {
   return std::ranges::any_of(object.members, [](const model::Member& member) {
-    return member.kind == model::MemberKind::property;
+    return member.kind == model::MemberKind::property ||
+           (member.kind == model::MemberKind::memory && runtime_abilities.serve(member));
   });
 }
 

@@ -29,7 +29,7 @@ std::string qualified(const model::Definition& definition, std::string_view iden
 std::string stub_name(const model::Object& object);
 std::string skeleton_name(const model::Object& object);
 std::string default_name(const model::Object& object);
-/// Objects without properties have nothing to store, and no Default class.
+/// Objects without properties and memories have nothing to store, and no Default class.
 bool has_default(const model::Object& object);
 
 /// `rr_type_Angles` and so on: what generated code defines besides the user's names. The word

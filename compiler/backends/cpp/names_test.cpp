@@ -94,8 +94,8 @@ TEST(Limits, WarnOfEachMemberThatIsLeftOut) {
   EXPECT_THAT(codes_of({service("a.b",
                                 "object Foo\n pipe int32 a\n wire int32 b\n memory int32[] c\n"
                                 " callback void d()\n function int32{generator} e()\n"
-                                " property int32 f\nend\n")}),
-              ElementsAre("R0904", "R0904", "R0904", "R0904", "R0904"));
+                                " memory int32[]{list} f\n memory int32[*]{string} g\nend\n")}),
+              ElementsAre("R0904", "R0904"));
 }
 
 }  // namespace

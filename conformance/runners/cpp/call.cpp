@@ -97,6 +97,9 @@ Json CallingNode::answer(const Json& request) {
 void CallingNode::stop() {
   subscriptions_.clear();
   if (node_) node_->shutdown();
+  pipes_.clear();
+  wires_.clear();
+  generators_.clear();
   objects_.clear();
   clients_.clear();
   node_.reset();
@@ -127,6 +130,11 @@ Json CallingNode::play(const Json& step) {
   if (operation == "listen") return listen(step);
   if (operation == "attributes") return attributes(step);
   if (operation == "local_services") return local_services(step);
+  if (operation == "callback_set") return set_callback(step);
+  if (operation.starts_with("pipe_")) return play_pipe(operation, step);
+  if (operation.starts_with("wire_")) return play_wire(operation, step);
+  if (operation.starts_with("mem_")) return play_memory(operation, step);
+  if (operation.starts_with("gen_")) return play_generator(operation, step);
   throw NotSupported("the runtime cannot do " + operation + " yet");
 }
 
