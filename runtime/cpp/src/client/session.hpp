@@ -75,6 +75,11 @@ class Session final : public channel::Receiver,
   [[nodiscard]] const std::string& object_type() const { return object_type_; }
   [[nodiscard]] std::map<std::string, std::string> definitions() const;
 
+  /// NodeOptions::memory_transfer_limit.
+  [[nodiscard]] std::uint32_t memory_transfer_limit() const {
+    return core_->options().memory_transfer_limit;
+  }
+
   /// Sends a request and waits for its answer. Throws rr::Error, or what the service has thrown.
   void call(const Outgoing& request, const Incoming& answer, Milliseconds timeout);
   void call(const Outgoing& request, const AnswerReader& read, Milliseconds timeout);

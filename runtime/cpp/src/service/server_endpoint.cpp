@@ -90,6 +90,19 @@ void ServerEndpoint::answer_value(const Question& question, std::string_view nam
   finish(question, writer);
 }
 
+void ServerEndpoint::answer_values(const Question& question, EntryType type,
+                                   std::span<const Parameter> parameters,
+                                   const void* const* values) {
+  Writer& writer = channel::thread_writer();
+  writer.reset(question.gathering ? question.gathering->version() : connection_->version());
+  endpoint::write_values(writer, parameters, values);
+  if (writer.failed()) throw endpoint::latched(writer);
+  EntryHeader header = endpoint::answer_header(question.entry);
+  header.type = type;
+  writer.entry(header, static_cast<std::uint32_t>(parameters.size()), 0);
+  finish(question, writer);
+}
+
 void ServerEndpoint::answer_empty(const Question& question) {
   Writer& writer = channel::thread_writer();
   writer.reset(question.gathering ? question.gathering->version() : connection_->version());

@@ -60,6 +60,8 @@ class ServerEndpoint final : public channel::Receiver,
   // Answers of session requests. What cannot be written throws rr::Error, and nothing is sent.
   void answer_value(const Question& question, std::string_view name, const Type& type,
                     const void* value);
+  void answer_values(const Question& question, EntryType type,
+                     std::span<const Parameter> parameters, const void* const* values);
   void answer_empty(const Question& question);
   void answer_error(const Question& question, const Error& error);
   /// The same for an answer given later, by what is left of its question then.
@@ -98,6 +100,15 @@ class ServerEndpoint final : public channel::Receiver,
   void answer_session_operation(const Question& question);
   void answer_member(const Question& question, MemberKind kind);
   void answer_unserved(const Question& question);
+  // Memories (memories.cpp)
+  void answer_memory(const Question& question);
+  void read_memory(const Question& question, Decoder& decoder, const Member& member,
+                   MemorySource& memory);
+  void write_memory(const Question& question, Decoder& decoder, const Member& member,
+                    MemorySource& memory);
+  void answer_memory_parameter(const Question& question, Decoder& decoder, const Member& member,
+                               const MemorySource& memory);
+
   std::shared_ptr<const ServedObject> find_object(std::string_view path);
   const Member& find_member(const ServedObject& object, std::string_view name, MemberKind kind);
 

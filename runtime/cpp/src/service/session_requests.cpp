@@ -111,6 +111,11 @@ void ServerEndpoint::answer_question(const Question& question) {
     case EntryType::function_call_req:
       answer_member(question, MemberKind::function);
       break;
+    case EntryType::memory_read:
+    case EntryType::memory_write:
+    case EntryType::memory_get_param:
+      answer_memory(question);
+      break;
     case EntryType::object_type_name:
       if (question.gathering) {
         throw Error(ErrorCode::protocol_error, "Unknown request type");
@@ -229,9 +234,6 @@ void ServerEndpoint::answer_unserved(const Question& question) {
     case EntryType::wire_peek_in_value_req:
     case EntryType::wire_peek_out_value_req:
     case EntryType::wire_poke_out_value_req:
-    case EntryType::memory_read:
-    case EntryType::memory_write:
-    case EntryType::memory_get_param:
       find_object(question.entry.service_path);
       throw Error(ErrorCode::member_not_found, "Member not found");
     case EntryType::generator_next_req: {
