@@ -101,17 +101,17 @@ class Caller {
         });
   }
   template <class S, class Base, class T>
-  std::unique_ptr<PlannedPipe> pipe_by(S& stub, Pipe<T> (Base::*pipe)(), const PipeOptions& options,
-                                       const Arrive& arrive) {
-    return std::make_unique<TypedPipe<T>>(adapters_, (stub.*pipe)().connect(options), arrive);
+  std::unique_ptr<PlannedPipe> pipe_by(S& stub, Pipe<T> (Base::*member)(),
+                                       const PipeOptions& options, const Arrive& arrive) {
+    return std::make_unique<TypedPipe<T>>(adapters_, (stub.*member)().connect(options), arrive);
   }
   template <class S, class Base, class T>
-  std::unique_ptr<PlannedWire> wire_by(S& stub, Wire<T> (Base::*wire)()) {
-    return std::make_unique<TypedWire<T>>(adapters_, (stub.*wire)());
+  std::unique_ptr<PlannedWire> wire_by(S& stub, Wire<T> (Base::*member)()) {
+    return std::make_unique<TypedWire<T>>(adapters_, (stub.*member)());
   }
   template <class S, class Base, class Memory>
-  std::unique_ptr<PlannedMemory> memory_by(S& stub, Memory (Base::*memory)()) {
-    return std::make_unique<TypedMemory<Memory>>(adapters_, (stub.*memory)());
+  std::unique_ptr<PlannedMemory> memory_by(S& stub, Memory (Base::*member)()) {
+    return std::make_unique<TypedMemory<Memory>>(adapters_, (stub.*member)());
   }
   template <class S, class Base, class R, class P, class... Parameters>
   std::unique_ptr<PlannedGenerator> generate_by(S& stub,
@@ -121,9 +121,9 @@ class Caller {
         adapters_, called(stub, function, arguments, std::index_sequence_for<Parameters...>()));
   }
   template <class S, class Base, class R, class... Parameters>
-  void callback_by(S& stub, Callback<R(Parameters...)> (Base::*callback)(),
+  void callback_by(S& stub, Callback<R(Parameters...)> (Base::*member)(),
                    std::function<Json(Json)> answer) {
-    (stub.*callback)().set(
+    (stub.*member)().set(
         [&adapters = adapters_, answer = std::move(answer)](const Parameters&... parameters) -> R {
           const Json result = answer(Json::array({to_json<Parameters>(adapters, parameters)...}));
           if constexpr (!std::is_void_v<R>) return made_from_json<R>(adapters, result);

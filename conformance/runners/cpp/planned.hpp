@@ -150,11 +150,13 @@ class TypedMemory<ArrayMemory<T>> final : public PlannedMemory {
   Json dims() override { return Json::array({length()}); }
   Json dim_count() override { return "1"; }
   Json read(const Json& position, const Json& count) override {
-    return to_json(adapters_, memory_.read(position, count));
+    const auto at = position.get<std::uint64_t>();
+    return to_json(adapters_, memory_.read(at, count.get<std::uint64_t>()));
   }
   void write(const Json& position, const Json& count, const Json& value) override {
     const auto items = made_from_json<Array<T>>(adapters_, value);
-    memory_.write(position, std::span<const T>(items).first(count.get<std::size_t>()));
+    memory_.write(position.get<std::uint64_t>(),
+                  std::span<const T>(items).first(count.get<std::size_t>()));
   }
 
  private:
@@ -172,13 +174,13 @@ class TypedMemory<MultiMemory<T>> final : public PlannedMemory {
   Json dims() override { return to_json(adapters_, memory_.dims()); }
   Json dim_count() override { return to_json(adapters_, memory_.dim_count()); }
   Json read(const Json& position, const Json& count) override {
-    const Numbers at = position;
-    const Numbers shape = count;
+    const auto at = position.get<Numbers>();
+    const auto shape = count.get<Numbers>();
     return to_json<MultiArray<T>>(adapters_, memory_.read(at, shape));
   }
   void write(const Json& position, const Json& count, const Json& value) override {
-    const Numbers at = position;
-    const Numbers shape = count;
+    const auto at = position.get<Numbers>();
+    const auto shape = count.get<Numbers>();
     const auto array = made_from_json<MultiArray<T>>(adapters_, value);
     memory_.write(at, shape, array.items);
   }

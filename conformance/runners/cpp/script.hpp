@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <rr/generators.hpp>
 #include <rr/memories.hpp>
 #include <rr/pipes.hpp>
 #include <rr/service.hpp>
@@ -20,36 +19,9 @@
 
 #include "conformance/runners/cpp/adapters.hpp"
 #include "conformance/runners/cpp/outcomes.hpp"
+#include "conformance/runners/cpp/scripted_generator.hpp"
 
 namespace rr::conformance {
-
-/// Steps through a generator as its script says: `yield` values or `accept` so many, then the end
-/// or the error `end`.
-template <class R, class P>
-class ScriptedSteps final : public GeneratorSource {
- public:
-  ScriptedSteps(const Adapters& adapters, Json script)
-      : adapters_(adapters), script_(std::move(script)) {}
-
-  bool rr_step(const void*, void* result) override {
-    const Json values = part(script_, "yield");
-    const std::size_t count = values.is_null() ? script_.value("accept", 0U) : values.size();
-    if (step_ == count) {
-      if (script_.contains("end")) raise(adapters_, script_["end"]);
-      return false;
-    }
-    if constexpr (!std::is_void_v<R>) {
-      from_json(adapters_, values.at(step_), *static_cast<R*>(result));
-    }
-    ++step_;
-    return true;
-  }
-
- private:
-  const Adapters& adapters_;
-  const Json script_;
-  std::size_t step_ = 0;
-};
 
 /// What one object is told to do, a node of service.json, and its state. Used by any thread.
 /// Functions that drive other members are known by their names: `fire_<event>`, `send_<pipe>`,
@@ -106,7 +78,7 @@ class Script {
   Sequence<R, P> generate(std::string_view function, const Parameters&... parameters) {
     Json steps =
         next_outcome(function, Json::array({to_json<Parameters>(adapters_, parameters)...}));
-    return Sequence<R, P>(std::make_unique<ScriptedSteps<R, P>>(adapters_, std::move(steps)));
+    return std::make_shared<ScriptedGenerator<R, P>>(adapters_, std::move(steps));
   }
 
   /// The memory of this name, made from a Value when it is asked for first.

@@ -100,7 +100,7 @@ template <class T>
 class StoredArrayMemory : public ArrayMemorySource<T> {
  public:
   explicit StoredArrayMemory(Array<T> items) : items_(std::move(items)) {}
-  explicit StoredArrayMemory(std::size_t length) : items_(length) {}
+  explicit StoredArrayMemory(std::size_t length = 0) : items_(length) {}
 
   [[nodiscard]] std::uint64_t length() const final {
     const std::lock_guard lock(mutex_);
@@ -139,7 +139,7 @@ template <class T>
 class StoredMultiMemory : public MultiMemorySource<T> {
  public:
   /// Throws rr::Error (invalid_argument) when there are not as many items as dims say.
-  explicit StoredMultiMemory(MultiArray<T> array)
+  explicit StoredMultiMemory(MultiArray<T> array = {})
       : dims_(array.dims.begin(), array.dims.end()), items_(std::move(array.items)) {
     std::uint64_t size = dims_.empty() ? 0 : 1;
     for (const std::uint64_t dim : dims_) size *= dim;
