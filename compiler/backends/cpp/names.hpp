@@ -15,6 +15,8 @@ namespace robdef::cpp {
 
 /// A word of C++, one of its alternative tokens, or a macro of a standard header.
 bool is_reserved(std::string_view word);
+/// Something of the global namespace, where services may not have a namespace of the same name.
+bool is_global_name(std::string_view word);
 /// The name itself, with `_` behind it when it is reserved.
 std::string identifier(std::string_view name);
 

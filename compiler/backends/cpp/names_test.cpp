@@ -47,6 +47,10 @@ TEST(Names, TurnServicesIntoNamespacesAndPaths) {
   EXPECT_EQ(namespace_of("example.new.std"), "example::new_::std");
   EXPECT_EQ(namespace_of("std.vector"), "std_::vector");
   EXPECT_EQ(namespace_of("time"), "time_");
+  EXPECT_EQ(namespace_of("gamma.camera"), "gamma_::camera");
+  EXPECT_EQ(namespace_of("abort"), "abort_");
+  EXPECT_EQ(namespace_of("yn"), "yn_");
+  EXPECT_EQ(namespace_of("example.time"), "example::time");
   EXPECT_EQ(path_of("example.new"), "example/new");
 }
 
