@@ -17,6 +17,7 @@
 #include "rr/memories.hpp"
 #include "rr/node.hpp"
 #include "rr/stub.hpp"
+#include "rr/wires.hpp"
 
 /// The asynchronous forms of calls, for any completion token of Boost.Asio: a callback, use_future,
 /// use_awaitable. The only header that includes Asio; a program that uses no `async_` member does
@@ -231,6 +232,58 @@ auto MultiMemory<T>::async_write(std::vector<std::uint64_t> position, const Mult
       token, std::move(position),
       std::vector<std::uint64_t>(array.dims.begin(), array.dims.end()),
       array.items.owner() ? array.items : Array<T>(std::span<const T>(array.items)));
+}
+
+template <class T>
+template <class Token>
+auto Wire<T>::async_connect(Token&& token) {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr, WireConnection<T>)>(
+      [wire = *this](auto&& handler) mutable {
+        using Handler = std::decay_t<decltype(handler)>;
+        auto completion = std::make_unique<CallCompletion<Handler, WireConnection<T>>>(
+            std::forward<decltype(handler)>(handler));
+        auto* const end = static_cast<WireConnection<T>*>(completion->result());
+        wire.start_connect(end, std::move(completion));
+      },
+      token);
+}
+
+template <class T>
+template <class Token>
+auto Wire<T>::async_peek(bool of_out, Token&& token) {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr, Timed<T>)>(
+      [wire = *this, of_out](auto&& handler) mutable {
+        using Handler = std::decay_t<decltype(handler)>;
+        auto completion = std::make_unique<CallCompletion<Handler, Timed<T>>>(
+            std::forward<decltype(handler)>(handler));
+        auto* const place = static_cast<Timed<T>*>(completion->result());
+        wire.start_peek(of_out, &place->value, &place->time, std::move(completion));
+      },
+      token);
+}
+
+template <class T>
+template <class Token>
+auto Wire<T>::async_peek_in(Token&& token) {
+  return async_peek(false, std::forward<Token>(token));
+}
+
+template <class T>
+template <class Token>
+auto Wire<T>::async_peek_out(Token&& token) {
+  return async_peek(true, std::forward<Token>(token));
+}
+
+template <class T>
+template <class Token>
+auto Wire<T>::async_poke_out(const T& value, Token&& token) {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr)>(
+      [wire = *this](auto&& handler, const T& wanted) mutable {
+        using Handler = std::decay_t<decltype(handler)>;
+        wire.start_poke(&wanted, std::make_unique<CallCompletion<Handler, void>>(
+                                std::forward<decltype(handler)>(handler)));
+      },
+      token, value);
 }
 
 /// Connects as Node::connect does, on a thread of its own. Signature: void(std::exception_ptr,

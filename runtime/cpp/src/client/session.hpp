@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -25,8 +26,10 @@
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/client/call_terms.hpp"
 #include "runtime/cpp/src/client/definition_text.hpp"
+#include "runtime/cpp/src/client/subscription.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
 #include "runtime/cpp/src/endpoint/pending.hpp"
+#include "runtime/cpp/src/endpoint/wire_table.hpp"
 
 namespace rr {
 
@@ -102,12 +105,22 @@ class Session final : public channel::Receiver,
   std::string ask_object_type(const std::string& path, Milliseconds timeout);
   std::map<std::string, VarValue> ask_attributes();
 
-  void add_handler(const std::shared_ptr<Subscription::Handler>& handler);
+  [[nodiscard]] const std::shared_ptr<endpoint::Core>& core() const { return core_; }
+  /// Exists once a stub does.
+  [[nodiscard]] channel::Connection& connection() const { return *connection_; }
+  [[nodiscard]] endpoint::WireTable& wires() { return wires_; }
+  /// Sends a packet of which only the newest counts; the writer holds its elements.
+  void send_newest(Writer& writer, const EntryHeader& header, std::uint32_t element_count,
+                   const channel::Newest& newest);
+
+  void add_handler(const std::shared_ptr<client::EventSubscription>& handler);
   /// A stub goes away, and with it its handlers.
   void forget(const Stub& stub);
 
   // From the connection
   void take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
+                   channel::Laters& laters) override;
+  bool take_packet(const Message& message, const Entry& entry, const MemoryRef& owner,
                    channel::Laters& laters) override;
   void handle(const Message& message, const Entry& first, const MemoryRef& owner) override;
   void lost(const Error& why, channel::Laters& laters) override;
@@ -179,16 +192,18 @@ class Session final : public channel::Receiver,
 
   mutable std::mutex mutex_;
   endpoint::PendingTable pending_;
-  std::uint16_t next_message_id_ = 0;
+  std::atomic<std::uint16_t> next_message_id_{0};
   bool is_connected_ = false;  // the service knows this client
   bool is_ending_ = false;     // one side has said that the session ends
   std::optional<Error> why_closed_;
   std::unordered_map<std::string, std::weak_ptr<Stub>> stubs_;
-  std::vector<std::shared_ptr<Subscription::Handler>> handlers_;
+  std::vector<std::shared_ptr<client::EventSubscription>> handlers_;
   std::map<std::string, std::string> texts_;
   std::map<std::string, client::DefinitionOutline> outlines_;
   std::uint16_t seen_message_id_ = 0;  // at quiet_since_
   channel::Time quiet_since_;
+
+  endpoint::WireTable wires_;
 };
 
 }  // namespace rr

@@ -329,6 +329,7 @@ void Session::lost(const Error& why, channel::Laters& laters) {
     if (!why_closed_) why_closed_ = why;
   }
   fail_all(Error(ErrorCode::connection_error, why.message()), laters);
+  for (const auto& end : wires_.take_all()) end->finish(laters);
 }
 
 void Session::closed() {
@@ -353,7 +354,8 @@ void Session::attend(channel::Time now) {
   {
     const std::lock_guard lock(mutex_);
     if (why_closed_ || !is_connected_) return;
-    if (std::exchange(seen_message_id_, next_message_id_) != next_message_id_) quiet_since_ = now;
+    const std::uint16_t next = next_message_id_;
+    if (std::exchange(seen_message_id_, next) != next) quiet_since_ = now;
     if (now - quiet_since_ < core_->options().keep_alive_period) return;
     quiet_since_ = now;
   }

@@ -71,6 +71,33 @@ void ServerEndpoint::send_packet(const EntryHeader& header, std::span<const Para
   }
 }
 
+void ServerEndpoint::send_marked(Writer& writer, std::string_view metadata,
+                                 const channel::Newest* newest) {
+  writer.message({.sender_node = core()->options().id,
+                  .receiver_node = client_.node,
+                  .sender_endpoint = client_.endpoint,
+                  .receiver_endpoint = remote_endpoint_,
+                  .metadata = metadata,
+                  .message_id = draw_message_id(),
+                  .routing = false},
+                 1);
+  if (newest != nullptr) {
+    connection_->send_newest(writer, *newest, channel::coarse_now());
+  } else {
+    connection_->send(writer);
+  }
+}
+
+const std::shared_ptr<endpoint::Core>& ServerEndpoint::core() const { return directory_->core(); }
+
+const std::shared_ptr<const TypeRegistry>& ServerEndpoint::types() const { return host_->types(); }
+
+Writer& ServerEndpoint::begin_answer(const Question& question) const {
+  Writer& writer = channel::thread_writer();
+  writer.reset(question.gathering ? question.gathering->version() : connection_->version());
+  return writer;
+}
+
 // Sends a finished answer, or puts it where those of the same message gather.
 void ServerEndpoint::finish(const Question& question, Writer& writer) {
   if (question.gathering) {
@@ -196,11 +223,16 @@ void Gathering::put(std::size_t place, std::vector<std::byte> entry, bool is_lat
 }
 
 void ServerEndpoint::leave() {
+  channel::Laters laters;
+  wires_.end_all(laters);
+  for (const std::function<void()>& later : laters) later();
   if (is_member_.exchange(false)) host_->remove_client(*this);
   connection_->close_after(close_delay);
 }
 
-void ServerEndpoint::lost(const Error& /*why*/, channel::Laters& /*laters*/) {}
+void ServerEndpoint::lost(const Error& /*why*/, channel::Laters& laters) {
+  wires_.end_all(laters);
+}
 
 void ServerEndpoint::closed() {
   if (is_member_.exchange(false)) host_->remove_client(*this);

@@ -19,6 +19,7 @@
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
 #include "runtime/cpp/src/service/object_tree.hpp"
+#include "runtime/cpp/src/service/wires.hpp"
 
 namespace rr::service {
 
@@ -54,8 +55,23 @@ class ServerEndpoint final : public channel::Receiver,
   /// Sends something that is not answered. Failures are ignored.
   void send_packet(const EntryHeader& header, std::span<const Parameter> parameters,
                    const void* const* values);
+  /// Sends an entry that is not answered, with metadata in the message header; of which only the
+  /// newest counts, unless `newest` is null. Throws rr::Error.
+  void send_marked(Writer& writer, std::string_view metadata, const channel::Newest* newest);
   /// Ends the session, and soon the connection.
   void leave();
+
+  // For the members of each kind, with the dispatch turn.
+  [[nodiscard]] Wires& wires() { return wires_; }
+  [[nodiscard]] const std::shared_ptr<endpoint::Core>& core() const;
+  /// Those that varvalues may need. Once a client has connected.
+  [[nodiscard]] const std::shared_ptr<const TypeRegistry>& types() const;
+  std::shared_ptr<const ServedObject> find_object(std::string_view path);
+  const Member& find_member(const ServedObject& object, std::string_view name, MemberKind kind);
+  [[nodiscard]] bool is_in_session(const Message& message) const;
+  /// A writer for the elements and the entry of an answer, which finish() sends.
+  Writer& begin_answer(const Question& question) const;
+  void finish(const Question& question, Writer& writer);
 
   // Answers of session requests. What cannot be written throws rr::Error, and nothing is sent.
   void answer_value(const Question& question, std::string_view name, const Type& type,
@@ -70,6 +86,8 @@ class ServerEndpoint final : public channel::Receiver,
   void answer_late(const LateAnswer& late, const Error& error);
 
   void take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
+                   channel::Laters& laters) override;
+  bool take_packet(const Message& message, const Entry& entry, const MemoryRef& owner,
                    channel::Laters& laters) override;
   void handle(const Message& message, const Entry& first, const MemoryRef& owner) override;
   void lost(const Error& why, channel::Laters& laters) override;
@@ -109,13 +127,9 @@ class ServerEndpoint final : public channel::Receiver,
   void answer_memory_parameter(const Question& question, Decoder& decoder, const Member& member,
                                const MemorySource& memory);
 
-  std::shared_ptr<const ServedObject> find_object(std::string_view path);
-  const Member& find_member(const ServedObject& object, std::string_view name, MemberKind kind);
 
-  void finish(const Question& question, Writer& writer);
   void finish_late(const LateAnswer& late, Writer& writer);
   void send_answer(Writer& writer, std::uint32_t entry_count, EntryType single_type, bool is_reply);
-  [[nodiscard]] bool is_in_session(const Message& message) const;
   std::uint16_t draw_message_id(std::uint16_t count = 1) {
     return next_message_id_.fetch_add(count, std::memory_order_relaxed);
   }
@@ -138,6 +152,8 @@ class ServerEndpoint final : public channel::Receiver,
   std::shared_ptr<const ServedObject> last_object_;
   std::uint32_t last_generation_ = 0;
   const Member* last_member_ = nullptr;
+
+  Wires wires_{*this};
 };
 
 /// What a late answer must remember of its question.

@@ -7,6 +7,7 @@
 #include "rr/error.hpp"
 #include "runtime/cpp/src/service/directory.hpp"
 #include "runtime/cpp/src/service/object_types.hpp"
+#include "runtime/cpp/src/service/offered_wire.hpp"
 #include "runtime/cpp/src/service/places.hpp"
 #include "runtime/cpp/src/service/server_endpoint.hpp"
 
@@ -32,6 +33,13 @@ std::vector<std::pair<std::shared_ptr<service::ServiceHost>, std::string>> Skele
     if (auto alive = host.lock()) result.emplace_back(std::move(alive), path);
   }
   return result;
+}
+
+std::shared_ptr<service::OfferedWire> Skeleton::Places::wire(const Member& member) {
+  const std::lock_guard lock(mutex_);
+  auto& wire = wires_[member.name];
+  if (!wire) wire = std::make_shared<service::OfferedWire>(member);
+  return wire;
 }
 
 Skeleton::Skeleton() : rr_places_(std::make_shared<Places>()) {}
@@ -155,6 +163,7 @@ void ServiceHost::release_path(const std::string& path) {
     throw Error(ErrorCode::service_error, "Unknown service path");
   }
   for (const auto& client : *connected()) {
+    client->wires().release(canonical);
     client->send_packet({.type = EntryType::service_path_released_req, .service_path = canonical},
                         {}, nullptr);
   }

@@ -63,6 +63,12 @@ bool ServerEndpoint::is_in_session(const Message& message) const {
          (!message.has_routing || message.receiver_node == directory_->core()->options().id);
 }
 
+bool ServerEndpoint::take_packet(const Message& message, const Entry& entry,
+                                 const MemoryRef& owner, channel::Laters& laters) {
+  last_heard_.store(channel::coarse_now(), std::memory_order_relaxed);
+  return wires_.take(message, entry, owner, laters);
+}
+
 void ServerEndpoint::handle_session(const Message& message, const Entry& first,
                                     const MemoryRef& owner) {
   if (message.entry_count == 1) {
@@ -133,6 +139,14 @@ void ServerEndpoint::answer_question(const Question& question) {
     }
     case EntryType::client_session_op_req:
       answer_session_operation(question);
+      break;
+    case EntryType::wire_packet:
+    case EntryType::wire_connect_req:
+    case EntryType::wire_disconnect_req:
+    case EntryType::wire_peek_in_value_req:
+    case EntryType::wire_peek_out_value_req:
+    case EntryType::wire_poke_out_value_req:
+      wires_.answer(question);
       break;
     default:
       answer_unserved(question);
@@ -228,12 +242,6 @@ void ServerEndpoint::answer_unserved(const Question& question) {
     case EntryType::pipe_packet:
     case EntryType::pipe_connect_req:
     case EntryType::pipe_disconnect_req:
-    case EntryType::wire_packet:
-    case EntryType::wire_connect_req:
-    case EntryType::wire_disconnect_req:
-    case EntryType::wire_peek_in_value_req:
-    case EntryType::wire_peek_out_value_req:
-    case EntryType::wire_poke_out_value_req:
       find_object(question.entry.service_path);
       throw Error(ErrorCode::member_not_found, "Member not found");
     case EntryType::generator_next_req: {
