@@ -101,6 +101,10 @@ class Session final : public channel::Receiver,
                   std::shared_ptr<Completion> completion);
   std::string ask_object_type(const std::string& path, Milliseconds timeout);
   std::map<std::string, VarValue> ask_attributes();
+  /// See ClientBase.
+  void authenticate(const std::string& username, const std::map<std::string, VarValue>& credentials,
+                    Milliseconds timeout);
+  void log_out();
 
   void add_handler(const std::shared_ptr<Subscription::Handler>& handler);
   /// A stub goes away, and with it its handlers.
@@ -141,7 +145,6 @@ class Session final : public channel::Receiver,
   // Connecting (session_connect.cpp)
   void connect_combined(Milliseconds timeout);
   void connect_in_steps(Milliseconds timeout);
-  void authenticate(Milliseconds timeout);
   void pull_definition(const std::string& name, Milliseconds timeout);
   void pull_imports(Milliseconds timeout);
   void keep_definition(std::string_view text);
@@ -183,6 +186,7 @@ class Session final : public channel::Receiver,
   bool is_connected_ = false;  // the service knows this client
   bool is_ending_ = false;     // one side has said that the session ends
   std::optional<Error> why_closed_;
+  std::string user_;  // who is logged in
   std::unordered_map<std::string, std::weak_ptr<Stub>> stubs_;
   std::vector<std::shared_ptr<Subscription::Handler>> handlers_;
   std::map<std::string, std::string> texts_;
