@@ -52,6 +52,8 @@ class CallingNode {
   Json find_object_type(const Json& step);
   Json listen(const Json& step);
   Json attributes(const Json& step);
+  [[nodiscard]] std::map<std::string, VarValue> credentials(const Json& step) const;
+  void authenticate(const Json& step);
   Json local_services(const Json& step);
   Json keep(const std::string& name, const std::string& client, Held held);
   Object& object(const Json& step);

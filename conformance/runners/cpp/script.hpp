@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <chrono>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <rr/skeleton.hpp>
+#include <semaphore>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -63,6 +66,16 @@ class Script {
     return std::dynamic_pointer_cast<S>(child(objref, index));
   }
 
+  /// The monitor of the object, which those have that have a member without lock.
+  static bool has_monitor(const ObjectType& type) {
+    return std::any_of(type.members.begin(), type.members.end(),
+                       [](const Member& member) { return (member.access & nolock) != 0; });
+  }
+  bool enter_monitor(std::chrono::milliseconds timeout) {
+    return monitor_.try_acquire_for(timeout);
+  }
+  void exit_monitor() { monitor_.release(); }
+
   /// Fires an event by a pointer to its member in the skeleton or in what that implements. True.
   template <class S, class Base, class... Parameters>
   bool fire_by(const S& skeleton, void (Base::*event)(Parameters...) const, const Json& arguments) {
@@ -90,6 +103,7 @@ class Script {
   std::map<std::string, std::size_t> calls_;
   std::map<std::string, std::shared_ptr<rr::Skeleton>> children_;
   ServiceContext* context_ = nullptr;
+  std::binary_semaphore monitor_{1};
 };
 
 }  // namespace rr::conformance
