@@ -52,7 +52,10 @@ class CallingNode {
   Json find_object_type(const Json& step);
   Json listen(const Json& step);
   Json attributes(const Json& step);
+  [[nodiscard]] std::map<std::string, VarValue> credentials(const Json& step) const;
+  void authenticate(const Json& step);
   Json local_services(const Json& step);
+  Json play_session(const std::string& operation, const Json& step);
   Json play_pipe(const std::string& operation, const Json& step);
   Json play_wire(const std::string& operation, const Json& step);
   Json play_memory(const std::string& operation, const Json& step);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
@@ -11,6 +13,7 @@
 #include <rr/service.hpp>
 #include <rr/skeleton.hpp>
 #include <rr/wires.hpp>
+#include <semaphore>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -103,6 +106,16 @@ class Script {
     return std::dynamic_pointer_cast<S>(child(objref, index));
   }
 
+  /// The monitor of the object, which those have that have a member without lock.
+  static bool has_monitor(const ObjectType& type) {
+    return std::any_of(type.members.begin(), type.members.end(),
+                       [](const Member& member) { return (member.access & nolock) != 0; });
+  }
+  bool enter_monitor(std::chrono::milliseconds timeout) {
+    return monitor_.try_acquire_for(timeout);
+  }
+  void exit_monitor() { monitor_.release(); }
+
  private:
   /// Does what a function is for; it is told which type it is to give.
   using Action = std::function<Json(const std::type_info&)>;
@@ -145,6 +158,7 @@ class Script {
   std::map<std::string, std::shared_ptr<MemorySource>> memories_;
   std::atomic<int> received_ = 0;  // packets
   ServiceContext* context_ = nullptr;
+  std::binary_semaphore monitor_{1};
 };
 
 template <class T>

@@ -104,6 +104,10 @@ class Session final : public channel::Receiver,
                   std::shared_ptr<Completion> completion);
   std::string ask_object_type(const std::string& path, Milliseconds timeout);
   std::map<std::string, VarValue> ask_attributes();
+  /// See ClientBase.
+  void authenticate(const std::string& username, const std::map<std::string, VarValue>& credentials,
+                    Milliseconds timeout);
+  void log_out();
 
   [[nodiscard]] const std::shared_ptr<endpoint::Core>& core() const { return core_; }
   /// Exists once a stub does.
@@ -154,7 +158,6 @@ class Session final : public channel::Receiver,
   // Connecting (session_connect.cpp)
   void connect_combined(Milliseconds timeout);
   void connect_in_steps(Milliseconds timeout);
-  void authenticate(Milliseconds timeout);
   void pull_definition(const std::string& name, Milliseconds timeout);
   void pull_imports(Milliseconds timeout);
   void keep_definition(std::string_view text);
@@ -196,6 +199,7 @@ class Session final : public channel::Receiver,
   bool is_connected_ = false;  // the service knows this client
   bool is_ending_ = false;     // one side has said that the session ends
   std::optional<Error> why_closed_;
+  std::string user_;  // who is logged in
   std::unordered_map<std::string, std::weak_ptr<Stub>> stubs_;
   std::vector<std::shared_ptr<client::EventSubscription>> handlers_;
   std::map<std::string, std::string> texts_;

@@ -148,6 +148,8 @@ void Session::connect_combined(Milliseconds timeout) {
       },
       timeout);
   for (const std::string& text : definitions) keep_definition(text);
+  const std::lock_guard lock(mutex_);
+  user_ = options_.username;
 }
 
 void Session::connect_in_steps(Milliseconds timeout) {
@@ -171,15 +173,33 @@ void Session::connect_in_steps(Milliseconds timeout) {
   }
   object_type_ = ask_object_type(service_, timeout);
   call({EntryType::connect_client, service_, {}}, Incoming{}, timeout);
-  if (!options_.username.empty()) authenticate(timeout);
+  if (!options_.username.empty()) {
+    authenticate(options_.username, options_.credentials, timeout);
+  }
 }
 
-void Session::authenticate(Milliseconds timeout) {
+void Session::authenticate(const std::string& username,
+                           const std::map<std::string, VarValue>& credentials,
+                           Milliseconds timeout) {
   Texts texts;
-  texts.add("username", options_.username);
-  texts.add("credentials", options_.credentials);
+  texts.add("username", username);
+  texts.add("credentials", credentials);
   call(texts.request(EntryType::client_session_op_req, service_, "AuthenticateUser"), Incoming{},
        timeout);
+  const std::lock_guard lock(mutex_);
+  user_ = username;
+}
+
+void Session::log_out() {
+  Texts texts;
+  {
+    const std::lock_guard lock(mutex_);
+    texts.add("username", user_);
+  }
+  call(texts.request(EntryType::client_session_op_req, service_, "LogoutUser"), Incoming{},
+       Milliseconds(0));
+  const std::lock_guard lock(mutex_);
+  user_.clear();
 }
 
 std::string Session::ask_object_type(const std::string& path, Milliseconds timeout) {

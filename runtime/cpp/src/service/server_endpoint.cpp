@@ -186,6 +186,14 @@ void ServerEndpoint::answer_late(const LateAnswer& late, const Error& error) {
   finish_late(late, writer);
 }
 
+void ServerEndpoint::answer_late_text(const LateAnswer& late, std::string_view text) {
+  Writer& writer = channel::thread_writer();
+  writer.reset(late.gathering ? late.gathering->version() : connection_->version());
+  writer.string_element("return", text);
+  writer.entry(endpoint::answer_header(question_of(late)), 1, 0);
+  finish_late(late, writer);
+}
+
 void ServerEndpoint::finish_late(const LateAnswer& late, Writer& writer) {
   if (late.gathering) {
     late.gathering->put(late.place, writer.copy(), true);

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <exception>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -52,6 +53,9 @@ class ServerEndpoint final : public channel::Receiver,
   /// The endpoint whose request this thread handles; null outside of handlers.
   static ServerEndpoint* current();
 
+  /// Who is logged in; null for nobody.
+  [[nodiscard]] std::shared_ptr<const User> user() const;
+
   /// Sends something that is not answered. Failures are ignored.
   void send_packet(const EntryHeader& header, std::span<const Parameter> parameters,
                    const void* const* values);
@@ -84,6 +88,7 @@ class ServerEndpoint final : public channel::Receiver,
   struct LateAnswer;
   void answer_late(const LateAnswer& late, const void* result);
   void answer_late(const LateAnswer& late, const Error& error);
+  void answer_late_text(const LateAnswer& late, std::string_view text);
 
   void take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
                    channel::Laters& laters) override;
@@ -108,6 +113,7 @@ class ServerEndpoint final : public channel::Receiver,
                         const Entry& entry, std::uint32_t& own_endpoint);
   std::uint32_t disconnect(Decoder& decoder, const Message& message, const Entry& entry);
   std::uint32_t join(const std::shared_ptr<ServiceHost>& host, const Message& message);
+  bool let_in(Decoder& decoder, std::string_view user, const Element& credentials);
   void quit();
 
   // Session requests (session_requests.cpp)
@@ -115,9 +121,16 @@ class ServerEndpoint final : public channel::Receiver,
   void handle_question(const Question& question);
   void answer_question(const Question& question);
   void answer_session_object_type(const Question& question);
-  void answer_session_operation(const Question& question);
   void answer_member(const Question& question, MemberKind kind);
   void answer_unserved(const Question& question);
+  // Who may do what (access.cpp)
+  void check_access(const Question& question);
+  void log_in(std::string_view name, const std::map<std::string, VarValue>& credentials);
+  std::shared_ptr<const User> need_user() const;
+  void answer_session_operation(const Question& question);
+  void answer_user_operation(const Question& question);
+  void answer_monitor_operation(const Question& question);
+
   // Memories (memories.cpp)
   void answer_memory(const Question& question);
   void read_memory(const Question& question, Decoder& decoder, const Member& member,
@@ -143,6 +156,9 @@ class ServerEndpoint final : public channel::Receiver,
   std::uint32_t remote_endpoint_ = 0;
   std::atomic<bool> is_member_{false};  // of the host's clients
   bool is_leaving_ = false;             // has said farewell; with the dispatch turn
+
+  mutable std::mutex user_mutex_;
+  std::shared_ptr<const User> user_;
 
   std::atomic<std::uint16_t> next_message_id_{0};
   std::atomic<channel::Time> last_heard_;

@@ -109,6 +109,7 @@ void ServerEndpoint::handle_question(const Question& question) {
 }
 
 void ServerEndpoint::answer_question(const Question& question) {
+  check_access(question);
   switch (question.entry.type) {
     case EntryType::property_get_req:
     case EntryType::property_set_req:
@@ -166,22 +167,6 @@ void ServerEndpoint::answer_session_object_type(const Question& question) {
   const auto type = type_for(*object->type, version);
   if (!type) throw Error(ErrorCode::object_not_found, "no type for this version of the client");
   answer_value(question, "objecttype", type_of<std::string>, &*type);
-}
-
-// A service without users: there is nobody to authenticate and nobody to lock for.
-void ServerEndpoint::answer_session_operation(const Question& question) {
-  const std::string_view operation = question.entry.member;
-  if (operation == "AuthenticateUser" || operation == "LogoutUser" ||
-      operation == "RequestObjectLock" || operation == "RequestClientObjectLock" ||
-      operation == "ReleaseObjectLock" || operation == "ReleaseClientObjectLock") {
-    throw Error(ErrorCode::invalid_operation, "User authentication not activated for this service");
-  }
-  if (operation == "MonitorEnter" || operation == "MonitorContinueEnter" ||
-      operation == "MonitorExit") {
-    find_object(question.entry.service_path);
-    throw Error(ErrorCode::invalid_argument, "Object is not monitor lockable");
-  }
-  throw Error(ErrorCode::protocol_error, "Invalid ClientSessionOp command");
 }
 
 std::shared_ptr<const ServedObject> ServerEndpoint::find_object(std::string_view path) {
@@ -263,6 +248,11 @@ namespace rr {
 std::uint32_t ServiceContext::current_client() {
   const service::ServerEndpoint* const endpoint = service::ServerEndpoint::current();
   return endpoint != nullptr ? endpoint->client().endpoint : 0;
+}
+
+std::shared_ptr<const User> ServiceContext::current_user() {
+  const service::ServerEndpoint* const endpoint = service::ServerEndpoint::current();
+  return endpoint != nullptr ? endpoint->user() : nullptr;
 }
 
 }  // namespace rr
