@@ -30,6 +30,9 @@ ServerEndpoint::~ServerEndpoint() {
   if (client_.endpoint != 0) directory_->core()->release_endpoint(client_.endpoint);
 }
 
+const endpoint::Core& ServerEndpoint::core() const { return *directory_->core(); }
+const TypeRegistry& ServerEndpoint::types() const { return *host_->types(); }
+
 // Ends a message of answers, or of one packet, with its header, and sends it.
 void ServerEndpoint::send_answer(Writer& writer, std::uint32_t entry_count, EntryType single_type,
                                  bool is_reply) {
@@ -69,6 +72,10 @@ void ServerEndpoint::send_packet(const EntryHeader& header, std::span<const Para
   } catch (const Error&) {
     // The client is gone or does not listen; its connection ends and with it the session.
   }
+}
+
+void ServerEndpoint::send_request(Writer& entry, EntryType type) {
+  send_answer(entry, 1, type, false);
 }
 
 // Sends a finished answer, or puts it where those of the same message gather.
@@ -184,15 +191,29 @@ void Gathering::put(std::size_t place, std::vector<std::byte> entry, bool is_lat
 
 void ServerEndpoint::leave() {
   if (is_member_.exchange(false)) host_->remove_client(*this);
+  end_members();
   connection_->close_after(close_delay);
 }
 
-void ServerEndpoint::lost(const Error& /*why*/, channel::Laters& /*laters*/) {}
+void ServerEndpoint::lost(const Error& why, channel::Laters& laters) {
+  callbacks_.end(why.message(), laters);
+}
 
 void ServerEndpoint::closed() {
   if (is_member_.exchange(false)) host_->remove_client(*this);
+  end_members();
   last_object_.reset();
 }
+
+// The client has gone: what it has begun ends with it.
+void ServerEndpoint::end_members() {
+  channel::Laters laters;
+  callbacks_.end("the client has left", laters);
+  callbacks_.post(std::move(laters));
+  generators_.end();
+}
+
+void ServerEndpoint::release_path(std::string_view path) { generators_.release_path(path); }
 
 void ServerEndpoint::attend(channel::Time now) {
   const channel::Milliseconds limit = directory_->core()->options().client_timeout;
@@ -200,10 +221,18 @@ void ServerEndpoint::attend(channel::Time now) {
     connection_->close(
         Error(ErrorCode::connection_error, "the client has been silent for too long"));
   }
+  channel::Laters laters;
+  generators_.drop_unused(now, directory_->core()->options().generator_timeout, laters);
+  callbacks_.post(std::move(laters));
 }
 
-// No request of ours is ever open: callbacks are not served.
-void ServerEndpoint::take_answer(const Message& /*message*/, const Entry& /*entry*/,
-                                 const MemoryRef& /*owner*/, channel::Laters& /*laters*/) {}
+void ServerEndpoint::take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
+                                 channel::Laters& laters) {
+  last_heard_.store(channel::coarse_now(), std::memory_order_relaxed);
+  callbacks_.take_answer(message, entry, owner, laters);
+  if (static_cast<ErrorCode>(entry.error) == ErrorCode::invalid_endpoint) {  // 07, section 1
+    laters.emplace_back([self = shared_from_this()] { self->leave(); });
+  }
+}
 
 }  // namespace rr::service

@@ -18,6 +18,8 @@
 #include "rr/writer.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/service/callbacks.hpp"
+#include "runtime/cpp/src/service/generators.hpp"
 #include "runtime/cpp/src/service/object_tree.hpp"
 
 namespace rr::service {
@@ -48,12 +50,23 @@ class ServerEndpoint final : public channel::Receiver,
 
   [[nodiscard]] const ServiceClient& client() const { return client_; }
   [[nodiscard]] channel::Connection& connection() const { return *connection_; }
+  [[nodiscard]] const endpoint::Core& core() const;
+  [[nodiscard]] const TypeRegistry& types() const;
+  [[nodiscard]] Callbacks& callbacks() { return callbacks_; }
+  [[nodiscard]] Generators& generators() { return generators_; }
   /// The endpoint whose request this thread handles; null outside of handlers.
   static ServerEndpoint* current();
+  /// The path of the object that it asks.
+  static std::string_view current_path();
 
   /// Sends something that is not answered. Failures are ignored.
   void send_packet(const EntryHeader& header, std::span<const Parameter> parameters,
                    const void* const* values);
+  /// Puts the header of a message before an entry of the service's own, and sends it. Throws
+  /// rr::Error.
+  void send_request(Writer& entry, EntryType type);
+  /// The service has released the object at a path and those below.
+  void release_path(std::string_view path);
   /// Ends the session, and soon the connection.
   void leave();
 
@@ -97,10 +110,16 @@ class ServerEndpoint final : public channel::Receiver,
   void answer_session_object_type(const Question& question);
   void answer_session_operation(const Question& question);
   void answer_member(const Question& question, MemberKind kind);
+  // Generators (generators.cpp)
+  void answer_generator_step(const Question& question);
+  void step_generator(const Question& question, Decoder& decoder, Generators::Use& generator);
+  static void end_generator(ErrorCode wish, Generators::Use& generator);
+  void answer_nothing(const Question& question);
   void answer_unserved(const Question& question);
   std::shared_ptr<const ServedObject> find_object(std::string_view path);
   const Member& find_member(const ServedObject& object, std::string_view name, MemberKind kind);
 
+  void end_members();
   void finish(const Question& question, Writer& writer);
   void finish_late(const LateAnswer& late, Writer& writer);
   void send_answer(Writer& writer, std::uint32_t entry_count, EntryType single_type, bool is_reply);
@@ -118,6 +137,9 @@ class ServerEndpoint final : public channel::Receiver,
   std::uint32_t remote_endpoint_ = 0;
   std::atomic<bool> is_member_{false};  // of the host's clients
   bool is_leaving_ = false;             // has said farewell; with the dispatch turn
+
+  Callbacks callbacks_{*this};
+  Generators generators_;
 
   std::atomic<std::uint16_t> next_message_id_{0};
   std::atomic<channel::Time> last_heard_;
