@@ -105,7 +105,8 @@ struct ObjectIndex {
 
 /// The base of every generated skeleton: an object that a service offers. Its members are called on
 /// the thread that read the request, one at a time and in order for each client; calls of different
-/// clients may overlap. The skeleton of an object has the members of those it implements.
+/// clients may overlap, and so does one that waits for a callback (rr_call_back) with those that
+/// its client requests meanwhile. The skeleton of an object has the members of those it implements.
 class Skeleton {
  public:
   Skeleton();
