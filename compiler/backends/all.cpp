@@ -7,28 +7,6 @@
 
 namespace robdef {
 
-bool Abilities::has(model::MemberKind kind) const {
-  switch (kind) {
-    case model::MemberKind::property:
-      return properties;
-    case model::MemberKind::function:
-      return functions;
-    case model::MemberKind::event:
-      return events;
-    case model::MemberKind::objref:
-      return objrefs;
-    case model::MemberKind::pipe:
-      return pipes;
-    case model::MemberKind::callback:
-      return callbacks;
-    case model::MemberKind::wire:
-      return wires;
-    case model::MemberKind::memory:
-      return memories;
-  }
-  return false;
-}
-
 const std::vector<const Backend*>& backends() {
   static const cpp::CppBackend cpp;
   static const std::vector<const Backend*> all{&cpp};

@@ -24,9 +24,10 @@ struct Abilities {
   bool callbacks = false;
   bool wires = false;
   bool memories = false;
+  bool contained_memories = false;  ///< memories in a list or map
 
-  /// Of a member of this kind; generators aside.
-  [[nodiscard]] bool has(model::MemberKind kind) const;
+  /// Whether this member can be served.
+  [[nodiscard]] bool serve(const model::Member& member) const;
 };
 
 /// What the user chose beyond the language.

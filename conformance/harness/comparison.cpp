@@ -176,6 +176,7 @@ bool is_host_specific(const std::string& error_name) {
 Bytes addressed(const Frame& frame, const PlayedConnection& connection) {
   Json decoded = frame.decoded;
   rename_endpoints(decoded.at("header"), connection.live_endpoints);
+  for (Json& entry : decoded.at("entries")) rename_generator(entry, connection.live_generators);
   if (decoded == frame.decoded) return frame.bytes;
   return rr::write_tree(message_of_json(decoded));
 }
@@ -228,6 +229,8 @@ std::optional<std::string> Comparison::difference(const Frame& recorded,
     }
     put_aside_client_version(before.at("elements"), now.at("elements"));
     put_aside_ports(before.at("elements"), now.at("elements"));
+    put_aside_packet_time(before, now);
+    put_aside_generator_index(before, now, connection.live_generators);
   }
   if (rr::write_tree(message_of_json(decoded)) == recorded.bytes) return std::nullopt;
   return describe_difference(recorded.decoded, decoded);

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "conformance/harness/captures.hpp"
+#include "conformance/harness/passing_parts.hpp"
 
 /// Compares a frame that came with the recorded one, and prepares recorded ones for sending.
 namespace rr::conformance {
@@ -17,6 +18,7 @@ namespace rr::conformance {
 struct PlayedConnection {
   /// Live endpoint numbers by recorded ones; filled when they are first seen.
   std::map<std::uint32_t, std::uint32_t> live_endpoints;
+  Generators live_generators;
   /// How many messages more than the played side the recorded one had counted.
   int message_id_lead = 0;
   /// Answers that the played side leaves out as listed; it may count them or not.
@@ -25,7 +27,7 @@ struct PlayedConnection {
   bool take_next_message_id = false;
 };
 
-/// The bytes of a recorded frame, addressed to the live endpoints.
+/// The bytes of a recorded frame, addressed to the live endpoints and generators.
 Bytes addressed(const Frame& frame, const PlayedConnection& connection);
 
 /// What may differ between two runs of one scenario is put aside, all else is compared byte for

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "conformance/harness/decoded.hpp"
 #include "conformance/harness/entry_types.hpp"
 
@@ -140,6 +142,35 @@ TEST(RepeatedTypeAnswers, AreFoundByTheirRequest) {
   EXPECT_FALSE(repeats_type_answer(scenario, scenario.frames[5]));
   EXPECT_TRUE(repeats_type_answer(scenario, scenario.frames[6]));
   EXPECT_FALSE(repeats_type_answer(scenario, scenario.frames[15]));
+}
+
+TEST_F(ComparisonTest, TheTimeOfAWireValueIsFreeButATime) {
+  const Frame& answer = frame("wires", "v4", 8);
+  const char* seconds = "/entries/0/elements/0/elements/0/value/0";
+  EXPECT_EQ(comparison_.difference(answer, changed(answer, seconds, "17"), connection_, nullptr),
+            std::nullopt);
+  const char* nanoseconds = "/entries/0/elements/0/elements/1/value/0";
+  EXPECT_EQ(comparison_.difference(answer, changed(answer, nanoseconds, 5), connection_, nullptr),
+            std::nullopt);
+  EXPECT_NE(comparison_.difference(answer, changed(answer, nanoseconds, -1), connection_, nullptr),
+            std::nullopt);
+  const char* packet = "/entries/0/elements/1/value/0";
+  EXPECT_NE(comparison_.difference(answer, changed(answer, packet, 0.5), connection_, nullptr),
+            std::nullopt);
+}
+
+TEST_F(ComparisonTest, AGeneratorIndexMayDifferButMustStayTheSame) {
+  const auto& frames = captures().find("generators", "v4")->frames;
+  const auto is_given = [](const Frame& one) {
+    return is(one, EntryType::function_call_res) && one.entries()[0].at("error") == 0;
+  };
+  const Frame& given = *std::find_if(frames.begin(), frames.end(), is_given);
+  const Frame& step = frames.at(static_cast<std::size_t>(given.number) + 1);
+  ASSERT_TRUE(is(step, EntryType::generator_next_req));
+  const char* index = "/entries/0/elements/0/value/0";
+  EXPECT_EQ(comparison_.difference(given, changed(given, index, 7), connection_, nullptr),
+            std::nullopt);
+  EXPECT_EQ(addressed(step, connection_), changed(step, index, 7));
 }
 
 }  // namespace

@@ -52,6 +52,12 @@ TEST(Values, ThingsThatArriveHaveNoOrderButACount) {
   EXPECT_FALSE(same_things(json("[1,2,2]"), json("[1,1,2]")));
 }
 
+TEST(Values, AnArrayRecordedWithoutItsDimsIsTheSame) {
+  EXPECT_TRUE(same_value(json("[1,2]"), json(R"({"dims":[2,1],"array":[1,2]})")));
+  EXPECT_FALSE(same_value(json("[1,3]"), json(R"({"dims":[2,1],"array":[1,2]})")));
+  EXPECT_FALSE(same_value(json(R"({"dims":[2,1],"array":[1,2]})"), json("[1,2]")));
+}
+
 TEST(Numbers, EveryKindComesBackWithTheSameBits) {
   using rr::ElementType;
   const std::pair<ElementType, const char*> samples[] = {

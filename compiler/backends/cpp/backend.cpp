@@ -71,12 +71,6 @@ void print(const TemplateFolder& folder, const OutputRule& rule, const ModelView
 
 std::string_view CppBackend::summary() const { return "C++20: stubs, skeletons and value types"; }
 
-const Abilities& CppBackend::abilities() const {
-  static constexpr Abilities abilities{
-      .properties = true, .functions = true, .events = true, .objrefs = true};
-  return abilities;
-}
-
 FileSet CppBackend::generate(const model::Model& model, const GenerateOptions& options,
                              Report& report) const {
   FileSet files;

@@ -5,12 +5,23 @@
 
 namespace robdef::cpp {
 
+/// A memory in a list or map means nothing on the wire.
+inline constexpr Abilities runtime_abilities{.properties = true,
+                                             .functions = true,
+                                             .generators = true,
+                                             .events = true,
+                                             .objrefs = true,
+                                             .pipes = true,
+                                             .callbacks = true,
+                                             .wires = true,
+                                             .memories = true};
+
 /// C++20 on the runtime of this tree (README.md in this folder says what is generated).
 class CppBackend final : public Backend {
  public:
   [[nodiscard]] std::string_view name() const override { return "cpp"; }
   [[nodiscard]] std::string_view summary() const override;
-  [[nodiscard]] const Abilities& abilities() const override;
+  [[nodiscard]] const Abilities& abilities() const override { return runtime_abilities; }
   [[nodiscard]] FileSet generate(const model::Model& model, const GenerateOptions& options,
                                  Report& report) const override;
   [[nodiscard]] std::string view(const model::Model& model, Report& report) const override;

@@ -17,7 +17,7 @@
 #include "experimental/implements.hpp"
 #include "experimental/imports.hpp"
 #include "experimental/line_ends.hpp"
-#include "experimental/members_to_come.hpp"
+#include "experimental/members.hpp"
 #include "experimental/namedarrays.hpp"
 #include "experimental/pods.hpp"
 #include "experimental/properties.hpp"
@@ -189,9 +189,42 @@ TEST(Generated, MemberTablesSayWhatTheDefinitionSays) {
   EXPECT_EQ(depth.parameters[0].type, (&rr::type_of<rr::MaximumLength<std::uint16_t, 70000>>));
 }
 
-TEST(Generated, MembersThatCannotBeServedAreLeftOut) {
-  EXPECT_THAT(names_of(experimental::members_to_come::rr_object_Everything.members),
-              ElementsAre("level"));
+TEST(Generated, MemberTablesKnowAllKinds) {
+  using namespace experimental::members;
+  const std::span<const rr::Member> pipes = rr_object_Pipes.members;
+  EXPECT_EQ(pipes[4].kind, rr::MemberKind::pipe);
+  EXPECT_EQ(pipes[4].access, rr::readonly | rr::unreliable | rr::nolock);
+  EXPECT_EQ(pipes[4].type, &rr::type_of<Vector3>);
+  EXPECT_EQ(pipes[9].type, (&rr::type_of<rr::FixedLength<double, 100000>>));
+
+  const rr::Member& hurry = rr_object_Callbacks.members[3];
+  EXPECT_EQ(hurry.kind, rr::MemberKind::callback);
+  EXPECT_EQ(hurry.access, rr::urgent);
+  EXPECT_EQ(hurry.type, &rr::type_of<double>);
+  ASSERT_EQ(hurry.parameters.size(), 2U);
+  EXPECT_EQ(hurry.parameters[0].name, "client");
+  EXPECT_EQ(rr_object_Callbacks.members[0].type, nullptr);
+
+  EXPECT_EQ(rr_object_Wires.members[5].kind, rr::MemberKind::wire);
+  EXPECT_EQ(rr_object_Wires.members[5].access, rr::readonly | rr::nolock);
+
+  const rr::Member& grid = rr_object_Memories.members[5];
+  EXPECT_EQ(grid.kind, rr::MemberKind::memory);
+  EXPECT_EQ(grid.access, rr::nolockread);
+  EXPECT_EQ(grid.type, &rr::type_of<rr::MultiArray<Sample>>);
+}
+
+TEST(Generated, MemberTablesKnowTheFormsOfGenerators) {
+  const auto members = experimental::members::rr_object_Generators.members;
+  EXPECT_EQ(members[0].generator, rr::GeneratorForm::returns);
+  EXPECT_EQ(members[0].generator_parameter, nullptr);
+  EXPECT_EQ(members[2].generator, rr::GeneratorForm::takes);
+  EXPECT_EQ(members[2].type, nullptr);
+  ASSERT_EQ(members[2].parameters.size(), 1U);
+  EXPECT_EQ(members[2].parameters[0].name, "label");
+  EXPECT_EQ(members[4].generator, rr::GeneratorForm::both);
+  EXPECT_EQ(members[4].generator_parameter, &rr::type_of<double>);
+  EXPECT_EQ(members[5].access, rr::nolock);
 }
 
 TEST(Generated, ClassesFollowImplements) {

@@ -71,6 +71,12 @@ std::string break_list(const List& list, std::size_t indent, bool is_declaration
       below ? *below : join(list.items, ",\n" + blanks(indent + continuation)) + list.after;
   if (is_declaration && !below && list.items.size() == 1) return break_parameter(list, indent);
   const std::string break_here = "\n" + blanks(indent + continuation);
+  if (is_declaration && !below && list.after.starts_with(") ")) {
+    // What stands behind the parameters gets a line of its own.
+    const auto filled =
+        fill({.before = {}, .items = list.items, .after = ")"}, indent + continuation);
+    if (filled) return list.before + break_here + *filled + break_here + list.after.substr(2);
+  }
   const std::size_t angle = list.before.find('<');
   if (fits(list.before, indent) || angle == std::string::npos) {
     return list.before + break_here + items;

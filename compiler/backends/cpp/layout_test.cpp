@@ -81,5 +81,21 @@ TEST(Layout, ListsSeveralBasesBelowEachOther) {
             "class A : public " + long_name(60) + ",\n          public C" + long_name(40) + " {");
 }
 
+TEST(Layout, PutsWhatFollowsLongParametersOnItsOwnLine) {
+  const std::string last =
+      "const ::std::optional<::std::vector<::rr::VarValue>>& another_parameter_with_a_long_name";
+  const Signature signature{
+      .result = "void",
+      .name = "a_callback_whose_name_is_rather_long",
+      .parameters = {"::std::uint32_t client",
+                     "const ::rr::VarValue& a_first_parameter_with_a_long_name", last},
+      .after = " const"};
+  EXPECT_EQ(opening(signature, 2),
+            "void a_callback_whose_name_is_rather_long(\n"
+            "      ::std::uint32_t client, const ::rr::VarValue& "
+            "a_first_parameter_with_a_long_name,\n      " +
+                last + ")\n      const {");
+}
+
 }  // namespace
 }  // namespace robdef::cpp

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The view of an object's members. Everything that depends on the kind of a member is here.
+// The view of an object's members: what they are and how it is called. Their lines are made by
+// member_lines.hpp.
 #include <algorithm>
 #include <map>
 #include <utility>
 #include <variant>
 
-#include "compiler/backends/cpp/constants.hpp"
+#include "compiler/backends/cpp/backend.hpp"
 #include "compiler/backends/cpp/layout.hpp"
+#include "compiler/backends/cpp/member_lines.hpp"
 #include "compiler/backends/cpp/view_parts.hpp"
 #include "compiler/backends/words.hpp"
 
@@ -19,23 +21,6 @@ using model::Object;
 using model::Type;
 
 constexpr std::size_t in_class = 2;
-
-bool can_serve(const Member& member) {
-  switch (member.kind) {
-    case MemberKind::property:
-    case MemberKind::event:
-    case MemberKind::objref:
-      return true;
-    case MemberKind::function:
-      return member.generator == model::GeneratorForm::none;
-    case MemberKind::pipe:
-    case MemberKind::callback:
-    case MemberKind::wire:
-    case MemberKind::memory:
-      return false;
-  }
-  return false;
-}
 
 /// The implemented object from whose classes a member comes. Null when there is none, and when
 /// there are two that do not have it from a common one: then it is made anew.
@@ -69,11 +54,12 @@ std::string access_text(const model::Access& access) {
   return join(flags, " | ");
 }
 
-std::string quoted(const std::string& text) { return "\"" + text + "\""; }
-
-std::string statement(const std::string& before, const std::vector<std::string>& items,
-                      std::size_t indent) {
-  return list({.before = before, .items = items, .after = ");"}, indent);
+/// What its kind is called among those that are not served.
+std::string plural_of(const Member& member) {
+  if (member.generator != model::GeneratorForm::none) return "generator functions";
+  const bool is_contained = member.type.container != model::ContainerForm::none;
+  if (member.kind == MemberKind::memory && is_contained) return "memories in a list or map";
+  return std::string(model::name_of(member.kind)) + "s";
 }
 
 class MemberMaker {
@@ -117,7 +103,7 @@ class MemberMaker {
     view.is_callback = member.kind == MemberKind::callback;
     view.is_wire = member.kind == MemberKind::wire;
     view.is_memory = member.kind == MemberKind::memory;
-    view.is_served = can_serve(member);
+    view.is_served = runtime_abilities.serve(member);
     view.is_inherited = origin(object_, member.name) != nullptr;
     view.is_readonly = member.access.is_readonly;
     view.is_writeonly = member.access.is_writeonly;
@@ -132,12 +118,9 @@ class MemberMaker {
   }
 
   void report_unserved(const Member& member) {
-    const bool is_generator = member.kind == MemberKind::function;
     context_.report.add(Code::R0904, member.span,
-                        "the C++ runtime does not serve " +
-                            (is_generator ? std::string("generator function")
-                                          : std::string(model::name_of(member.kind))) +
-                            "s yet; `" + member.name + "` is left out");
+                        "the C++ runtime does not serve " + plural_of(member) + "; `" +
+                            member.name + "` is left out");
   }
 
   /// Types, parameters and names.
@@ -170,6 +153,8 @@ class MemberMaker {
       view.value = context_.names.local("value", taken);
       if (view.has_result) view.local = variable(type, view.value, 8);
       if (view.is_property) make_stored(view, type);
+      if (view.is_memory) make_item(view, member);
+      include_for(view);
     }
   }
 
@@ -214,276 +199,56 @@ class MemberMaker {
                  stored_name(view), in_class);
   }
 
-  static std::string stored_name(const MemberView& view) { return "rr_value_" + view.wire_name; }
+  void make_item(MemberView& view, const Member& member) {
+    Type item = member.type;
+    item.container = model::ContainerForm::none;
+    item.array = model::ArrayForm::none;
+    view.item = spell(item).text;
+    view.is_multi = member.type.array == model::ArrayForm::any_shape;
+  }
+
+  /// The headers that a kind needs beside those of every object.
+  void include_for(const MemberView& view) {
+    if (!view.is_served) return;
+    if (view.is_pipe) context_.types.include("<rr/pipes.hpp>");
+    if (view.is_wire) context_.types.include("<rr/wires.hpp>");
+    if (view.is_memory) context_.types.include("<rr/memories.hpp>");
+    if (view.is_generator) context_.types.include("<rr/generators.hpp>");
+    if (view.is_callback) {
+      context_.types.include("<cstdint>");
+      context_.types.include("<rr/callbacks.hpp>");
+    }
+  }
 
   CppType spell(const Type& type) { return context_.types.spell(type, {.hidden = &hidden_}); }
 
   void make_served(MemberView& view, const Member& member) {
-    make_tables(view, member);
+    const std::string tables = table_name("parameters", object_.name);
+    rows_.push_back(member_row(view, tables, access_text(member.access)));
+    if (view.has_parameters) view.parameter_table = parameter_table(view);
+    lay_out(view, member);
+  }
+
+  void lay_out(MemberView& view, const Member& member) {
     switch (member.kind) {
       case MemberKind::property:
-        make_property(view);
-        return;
+        return lay_out_property(view, context_.names);
       case MemberKind::function:
-        make_function(view);
-        return;
+        return view.is_generator ? lay_out_generator(view, context_.names)
+                                 : lay_out_function(view, context_.names);
       case MemberKind::event:
-        make_event(view);
-        return;
+        return lay_out_event(view);
       case MemberKind::objref:
-        make_objref(view);
-        return;
+        return lay_out_objref(view, context_.names, stub_name(object_));
       case MemberKind::pipe:
+        return lay_out_pipe(view);
       case MemberKind::callback:
+        return lay_out_callback(view, context_.names);
       case MemberKind::wire:
+        return lay_out_wire(view);
       case MemberKind::memory:
-        return;
+        return lay_out_memory(view);
     }
-  }
-
-  void make_tables(MemberView& view, const Member& member) {
-    std::string head = "::rr::" + view.kind;
-    if (!view.descriptor.empty()) head += "<" + view.descriptor + ">";
-    std::vector<std::string> items{quoted(member.name)};
-    if (view.is_objref) {
-      items.push_back(quoted(view.object_type));
-      if (view.has_index) {
-        items.emplace_back(view.has_int32_index ? "::rr::IndexForm::int32"
-                                                : "::rr::IndexForm::string");
-      }
-    }
-    const std::string access = access_text(member.access);
-    if (view.has_parameters) {
-      items.push_back(table_name("parameters", object_.name) + "::" + view.name);
-    } else if (!access.empty() && (view.is_function || view.is_event)) {
-      items.emplace_back("{}");
-    }
-    if (!access.empty() && !view.is_objref) items.push_back(access);
-    rows_.push_back(list({.before = head + "(", .items = items, .after = "),"}, 4));
-    if (view.has_parameters) make_parameter_table(view);
-  }
-
-  static void make_parameter_table(MemberView& view) {
-    List table{.before = "static constexpr ::rr::Parameter " + view.name + "[] = {",
-               .items = {},
-               .after = "};"};
-    for (const ParameterView& parameter : view.parameters) {
-      table.items.push_back(list({.before = "::rr::parameter<" + parameter.descriptor + ">(",
-                                  .items = {quoted(parameter.wire_name)},
-                                  .after = ")"},
-                                 in_class + 4));
-    }
-    view.parameter_table = braced_list(table, in_class);
-  }
-
-  static Signature getter(const MemberView& view, const std::string& after = "",
-                          const std::string& before = "") {
-    return {.before = before,
-            .result = view.type,
-            .name = view.getter,
-            .parameters = {},
-            .after = after};
-  }
-  static Signature setter(const MemberView& view, const std::string& after = "",
-                          const std::string& before = "") {
-    return {.before = before,
-            .result = "void",
-            .name = view.setter,
-            .parameters = {view.passed + " " + view.value},
-            .after = after};
-  }
-
-  static std::string token_parameter(const MemberView& view, const std::string& token) {
-    return view.token + "&& " + token;
-  }
-  static std::string forwarded(const MemberView& view, const std::string& token) {
-    return "::std::forward<" + view.token + ">(" + token + ")";
-  }
-  std::string token_name(const MemberView& view) const {
-    std::set<std::string> taken{view.value};
-    for (const ParameterView& parameter : view.parameters) taken.insert(parameter.name);
-    return context_.names.local("token", taken);
-  }
-
-  void make_property(MemberView& view) const {
-    const std::string token = token_name(view);
-    const std::string stored = stored_name(view);
-    view.stub_get = definition(
-        getter(view), List{"return rr_get<" + view.type + ">(", {view.entry}, ");"}, in_class);
-    view.stub_set =
-        definition(setter(view), List{"rr_set(", {view.entry, "&" + view.value}, ");"}, in_class);
-    view.async_get = definition(
-        {.result = "auto",
-         .name = "async_" + view.getter,
-         .parameters = {token_parameter(view, token)}},
-        List{"return rr_async_get<" + view.type + ">(", {view.entry, forwarded(view, token)}, ");"},
-        in_class);
-    view.async_set =
-        definition({.result = "auto",
-                    .name = "async_" + view.setter,
-                    .parameters = {view.passed + " " + view.value, token_parameter(view, token)}},
-                   List{"return rr_async_set<" + view.type + ">(",
-                        {view.entry, forwarded(view, token), view.value},
-                        ");"},
-                   in_class);
-    view.skeleton_get = declaration(getter(view, " = 0", "virtual "), in_class);
-    view.skeleton_set = declaration(setter(view, " = 0", "virtual "), in_class);
-    const std::string override_get = view.can_get ? " override" : "";
-    const std::string override_set = view.can_set ? " override" : "";
-    view.default_get =
-        definition(getter(view, override_get), "return " + stored + ".get();", in_class);
-    view.default_set =
-        definition(setter(view, override_set), stored + ".set(" + view.value + ");", in_class);
-  }
-
-  static std::vector<std::string> passed_parameters(const MemberView& view) {
-    std::vector<std::string> result;
-    for (const ParameterView& parameter : view.parameters) {
-      result.push_back(parameter.passed + " " + parameter.name);
-    }
-    return result;
-  }
-  static std::vector<std::string> names_of(const std::vector<ParameterView>& parameters) {
-    std::vector<std::string> result;
-    for (const ParameterView& parameter : parameters) result.push_back(parameter.name);
-    return result;
-  }
-  template <class... More>
-  static std::vector<std::string> with(std::vector<std::string> items, More... more) {
-    (items.push_back(std::move(more)), ...);
-    return items;
-  }
-  static std::vector<std::string> after(std::vector<std::string> items,
-                                        const std::vector<std::string>& more) {
-    items.insert(items.end(), more.begin(), more.end());
-    return items;
-  }
-
-  void make_function(MemberView& view) const {
-    const std::string token = token_name(view);
-    const std::vector<std::string> parameters = passed_parameters(view);
-    const std::vector<std::string> names = names_of(view.parameters);
-    const std::string async_name = "async_" + view.name;
-    const std::string returns = view.has_result ? "return " : "";
-    view.stub_call = definition(
-        {.result = view.type, .name = view.name, .parameters = parameters},
-        List{returns + "rr_call<" + view.type + ">(", after({view.entry}, names), ");"}, in_class);
-    view.async_call = definition({.result = "auto",
-                                  .name = async_name,
-                                  .parameters = with(parameters, token_parameter(view, token))},
-                                 List{"return rr_async_call<" + view.type + ">(",
-                                      after({view.entry, forwarded(view, token)}, names), ");"},
-                                 in_class);
-    view.skeleton_call = declaration({.before = "virtual ",
-                                      .result = view.type,
-                                      .name = view.name,
-                                      .parameters = parameters,
-                                      .after = " = 0"},
-                                     in_class);
-    view.skeleton_async = skeleton_async(view, parameters);
-    if (view.has_parameters) {
-      view.dispatch_read = statement("rr_request.read(", names, 6);
-    }
-    view.dispatch_call =
-        statement("return " + async_name + "(", with(names, std::string("rr_request")), 6);
-    view.default_call =
-        definition({.before = "",
-                    .result = view.type,
-                    .name = view.name,
-                    .parameters = unnamed(view.parameters),
-                    .after = " override"},
-                   "::rr::throw_not_implemented(" + quoted(view.wire_name) + ");", in_class);
-  }
-
-  static std::vector<std::string> unnamed(const std::vector<ParameterView>& parameters) {
-    std::vector<std::string> result;
-    for (const ParameterView& parameter : parameters) result.push_back(parameter.passed);
-    return result;
-  }
-
-  /// The form that may answer later; by default it answers with what the plain one returns.
-  [[nodiscard]] std::string skeleton_async(const MemberView& view,
-                                           const std::vector<std::string>& parameters) const {
-    std::set<std::string> taken;
-    for (const ParameterView& parameter : view.parameters) taken.insert(parameter.name);
-    const std::string answer = context_.names.local("answer", taken);
-    const Signature signature{
-        .before = "virtual ",
-        .result = "void",
-        .name = "async_" + view.name,
-        .parameters = with(parameters, "::rr::Answer<" + view.type + "> " + answer)};
-    List call{.before = view.name + "(", .items = names_of(view.parameters), .after = ");"};
-    if (!view.has_result) return long_definition(signature, call, answer + "();", in_class);
-    call.before.insert(0, answer + "(");
-    call.after = "));";
-    return definition(signature, call, in_class);
-  }
-
-  static void make_event(MemberView& view) {
-    std::vector<std::string> types;
-    for (const ParameterView& parameter : view.parameters) types.push_back(parameter.type);
-    view.type = list({.before = "::rr::Event<", .items = types, .after = ">"}, in_class);
-    view.stub_event = definition({.result = view.type, .name = view.name},
-                                 "return {*this, " + view.entry + "};", in_class);
-    view.skeleton_fire = definition(
-        {.result = "void",
-         .name = view.name,
-         .parameters = passed_parameters(view),
-         .after = " const"},
-        List{"rr_fire_event(", after({view.entry}, names_of(view.parameters)), ");"}, in_class);
-  }
-
-  void make_objref(MemberView& view) const {
-    const std::string token = token_name(view);
-    std::set<std::string> taken{token};
-    const std::string index = context_.names.local("index", taken);
-    const std::string index_type =
-        view.has_int32_index ? "::std::int32_t " : "const ::std::string& ";
-    std::vector<std::string> parameters;
-    std::vector<std::string> arguments{view.entry};
-    if (view.has_index) {
-      parameters.push_back(index_type + index);
-      arguments.push_back(index);
-    }
-    const std::string pointer = "::std::shared_ptr<" + view.stub + ">";
-    const std::string find = view.is_varobject ? "rr_find(" : "rr_find_as<" + view.stub + ">(";
-    view.stub_find =
-        declaration({.result = pointer, .name = view.getter, .parameters = parameters}, in_class);
-    view.stub_find_definition = definition({.result = pointer,
-                                            .name = stub_name(object_) + "::" + view.getter,
-                                            .parameters = parameters},
-                                           List{"return " + find, arguments, ");"}, 0);
-    arguments.insert(arguments.begin() + 1, forwarded(view, token));
-    view.async_find =
-        definition({.result = "auto",
-                    .name = "async_" + view.getter,
-                    .parameters = with(parameters, token_parameter(view, token))},
-                   List{"return rr_async_find<" + view.stub + ">(", arguments, ");"}, in_class);
-    make_skeleton_objref(view, parameters);
-  }
-
-  static void make_skeleton_objref(MemberView& view, const std::vector<std::string>& parameters) {
-    const std::string pointer = "::std::shared_ptr<" + view.skeleton + ">";
-    view.skeleton_find = declaration({.before = "virtual ",
-                                      .result = pointer,
-                                      .name = view.getter,
-                                      .parameters = parameters,
-                                      .after = " = 0"},
-                                     in_class);
-    std::string index;
-    if (view.has_int32_index) index = "rr_index.number";
-    if (view.has_string_index) index = "::std::string(rr_index.text)";
-    view.dispatch_find = "return " + view.getter + "(" + index + ");";
-    std::vector<std::string> unnamed;
-    if (view.has_int32_index) unnamed.emplace_back("::std::int32_t");
-    if (view.has_string_index) unnamed.emplace_back("const ::std::string&");
-    view.default_find =
-        definition({.before = "",
-                    .result = pointer,
-                    .name = view.getter,
-                    .parameters = unnamed,
-                    .after = " override"},
-                   "::rr::throw_no_object(" + quoted(view.wire_name) + ");", in_class);
   }
 
   const Object& object_;

@@ -2,27 +2,14 @@
 #include "compiler/backends/cpp/names.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 #include <variant>
 
+#include "compiler/backends/cpp/backend.hpp"
 #include "compiler/backends/words.hpp"
 
 namespace robdef::cpp {
 namespace {
-
-// Names of the global namespace that a first segment must not meet: what the C++ headers of the
-// runtime declare there, and std itself.
-constexpr auto global_names = std::to_array<std::string_view>({
-    "abort",  "abs",    "acos",   "asin",   "atan",   "atexit", "atof",     "bsearch", "calloc",
-    "ceil",   "clock",  "cos",    "ctime",  "div",    "erf",    "exit",     "exp",     "fabs",
-    "floor",  "fmod",   "free",   "frexp",  "getenv", "gmtime", "index",    "j0",      "j1",
-    "jn",     "labs",   "ldiv",   "log",    "lround", "malloc", "mktime",   "modf",    "posix",
-    "pow",    "printf", "qsort",  "rand",   "random", "read",   "realloc",  "remove",  "rename",
-    "rindex", "round",  "scanf",  "signal", "sin",    "sinh",   "sqrt",     "srand",   "std",
-    "strcat", "strlen", "system", "tan",    "tanh",   "time",   "timezone", "tm",      "trunc",
-    "wait",   "write",  "y0",     "y1",     "yn",
-});
 
 void report_renamed(std::string_view name, const std::string& renamed, Span span, Report& report) {
   if (renamed == name) return;
@@ -39,9 +26,7 @@ std::string identifier(std::string_view name) {
 std::string namespace_of(std::string_view service) {
   std::vector<std::string> segments = segments_of(service);
   for (std::string& segment : segments) segment = identifier(segment);
-  if (std::ranges::find(global_names, segments.front()) != global_names.end()) {
-    segments.front() += '_';
-  }
+  if (is_global_name(segments.front())) segments.front() += '_';
   return join(segments, "::");
 }
 
@@ -57,7 +42,8 @@ std::string default_name(const model::Object& object) { return object.name + "De
 
 bool has_default(const model::Object& object) {
   return std::ranges::any_of(object.members, [](const model::Member& member) {
-    return member.kind == model::MemberKind::property;
+    return member.kind == model::MemberKind::property ||
+           (member.kind == model::MemberKind::memory && runtime_abilities.serve(member));
   });
 }
 

@@ -15,6 +15,8 @@ namespace robdef::cpp {
 
 /// A word of C++, one of its alternative tokens, or a macro of a standard header.
 bool is_reserved(std::string_view word);
+/// Something of the global namespace, where services may not have a namespace of the same name.
+bool is_global_name(std::string_view word);
 /// The name itself, with `_` behind it when it is reserved.
 std::string identifier(std::string_view name);
 
@@ -29,7 +31,7 @@ std::string qualified(const model::Definition& definition, std::string_view iden
 std::string stub_name(const model::Object& object);
 std::string skeleton_name(const model::Object& object);
 std::string default_name(const model::Object& object);
-/// Objects without properties have nothing to store, and no Default class.
+/// Objects without properties and memories have nothing to store, and no Default class.
 bool has_default(const model::Object& object);
 
 /// `rr_type_Angles` and so on: what generated code defines besides the user's names. The word

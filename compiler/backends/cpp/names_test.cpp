@@ -47,6 +47,10 @@ TEST(Names, TurnServicesIntoNamespacesAndPaths) {
   EXPECT_EQ(namespace_of("example.new.std"), "example::new_::std");
   EXPECT_EQ(namespace_of("std.vector"), "std_::vector");
   EXPECT_EQ(namespace_of("time"), "time_");
+  EXPECT_EQ(namespace_of("gamma.camera"), "gamma_::camera");
+  EXPECT_EQ(namespace_of("abort"), "abort_");
+  EXPECT_EQ(namespace_of("yn"), "yn_");
+  EXPECT_EQ(namespace_of("example.time"), "example::time");
   EXPECT_EQ(path_of("example.new"), "example/new");
 }
 
@@ -94,8 +98,8 @@ TEST(Limits, WarnOfEachMemberThatIsLeftOut) {
   EXPECT_THAT(codes_of({service("a.b",
                                 "object Foo\n pipe int32 a\n wire int32 b\n memory int32[] c\n"
                                 " callback void d()\n function int32{generator} e()\n"
-                                " property int32 f\nend\n")}),
-              ElementsAre("R0904", "R0904", "R0904", "R0904", "R0904"));
+                                " memory int32[]{list} f\n memory int32[*]{string} g\nend\n")}),
+              ElementsAre("R0904", "R0904"));
 }
 
 }  // namespace

@@ -23,10 +23,10 @@ std::string left_out_text(const std::vector<MemberView>& members) {
   std::vector<std::string> names;
   for (const MemberView& member : members) {
     if (member.is_served) continue;
-    names.push_back((member.is_generator ? "generator" : member.kind) + " " + member.wire_name);
+    names.push_back(member.kind + " " + member.wire_name);
   }
   if (names.empty()) return "";
-  return "Left out, because this runtime does not serve them yet: " + join(names, ", ") + ".";
+  return "Left out, because this runtime does not serve them: " + join(names, ", ") + ".";
 }
 
 void make_docs(ObjectView& view, const model::Object& object) {
@@ -36,11 +36,13 @@ void make_docs(ObjectView& view, const model::Object& object) {
   view.skeleton_doc =
       class_doc("Serves one " + name + ": derive from it and implement its members.",
                 object.documentation, left_out);
-  view.default_doc = class_doc(
-      "A " + name +
-          " that stores the values of its properties. Functions and objrefs fail until they are "
-          "overridden.",
-      "", "");
+  const bool has_properties = std::ranges::any_of(view.members, &MemberView::is_property);
+  const std::string stored = !has_properties     ? "its memories"
+                             : view.has_memories ? "the values of its properties and its memories"
+                                                 : "the values of its properties";
+  view.default_doc = class_doc("A " + name + " that stores " + stored +
+                                   ". Functions and objrefs fail until they are overridden.",
+                               "", "");
 }
 
 void make_bases(ObjectView& view, const model::Object& object, const Context& context) {
@@ -93,6 +95,7 @@ void make_counts(ObjectView& view) {
   view.has_calls =
       has([](const MemberView& member) { return member.is_property || member.is_function; });
   view.has_objrefs = has([](const MemberView& member) { return member.is_objref; });
+  view.has_memories = has([](const MemberView& member) { return member.is_memory; });
   view.member_count = std::to_string(std::ranges::count_if(
       view.members, [](const MemberView& member) { return member.is_served; }));
 }
@@ -126,6 +129,10 @@ void make_dispatch(ObjectView& view) {
                .parameters = {named(member, "rr_member", view.has_objrefs),
                               named("const ::rr::ObjectIndex&", "rr_index", uses_index)}},
               0);
+  view.memory_head = opening({.result = "::std::shared_ptr<::rr::MemorySource>",
+                              .name = view.skeleton + "::rr_memory",
+                              .parameters = {member + " rr_member"}},
+                             0);
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ struct MemberView {
   bool is_callback = false;
   bool is_wire = false;
   bool is_memory = false;
-  bool is_served = false;     ///< false: the runtime cannot do it yet, and nothing is generated
+  bool is_served = false;     ///< false: the runtime cannot do it, and nothing is generated
   bool is_inherited = false;  ///< the generated classes have it from one they implement
   std::string number;         ///< its place in the object's table
   std::string entry;          ///< the table's entry: `rr_members_PanTilt[3]`
@@ -131,9 +131,13 @@ struct MemberView {
   std::string passed;  ///< the value as a parameter
   std::string descriptor;  ///< what rr::type_of is asked for
   std::string robdef_type;
-  std::string value;   ///< a name for a variable that holds it
-  std::string local;   ///< the variable: `double value = 0;`
-  std::string stored;  ///< property: what a Default class keeps: `::rr::Stored<double> rr_pan;`
+  std::string value;      ///< a name for a variable that holds it
+  std::string local;      ///< the variable: `double value = 0;`
+  std::string item;       ///< memory: one of its items, `double`
+  bool is_multi = false;  ///< memory: of several dimensions
+  std::string handle;  ///< what the stub's method gives: `::rr::Pipe<Frame>`, `::rr::Event<double>`
+  std::string served;  ///< what the skeleton's gives: `::rr::PipeServer<Frame>`
+  std::string stored;  ///< property, memory: what a Default class keeps
   bool has_result = false;  ///< function, callback: not void
   std::vector<ParameterView> parameters;
   bool has_parameters = false;
@@ -160,8 +164,8 @@ struct MemberView {
   // Laid out, for the inside of a class.
   std::string stub_get;
   std::string stub_set;
-  std::string stub_call;  ///< function
-  std::string stub_event;
+  std::string stub_call;             ///< function
+  std::string stub_handle;           ///< event, pipe, callback, wire, memory
   std::string stub_find;             ///< objref: declared in the class
   std::string stub_find_definition;  ///< objref: outside of it
   std::string async_get;
@@ -170,17 +174,18 @@ struct MemberView {
   std::string async_find;
   std::string skeleton_get;
   std::string skeleton_set;
-  std::string skeleton_call;
-  std::string skeleton_async;
+  std::string skeleton_handle;  ///< pipe, wire, memory
+  std::string skeleton_call;    ///< function, callback
+  std::string skeleton_async;   ///< function without generators, callback
   std::string skeleton_fire;
   std::string skeleton_find;
   std::string dispatch_read;  ///< function: reads its parameters in rr_dispatch
   std::string dispatch_call;  ///< function: the call there
-  std::string dispatch_find;  ///< objref: the case in rr_child
+  std::string dispatch_find;  ///< objref: the case in rr_child; memory: in rr_memory
   std::string default_get;
   std::string default_set;
   std::string default_call;
-  std::string default_find;
+  std::string default_find;  ///< objref, memory
 };
 
 struct BaseView {
@@ -215,6 +220,7 @@ struct ObjectView {
   bool has_parameters = false;  ///< one of them has parameters
   bool has_calls = false;       ///< properties or functions
   bool has_objrefs = false;
+  bool has_memories = false;
   std::string member_count;
   std::string table;                     ///< name of its ObjectType
   std::string member_table;              ///< of the array of its members
@@ -225,6 +231,7 @@ struct ObjectView {
   std::string skeleton_type;
   std::string dispatch_head;
   std::string child_head;
+  std::string memory_head;
 };
 
 /// A declaration in the order of the generated header: one of these is there.

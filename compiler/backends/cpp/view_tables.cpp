@@ -134,6 +134,10 @@ const ViewType& view_type<MemberView>() {
                              view_field<&MemberView::robdef_type>("robdef_type"),
                              view_field<&MemberView::value>("value"),
                              view_field<&MemberView::local>("local"),
+                             view_field<&MemberView::item>("item"),
+                             view_field<&MemberView::is_multi>("is_multi"),
+                             view_field<&MemberView::handle>("handle"),
+                             view_field<&MemberView::served>("served"),
                              view_field<&MemberView::stored>("stored"),
                              view_field<&MemberView::has_result>("has_result"),
                              view_field<&MemberView::parameters>("parameters"),
@@ -158,7 +162,7 @@ const ViewType& view_type<MemberView>() {
                              view_field<&MemberView::stub_get>("stub_get"),
                              view_field<&MemberView::stub_set>("stub_set"),
                              view_field<&MemberView::stub_call>("stub_call"),
-                             view_field<&MemberView::stub_event>("stub_event"),
+                             view_field<&MemberView::stub_handle>("stub_handle"),
                              view_field<&MemberView::stub_find>("stub_find"),
                              view_field<&MemberView::stub_find_definition>("stub_find_definition"),
                              view_field<&MemberView::async_get>("async_get"),
@@ -167,6 +171,7 @@ const ViewType& view_type<MemberView>() {
                              view_field<&MemberView::async_find>("async_find"),
                              view_field<&MemberView::skeleton_get>("skeleton_get"),
                              view_field<&MemberView::skeleton_set>("skeleton_set"),
+                             view_field<&MemberView::skeleton_handle>("skeleton_handle"),
                              view_field<&MemberView::skeleton_call>("skeleton_call"),
                              view_field<&MemberView::skeleton_async>("skeleton_async"),
                              view_field<&MemberView::skeleton_fire>("skeleton_fire"),
@@ -216,6 +221,7 @@ const ViewType& view_type<ObjectView>() {
                              view_field<&ObjectView::has_parameters>("has_parameters"),
                              view_field<&ObjectView::has_calls>("has_calls"),
                              view_field<&ObjectView::has_objrefs>("has_objrefs"),
+                             view_field<&ObjectView::has_memories>("has_memories"),
                              view_field<&ObjectView::member_count>("member_count"),
                              view_field<&ObjectView::table>("table"),
                              view_field<&ObjectView::member_table>("member_table"),
@@ -225,7 +231,8 @@ const ViewType& view_type<ObjectView>() {
                              view_field<&ObjectView::stub_type>("stub_type"),
                              view_field<&ObjectView::skeleton_type>("skeleton_type"),
                              view_field<&ObjectView::dispatch_head>("dispatch_head"),
-                             view_field<&ObjectView::child_head>("child_head")};
+                             view_field<&ObjectView::child_head>("child_head"),
+                             view_field<&ObjectView::memory_head>("memory_head")};
   return type;
 }
 

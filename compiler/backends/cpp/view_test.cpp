@@ -12,8 +12,10 @@ namespace robdef::cpp {
 namespace {
 
 using model::Compiled;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 DefinitionView view_of(const Compiled& compiled, std::size_t index = 0) {
   Report report;
@@ -137,13 +139,66 @@ TEST(Members, OfTwoImplementedObjectsAreMadeAnew) {
   EXPECT_FALSE(view_of(compiled).declarations.at(2).object->members.at(0).is_inherited);
 }
 
+MemberView member_of(const std::string& line) {
+  const Compiled compiled =
+      model::compiled_lines("pod P\n field double x\nend\nobject O\n " + line + "\nend\n");
+  return view_of(compiled).declarations.back().object->members.at(0);
+}
+
+TEST(Members, AreReachedThroughHandles) {
+  EXPECT_EQ(member_of("pipe P{list} x").handle, "::rr::Pipe<::std::optional<::std::vector<P>>>");
+  EXPECT_EQ(member_of("pipe P x").served, "::rr::PipeServer<P>");
+  EXPECT_EQ(member_of("wire double[3] x").served, "::rr::WireServer<::std::array<double, 3>>");
+  EXPECT_EQ(member_of("callback void x()").handle, "::rr::Callback<void()>");
+  EXPECT_EQ(member_of("callback P x(string a, P[] b)").handle,
+            "::rr::Callback<P(::std::string, ::rr::Array<P>)>");
+  EXPECT_EQ(member_of("memory P[] x").handle, "::rr::ArrayMemory<P>");
+  EXPECT_EQ(member_of("memory bool[*] x").served,
+            "::std::shared_ptr<::rr::MultiMemorySource<bool>>");
+}
+
+TEST(Members, OfGeneratorsNameWhatAStepGivesAndTakes) {
+  EXPECT_EQ(member_of("function P{generator} x()").handle, "::rr::Generator<P>");
+  EXPECT_EQ(member_of("function void x(P{generator} y)").handle, "::rr::Generator<void, P>");
+  EXPECT_EQ(member_of("function bool{generator} x(P{generator} y)").served,
+            "::rr::Sequence<bool, P>");
+}
+
+// A coroutine lives longer than the call that made it.
+TEST(Members, OfGeneratorsGetTheirParametersForThemselves) {
+  const MemberView view = member_of("function P{generator} x(string a, int32 b)");
+  EXPECT_EQ(view.skeleton_call,
+            "virtual ::rr::Sequence<P> x(::std::string a, ::std::int32_t b) = 0;");
+  EXPECT_EQ(view.dispatch_call, "return rr_request.answer(x(::std::move(a), b));");
+}
+
+TEST(Members, ThatCannotBeServedHaveNoLines) {
+  const MemberView view = member_of("memory double[]{list} x");
+  EXPECT_FALSE(view.is_served);
+  EXPECT_EQ(view.stub_handle, "");
+  EXPECT_EQ(view.stored, "");
+}
+
+TEST(View, IncludesOnlyWhatMembersNeed) {
+  const auto includes_of = [](const std::string& line) {
+    return view_of(model::compiled_lines("object O\n " + line + "\nend\n")).includes;
+  };
+  EXPECT_THAT(includes_of("pipe double x"), Contains("<rr/pipes.hpp>"));
+  EXPECT_THAT(includes_of("wire double x"), Contains("<rr/wires.hpp>"));
+  EXPECT_THAT(includes_of("wire double x"), Not(Contains("<rr/pipes.hpp>")));
+  EXPECT_THAT(includes_of("callback void x()"), Contains("<rr/callbacks.hpp>"));
+  EXPECT_THAT(includes_of("memory double[] x"), Contains("<rr/memories.hpp>"));
+  EXPECT_THAT(includes_of("memory double[]{list} x"), Not(Contains("<rr/memories.hpp>")));
+  EXPECT_THAT(includes_of("function double{generator} x()"), Contains("<rr/generators.hpp>"));
+}
+
 TEST(View, IsPrintedAsJson) {
   const Compiled compiled = model::compiled_lines("object O\n wire double w [readonly]\nend\n");
   Report report;
   const std::string json = CppBackend().view(compiled.model, report);
   EXPECT_THAT(json, HasSubstr("\"wire_name\": \"example.t\""));
   EXPECT_THAT(json, HasSubstr("\"is_wire\": true,"));
-  EXPECT_THAT(json, HasSubstr("\"is_served\": false,"));
+  EXPECT_THAT(json, HasSubstr("\"served\": \"::rr::WireServer<double>\","));
 }
 
 }  // namespace

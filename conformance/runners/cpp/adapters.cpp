@@ -65,7 +65,7 @@ const ValueAdapter* Adapters::find(const Type* type) const {
 
 void Notation<VarValue>::read(const Adapters& adapters, const Json& json, VarValue& value) {
   value = VarValue();
-  if (json.is_null()) return;
+  if (json.is_null() || json.at("value").is_null()) return;
   const ValueAdapter& adapter = adapters.value(json.at("type").get_ref<const std::string&>());
   VarValue held(*adapter.type, *adapter.operations);
   adapter.read(adapters, json.at("value"), held.place());

@@ -2,7 +2,9 @@
 #include "conformance/runners/cpp/call.hpp"
 
 #include <chrono>
+#include <rr/locks.hpp>
 #include <stdexcept>
+#include <thread>
 
 #include "conformance/runners/cpp/node_settings.hpp"
 
@@ -10,6 +12,9 @@ namespace rr::conformance {
 namespace {
 
 constexpr std::chrono::seconds arrival_limit{2};
+
+// What services answer to operations on a session; the runtime takes nothing else for success.
+constexpr const char* done = "OK";
 
 // Codes of the recorded client's notifications.
 constexpr int client_closed = 1;
@@ -97,6 +102,9 @@ Json CallingNode::answer(const Json& request) {
 void CallingNode::stop() {
   subscriptions_.clear();
   if (node_) node_->shutdown();
+  pipes_.clear();
+  wires_.clear();
+  generators_.clear();
   objects_.clear();
   clients_.clear();
   node_.reset();
@@ -127,7 +135,42 @@ Json CallingNode::play(const Json& step) {
   if (operation == "listen") return listen(step);
   if (operation == "attributes") return attributes(step);
   if (operation == "local_services") return local_services(step);
-  throw NotSupported("the runtime cannot do " + operation + " yet");
+  if (operation == "callback_set") return set_callback(step);
+  if (operation.starts_with("pipe_")) return play_pipe(operation, step);
+  if (operation.starts_with("wire_")) return play_wire(operation, step);
+  if (operation.starts_with("mem_")) return play_memory(operation, step);
+  if (operation.starts_with("gen_")) return play_generator(operation, step);
+  if (operation == "sleep") {
+    std::this_thread::sleep_for(std::chrono::milliseconds(step.at("ms").get<int>()));
+    return nullptr;
+  }
+  return play_session(operation, step);
+}
+
+Json CallingNode::play_session(const std::string& operation, const Json& step) {
+  if (operation == "authenticate") {
+    authenticate(step);
+    return done;
+  }
+  if (operation == "lock") {
+    lock(*object(step).held.stub,
+         step.value("client", false) ? LockOwner::session : LockOwner::user);
+    return done;
+  }
+  if (operation == "unlock") {
+    unlock(*object(step).held.stub);
+    return done;
+  }
+  if (operation == "monitor_enter") {
+    enter_monitor(*object(step).held.stub,
+                  std::chrono::milliseconds(step.at("timeout").get<int>()));
+    return nullptr;
+  }
+  if (operation == "monitor_exit") {
+    exit_monitor(*object(step).held.stub);
+    return nullptr;
+  }
+  throw NotSupported("this runner cannot do " + operation);
 }
 
 CallingNode::Object& CallingNode::object(const Json& step) {
@@ -143,15 +186,26 @@ Json CallingNode::keep(const std::string& name, const std::string& client, Held 
   return type;
 }
 
+std::map<std::string, VarValue> CallingNode::credentials(const Json& step) const {
+  std::map<std::string, VarValue> values;
+  const Json given = step.value("credentials", Json::object());
+  for (const auto& [key, value] : given.items()) {
+    values[key] = made_from_json<VarValue>(adapters_, value);
+  }
+  return values;
+}
+
+void CallingNode::authenticate(const Json& step) {
+  clients_.at(object(step).client)
+      .authenticate(step.at("username").get<std::string>(), credentials(step));
+}
+
 Json CallingNode::connect(const Json& step) {
   const std::string name = step.at("as");
   ConnectOptions options;
   options.username = step.value("username", "");
   options.object_type = step.value("objecttype", "");
-  const Json credentials = step.value("credentials", Json::object());
-  for (const auto& [key, value] : credentials.items()) {
-    options.credentials[key] = made_from_json<VarValue>(adapters_, value);
-  }
+  options.credentials = credentials(step);
   options.on_closed = [this, name](const Error&) {
     arrivals_.add({{"event_type", client_closed}, {"service", name}});
   };

@@ -52,7 +52,15 @@ class CallingNode {
   Json find_object_type(const Json& step);
   Json listen(const Json& step);
   Json attributes(const Json& step);
+  [[nodiscard]] std::map<std::string, VarValue> credentials(const Json& step) const;
+  void authenticate(const Json& step);
   Json local_services(const Json& step);
+  Json play_session(const std::string& operation, const Json& step);
+  Json play_pipe(const std::string& operation, const Json& step);
+  Json play_wire(const std::string& operation, const Json& step);
+  Json play_memory(const std::string& operation, const Json& step);
+  Json play_generator(const std::string& operation, const Json& step);
+  Json set_callback(const Json& step);
   Json keep(const std::string& name, const std::string& client, Held held);
   Object& object(const Json& step);
 
@@ -62,6 +70,10 @@ class CallingNode {
   std::map<std::string, Client<Stub>> clients_;
   std::map<std::string, Object> objects_;
   std::vector<Subscription> subscriptions_;
+  // What steps hold by a handle.
+  std::map<std::string, std::unique_ptr<PlannedPipe>> pipes_;
+  std::map<std::string, std::unique_ptr<PlannedWire>> wires_;
+  std::map<std::string, std::unique_ptr<PlannedGenerator>> generators_;
 };
 
 }  // namespace rr::conformance

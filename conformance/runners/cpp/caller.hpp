@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "conformance/runners/cpp/adapters.hpp"
+#include "conformance/runners/cpp/planned.hpp"
 
 namespace rr::conformance {
 
@@ -45,6 +46,16 @@ class Caller {
   virtual Held objref(std::string_view member, const Json& index) = 0;
   /// `handler` gets the list of the parameters of each event.
   virtual Subscription listen(std::string_view event, std::function<void(Json)> handler) = 0;
+  /// Connects a new endpoint, with this index or -1.
+  virtual std::unique_ptr<PlannedPipe> pipe(std::string_view member, std::int32_t index,
+                                            const Arrive& arrive) = 0;
+  /// Not yet connected.
+  virtual std::unique_ptr<PlannedWire> wire(std::string_view member) = 0;
+  virtual std::unique_ptr<PlannedMemory> memory(std::string_view member) = 0;
+  virtual std::unique_ptr<PlannedGenerator> generate(std::string_view function,
+                                                     const Json& arguments) = 0;
+  /// `answer` gets the list of the parameters of each call, on any thread.
+  virtual void set_callback(std::string_view member, std::function<Json(Json)> answer) = 0;
 
  protected:
   [[noreturn]] static void not_supported(std::string_view kind, std::string_view member) {
@@ -64,7 +75,13 @@ class Caller {
   }
   template <class S, class Base, class R, class... Parameters>
   Json call_by(S& stub, R (Base::*function)(Parameters...), const Json& arguments) {
-    return call_with(stub, function, arguments, std::index_sequence_for<Parameters...>());
+    constexpr std::index_sequence_for<Parameters...> places;
+    if constexpr (std::is_void_v<R>) {
+      called(stub, function, arguments, places);
+      return nullptr;
+    } else {
+      return to_json<R>(adapters_, called(stub, function, arguments, places));
+    }
   }
   template <class S, class Base, class T>
   Held find_by(S& stub, std::shared_ptr<T> (Base::*getter)(), const Json&, std::string_view type) {
@@ -83,23 +100,46 @@ class Caller {
           handler(Json::array({to_json<Parameters>(adapters_, parameters)...}));
         });
   }
+  template <class S, class Base, class T>
+  std::unique_ptr<PlannedPipe> pipe_by(S& stub, Pipe<T> (Base::*member)(),
+                                       const PipeOptions& options, const Arrive& arrive) {
+    return std::make_unique<TypedPipe<T>>(adapters_, (stub.*member)().connect(options), arrive);
+  }
+  template <class S, class Base, class T>
+  std::unique_ptr<PlannedWire> wire_by(S& stub, Wire<T> (Base::*member)()) {
+    return std::make_unique<TypedWire<T>>(adapters_, (stub.*member)());
+  }
+  template <class S, class Base, class Memory>
+  std::unique_ptr<PlannedMemory> memory_by(S& stub, Memory (Base::*member)()) {
+    return std::make_unique<TypedMemory<Memory>>(adapters_, (stub.*member)());
+  }
+  template <class S, class Base, class R, class P, class... Parameters>
+  std::unique_ptr<PlannedGenerator> generate_by(S& stub,
+                                                Generator<R, P> (Base::*function)(Parameters...),
+                                                const Json& arguments) {
+    return std::make_unique<TypedGenerator<R, P>>(
+        adapters_, called(stub, function, arguments, std::index_sequence_for<Parameters...>()));
+  }
+  template <class S, class Base, class R, class... Parameters>
+  void callback_by(S& stub, Callback<R(Parameters...)> (Base::*member)(),
+                   std::function<Json(Json)> answer) {
+    (stub.*member)().set(
+        [&adapters = adapters_, answer = std::move(answer)](const Parameters&... parameters) -> R {
+          const Json result = answer(Json::array({to_json<Parameters>(adapters, parameters)...}));
+          if constexpr (!std::is_void_v<R>) return made_from_json<R>(adapters, result);
+        });
+  }
 
  private:
   template <class S, class Base, class R, class... Parameters, std::size_t... Places>
-  Json call_with(S& stub, R (Base::*function)(Parameters...), const Json& arguments,
-                 std::index_sequence<Places...>) {
+  R called(S& stub, R (Base::*function)(Parameters...), const Json& arguments,
+           std::index_sequence<Places...>) {
     if (arguments.size() != sizeof...(Parameters))
       throw std::runtime_error("another parameter count");
     std::tuple<std::decay_t<Parameters>...> values{
         made_from_json<std::decay_t<Parameters>>(adapters_, arguments.at(Places))...};
-    if constexpr (std::is_void_v<R>) {
-      (stub.*function)(std::get<Places>(values)...);
-      return nullptr;
-    } else {
-      return to_json<R>(adapters_, (stub.*function)(std::get<Places>(values)...));
-    }
+    return (stub.*function)(std::get<Places>(values)...);
   }
-
   // A varobject has no declared type: it is held as what it is.
   static Held held(std::shared_ptr<Stub> stub, std::string_view type) {
     return {stub, type.empty() ? stub->rr_object_type().name : type};

@@ -41,6 +41,10 @@ NodeOptions node_options(const Json& request) {
   if (request.contains("heartbeat_ms")) {
     options.heartbeat_period = std::chrono::milliseconds(request["heartbeat_ms"].get<int>());
   }
+  const Json wishes = request.value("node_options", Json::object());
+  if (wishes.contains("memory_max_transfer")) {
+    options.memory_transfer_limit = wishes["memory_max_transfer"].get<std::uint32_t>();
+  }
   return options;
 }
 

@@ -46,6 +46,11 @@ void ServedNode::offer(const Json& service, const Json& all) {
   for (const auto& [name, value] : attributes.items()) {
     options.attributes[name] = made_from_json<VarValue>(adapters_, value);
   }
+  if (service.contains("auth")) {
+    const Json& access = service["auth"];
+    options.users = std::make_shared<PasswordUsers>(access.at("password_file").get<std::string>());
+    options.require_user = access.at("policies").value("requirevaliduser", "") == "true";
+  }
   const ObjectAdapter& root = adapters_.object(service.at("object").get_ref<const std::string&>());
   const std::string name = service.at("name");
   auto script = std::make_shared<Script>(adapters_, script_of(service, all));

@@ -73,6 +73,8 @@ class BoundedArrayType final : public Type {
  public:
   constexpr BoundedArrayType(const ItemType& item, std::uint32_t maximum, std::uint32_t offset)
       : item_(&item), maximum_(maximum), offset_(offset) {}
+  [[nodiscard]] const ItemType& item() const { return *item_; }
+  [[nodiscard]] std::uint32_t maximum() const { return maximum_; }
 
   [[nodiscard]] ElementType element_type() const override;
   void write(Writer& writer, const ElementName& name, const void* value) const override;
@@ -89,6 +91,7 @@ class MultiArrayType final : public Type {
  public:
   constexpr explicit MultiArrayType(const ItemType& item, std::span<const std::uint32_t> shape = {})
       : item_(&item), shape_(shape) {}
+  [[nodiscard]] const ItemType& item() const { return *item_; }
 
   [[nodiscard]] ElementType element_type() const override;
   void write(Writer& writer, const ElementName& name, const void* value) const override;
@@ -105,6 +108,8 @@ class FixedMultiArrayType final : public Type {
   constexpr FixedMultiArrayType(const ItemType& item, std::span<const std::uint32_t> shape,
                                 std::uint32_t count)
       : item_(&item), shape_(shape), count_(count) {}
+  [[nodiscard]] const ItemType& item() const { return *item_; }
+  [[nodiscard]] std::uint32_t count() const { return count_; }
 
   [[nodiscard]] ElementType element_type() const override;
   void write(Writer& writer, const ElementName& name, const void* value) const override;

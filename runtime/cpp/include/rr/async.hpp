@@ -16,9 +16,11 @@
 
 #include "rr/client.hpp"
 #include "rr/generators.hpp"
+#include "rr/memories.hpp"
 #include "rr/node.hpp"
 #include "rr/skeleton.hpp"
 #include "rr/stub.hpp"
+#include "rr/wires.hpp"
 
 /// The asynchronous forms of calls, for any completion token of Boost.Asio: a callback, use_future,
 /// use_awaitable. The only header that includes Asio; a program that uses no `async_` member does
@@ -291,6 +293,123 @@ auto Skeleton::rr_async_call_back(const Member& member, Token&& token, std::uint
             std::make_unique<CallCompletion<Handler, R>>(std::forward<decltype(handler)>(handler)));
       },
       token, arguments...);
+}
+
+template <class T>
+template <class Token>
+auto ArrayMemory<T>::async_read(std::uint64_t position, std::uint64_t count, Token&& token) const {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr, Array<T>)>(
+      [memory = *this, position, count](auto&& handler) {
+        using Handler = std::decay_t<decltype(handler)>;
+        auto completion = std::make_unique<CallCompletion<Handler, Array<T>>>(
+            std::forward<decltype(handler)>(handler));
+        auto& items = *static_cast<Array<T>*>(completion->result());
+        items = Array<T>(size_of({&count, 1}));
+        memory.start_read({&position, 1}, {&count, 1}, items.mutate().data(), items.size(),
+                          std::move(completion));
+      },
+      token);
+}
+
+template <class T>
+template <class Token>
+auto ArrayMemory<T>::async_write(std::uint64_t position, const Array<T>& items,
+                                 Token&& token) const {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr)>(
+      [memory = *this, position](auto&& handler, const Array<T>& kept) {
+        using Handler = std::decay_t<decltype(handler)>;
+        const std::uint64_t count = kept.size();
+        memory.start_write({&position, 1}, {&count, 1}, kept.data(), kept.size(), kept.owner(),
+                           std::make_unique<CallCompletion<Handler, void>>(
+                               std::forward<decltype(handler)>(handler)));
+      },
+      token, items.owner() ? items : Array<T>(std::span<const T>(items)));
+}
+
+template <class T>
+template <class Token>
+auto MultiMemory<T>::async_read(std::vector<std::uint64_t> position,
+                                std::vector<std::uint64_t> count, Token&& token) const {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr, MultiArray<T>)>(
+      [memory = *this](auto&& handler, const std::vector<std::uint64_t>& where,
+                       const std::vector<std::uint64_t>& shape) {
+        using Handler = std::decay_t<decltype(handler)>;
+        auto completion = std::make_unique<CallCompletion<Handler, MultiArray<T>>>(
+            std::forward<decltype(handler)>(handler));
+        auto& array = *static_cast<MultiArray<T>*>(completion->result());
+        array = {{shape.begin(), shape.end()}, Array<T>(size_of(shape))};
+        memory.start_read(where, shape, array.items.mutate().data(), array.items.size(),
+                          std::move(completion));
+      },
+      token, std::move(position), std::move(count));
+}
+
+template <class T>
+template <class Token>
+auto MultiMemory<T>::async_write(std::vector<std::uint64_t> position, const MultiArray<T>& array,
+                                 Token&& token) const {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr)>(
+      [memory = *this](auto&& handler, const std::vector<std::uint64_t>& where,
+                       const std::vector<std::uint64_t>& shape, const Array<T>& kept) {
+        using Handler = std::decay_t<decltype(handler)>;
+        memory.start_write(where, shape, kept.data(), kept.size(), kept.owner(),
+                           std::make_unique<CallCompletion<Handler, void>>(
+                               std::forward<decltype(handler)>(handler)));
+      },
+      token, std::move(position), std::vector<std::uint64_t>(array.dims.begin(), array.dims.end()),
+      array.items.owner() ? array.items : Array<T>(std::span<const T>(array.items)));
+}
+
+template <class T>
+template <class Token>
+auto Wire<T>::async_connect(Token&& token) {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr, WireConnection<T>)>(
+      [wire = *this](auto&& handler) mutable {
+        using Handler = std::decay_t<decltype(handler)>;
+        auto completion = std::make_unique<CallCompletion<Handler, WireConnection<T>>>(
+            std::forward<decltype(handler)>(handler));
+        auto* const end = static_cast<WireConnection<T>*>(completion->result());
+        wire.start_connect(end, std::move(completion));
+      },
+      token);
+}
+
+template <class T>
+template <class Token>
+auto Wire<T>::async_peek(bool of_out, Token&& token) {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr, Timed<T>)>(
+      [wire = *this, of_out](auto&& handler) mutable {
+        using Handler = std::decay_t<decltype(handler)>;
+        auto completion = std::make_unique<CallCompletion<Handler, Timed<T>>>(
+            std::forward<decltype(handler)>(handler));
+        auto* const place = static_cast<Timed<T>*>(completion->result());
+        wire.start_peek(of_out, &place->value, &place->time, std::move(completion));
+      },
+      token);
+}
+
+template <class T>
+template <class Token>
+auto Wire<T>::async_peek_in(Token&& token) {
+  return async_peek(false, std::forward<Token>(token));
+}
+
+template <class T>
+template <class Token>
+auto Wire<T>::async_peek_out(Token&& token) {
+  return async_peek(true, std::forward<Token>(token));
+}
+
+template <class T>
+template <class Token>
+auto Wire<T>::async_poke_out(const T& value, Token&& token) {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr)>(
+      [wire = *this](auto&& handler, const T& wanted) mutable {
+        using Handler = std::decay_t<decltype(handler)>;
+        wire.start_poke(&wanted, std::make_unique<CallCompletion<Handler, void>>(
+                                     std::forward<decltype(handler)>(handler)));
+      },
+      token, value);
 }
 
 /// Connects as Node::connect does, on a thread of its own. Signature: void(std::exception_ptr,

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <memory>
+#include <utility>
 
 namespace rr {
 
@@ -16,6 +17,7 @@ class Cancellation {
   [[nodiscard]] bool is_cancelled() const;
 
   struct State;  // internal
+  explicit Cancellation(std::shared_ptr<State> state) : state_(std::move(state)) {}
   [[nodiscard]] const std::shared_ptr<State>& state() const { return state_; }
 
  private:

@@ -66,6 +66,14 @@ class ClientBase {
   /// Attributes as they are now. Throws rr::Error.
   [[nodiscard]] std::map<std::string, VarValue> fetch_attributes() const;
 
+  /// Logs in, perhaps as another user than in connecting. Locks that were made stay those of the
+  /// user before. Throws rr::Error (authentication_error; invalid_operation for a service without
+  /// users).
+  void authenticate(const std::string& username,
+                    const std::map<std::string, VarValue>& credentials);
+  /// Logs out. Throws rr::Error.
+  void logout();
+
   explicit ClientBase(std::shared_ptr<Session> session);  // made by Node::connect
 
  private:

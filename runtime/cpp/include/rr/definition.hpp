@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "rr/error.hpp"
+#include "rr/holding.hpp"
 #include "rr/type.hpp"
 
 /// What generated code says about its definition: constant tables, one of each per definition,
@@ -68,6 +69,8 @@ struct Member {
   const Type* generator_parameter = nullptr;
   /// objref: qualified type, empty for varobject.
   std::string_view object_type{};
+  /// wire: how its values are kept.
+  const Holding* holding = nullptr;
 };
 
 template <class T>
@@ -108,7 +111,11 @@ consteval Member callback(std::string_view name, std::span<const Parameter> para
 }
 template <class T>
 consteval Member wire(std::string_view name, std::uint8_t access = plain) {
-  return {.kind = MemberKind::wire, .access = access, .name = name, .type = &type_of<T>};
+  return {.kind = MemberKind::wire,
+          .access = access,
+          .name = name,
+          .type = &type_of<T>,
+          .holding = &holding_of<T>};
 }
 /// `T` is an Array or a MultiArray.
 template <class T>

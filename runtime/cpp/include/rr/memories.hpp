@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -12,6 +13,7 @@
 
 #include "rr/array.hpp"
 #include "rr/definition.hpp"
+#include "rr/error.hpp"
 #include "rr/stub.hpp"
 
 /// Memories: arrays of which parts are read and written (07, section 13). Positions and counts are
@@ -24,12 +26,12 @@ class MemorySource {
  public:
   virtual ~MemorySource() = default;
 
-  /// A part of the memory, as a request names it. `data` is a value of the member's type, an
-  /// Array<T> or MultiArray<T>. Throws rr::Error (out_of_range, ...).
+  /// Reads or writes a part, which lies inside: one position and one count for each dimension.
+  /// `items` are as many items of the memory's type as the product of the counts. Throws rr::Error.
   virtual void rr_read(std::span<const std::uint64_t> position,
-                       std::span<const std::uint64_t> count, void* data) = 0;
+                       std::span<const std::uint64_t> count, void* items) = 0;
   virtual void rr_write(std::span<const std::uint64_t> position,
-                        std::span<const std::uint64_t> count, const void* data) = 0;
+                        std::span<const std::uint64_t> count, const void* items) = 0;
   /// One length, or one for each dimension.
   [[nodiscard]] virtual std::vector<std::uint64_t> rr_dims() const = 0;
 };
@@ -39,14 +41,18 @@ template <class T>
 class ArrayMemorySource : public MemorySource {
  public:
   [[nodiscard]] virtual std::uint64_t length() const = 0;
-  /// Both are called with a part that lies inside.
+  /// Both are called with a part that lies inside, by the length asked just before.
   virtual void read(std::uint64_t position, std::span<T> items) = 0;
   virtual void write(std::uint64_t position, std::span<const T> items) = 0;
 
   void rr_read(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
-               void* data) final;
+               void* items) final {
+    read(position[0], {static_cast<T*>(items), static_cast<std::size_t>(count[0])});
+  }
   void rr_write(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
-                const void* data) final;
+                const void* items) final {
+    write(position[0], {static_cast<const T*>(items), static_cast<std::size_t>(count[0])});
+  }
   [[nodiscard]] std::vector<std::uint64_t> rr_dims() const final { return {length()}; }
 };
 
@@ -55,44 +61,215 @@ template <class T>
 class MultiMemorySource : public MemorySource {
  public:
   [[nodiscard]] virtual std::vector<std::uint64_t> dims() const = 0;
-  /// Both are called with a part that lies inside; `items` has the shape `count`, first dimension
-  /// fastest.
+  /// Both are called with a part that lies inside, by the dimensions asked just before; `items` has
+  /// the shape `count`, first dimension fastest.
   virtual void read(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
                     std::span<T> items) = 0;
   virtual void write(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
                      std::span<const T> items) = 0;
 
   void rr_read(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
-               void* data) final;
+               void* items) final {
+    read(position, count, {static_cast<T*>(items), size_of(count)});
+  }
   void rr_write(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
-                const void* data) final;
+                const void* items) final {
+    write(position, count, {static_cast<const T*>(items), size_of(count)});
+  }
   [[nodiscard]] std::vector<std::uint64_t> rr_dims() const final { return dims(); }
+
+ private:
+  static std::size_t size_of(std::span<const std::uint64_t> count) {
+    std::size_t size = 1;
+    for (const std::uint64_t one : count) size *= static_cast<std::size_t>(one);
+    return size;
+  }
 };
 
-/// A memory that is kept in this process. May be used by any threads at once.
-template <class T>
-class StoredArrayMemory;
-template <class T>
-class StoredMultiMemory;
+/// Copies a part of an array of several dimensions out of it, or into it. The part lies inside.
+void copy_memory_part(std::span<const std::uint64_t> dims, std::span<const std::uint64_t> position,
+                      std::span<const std::uint64_t> count, std::size_t item_size, const void* all,
+                      void* part);
+void copy_into_memory(std::span<const std::uint64_t> dims, std::span<const std::uint64_t> position,
+                      std::span<const std::uint64_t> count, std::size_t item_size, const void* part,
+                      void* all);
 
-/// A memory of an object on another node, without its type. Transfers are cut into requests that
-/// the service takes; each is whole, all together are not.
+/// A memory that is kept in this process; its length does not change. May be used by any threads at
+/// once.
+template <class T>
+class StoredArrayMemory : public ArrayMemorySource<T> {
+ public:
+  explicit StoredArrayMemory(Array<T> items) : items_(std::move(items)) {}
+  explicit StoredArrayMemory(std::size_t length = 0) : items_(length) {}
+
+  [[nodiscard]] std::uint64_t length() const final {
+    const std::lock_guard lock(mutex_);
+    return items_.size();
+  }
+  void read(std::uint64_t position, std::span<T> items) override {
+    const std::lock_guard lock(mutex_);
+    check(position, items.size());
+    if (!items.empty()) std::memcpy(items.data(), items_.data() + position, items.size_bytes());
+  }
+  void write(std::uint64_t position, std::span<const T> items) override {
+    const std::lock_guard lock(mutex_);
+    check(position, items.size());
+    if (items.empty()) return;
+    std::memcpy(items_.mutate().data() + position, items.data(), items.size_bytes());
+  }
+  /// What it holds now; later writes do not show in it.
+  [[nodiscard]] Array<T> items() const {
+    const std::lock_guard lock(mutex_);
+    return items_;
+  }
+
+ private:
+  void check(std::uint64_t position, std::size_t count) const {
+    if (position > items_.size() || count > items_.size() - position) {
+      throw Error(ErrorCode::out_of_range, "Index out of range");
+    }
+  }
+
+  mutable std::mutex mutex_;
+  Array<T> items_;
+};
+
+/// The same, of several dimensions.
+template <class T>
+class StoredMultiMemory : public MultiMemorySource<T> {
+ public:
+  /// Throws rr::Error (invalid_argument) when there are not as many items as dims say.
+  explicit StoredMultiMemory(MultiArray<T> array = {})
+      : dims_(array.dims.begin(), array.dims.end()), items_(std::move(array.items)) {
+    std::uint64_t size = dims_.empty() ? 0 : 1;
+    for (const std::uint64_t dim : dims_) size *= dim;
+    if (size != items_.size()) throw Error(ErrorCode::invalid_argument, "dims do not fit");
+  }
+
+  [[nodiscard]] std::vector<std::uint64_t> dims() const final { return dims_; }
+  void read(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
+            std::span<T> items) override {
+    const std::lock_guard lock(mutex_);
+    copy_memory_part(dims_, position, count, sizeof(T), items_.data(), items.data());
+  }
+  void write(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
+             std::span<const T> items) override {
+    const std::lock_guard lock(mutex_);
+    copy_into_memory(dims_, position, count, sizeof(T), items.data(), items_.mutate().data());
+  }
+  /// What it holds now; later writes do not show in it.
+  [[nodiscard]] MultiArray<T> array() const {
+    const std::lock_guard lock(mutex_);
+    return {{dims_.begin(), dims_.end()}, items_};
+  }
+
+ private:
+  const std::vector<std::uint64_t> dims_;
+  mutable std::mutex mutex_;
+  Array<T> items_;
+};
+
+/// A memory of an object on another node, without its type: a handle, which is copied freely and
+/// used while the stub lives. Transfers are cut into requests that both sides take
+/// (NodeOptions::memory_transfer_limit); each request is whole, all together are not. A time-out is
+/// for each request. After a failure what was transferred before stays so.
 class MemoryMember {
  protected:
   MemoryMember(Stub& stub, const Member& member) : stub_(&stub), member_(&member) {}
 
-  std::uint64_t ask_length();
-  std::vector<std::uint64_t> ask_dims();
+  using Numbers = std::span<const std::uint64_t>;
+  std::uint64_t ask_length() const;
+  std::vector<std::uint64_t> ask_dims() const;
+  std::uint64_t ask_dim_count() const;
+  // `items` are `size` items.
+  void read_part(Numbers position, Numbers count, void* items, std::size_t size) const;
+  void write_part(Numbers position, Numbers count, const void* items, std::size_t size) const;
+  // `items` stay where they are until the completion has been called.
+  void start_read(Numbers position, Numbers count, void* items, std::size_t size,
+                  std::unique_ptr<Completion> completion) const;
+  // `owner` keeps them.
+  void start_write(Numbers position, Numbers count, const void* items, std::size_t size,
+                   MemoryRef owner, std::unique_ptr<Completion> completion) const;
+  /// The product of counts. Throws rr::Error (invalid_argument) when it fits no memory.
+  static std::size_t size_of(Numbers count);
 
   Stub* stub_;
   const Member* member_;
 };
 
-/// A memory of one dimension of an object on another node: `stub->buffer()`.
+/// A memory of one dimension of an object on another node: `stub->buffer()`. All throw rr::Error:
+/// out_of_range for a part that is not inside, read_only_member and write_only_member before
+/// anything is sent.
 template <class T>
-class ArrayMemory;
-/// A memory of several dimensions of an object on another node.
+class ArrayMemory : public MemoryMember {
+ public:
+  ArrayMemory(Stub& stub, const Member& member) : MemoryMember(stub, member) {}
+
+  /// Asks the service.
+  [[nodiscard]] std::uint64_t length() const { return ask_length(); }
+
+  void read(std::uint64_t position, std::span<T> items) const {
+    const std::uint64_t count = items.size();
+    read_part({&position, 1}, {&count, 1}, items.data(), items.size());
+  }
+  [[nodiscard]] Array<T> read(std::uint64_t position, std::uint64_t count) const {
+    Array<T> items(size_of({&count, 1}));
+    read(position, items.mutate());
+    return items;
+  }
+  void write(std::uint64_t position, std::span<const T> items) const {
+    const std::uint64_t count = items.size();
+    write_part({&position, 1}, {&count, 1}, items.data(), items.size());
+  }
+  // A template, so that nothing is converted to an Array first.
+  template <std::same_as<Array<T>> A>
+  void write(std::uint64_t position, const A& items) const {
+    write(position, std::span<const T>(items.data(), items.size()));
+  }
+
+  // Defined in rr/async.hpp. Signatures: void(std::exception_ptr, Array<T>) and
+  // void(std::exception_ptr). What is written is copied, or shared when the array owns it.
+  template <class Token>
+  auto async_read(std::uint64_t position, std::uint64_t count, Token&& token) const;
+  template <class Token>
+  auto async_write(std::uint64_t position, const Array<T>& items, Token&& token) const;
+};
+
+/// A memory of several dimensions of an object on another node. As ArrayMemory, but for a part that
+/// is not inside: invalid_argument.
 template <class T>
-class MultiMemory;
+class MultiMemory : public MemoryMember {
+ public:
+  MultiMemory(Stub& stub, const Member& member) : MemoryMember(stub, member) {}
+
+  /// Both ask the service.
+  [[nodiscard]] std::vector<std::uint64_t> dims() const { return ask_dims(); }
+  [[nodiscard]] std::uint64_t dim_count() const { return ask_dim_count(); }
+
+  /// `items` has the shape `count`, first dimension fastest.
+  void read(Numbers position, Numbers count, std::span<T> items) const {
+    read_part(position, count, items.data(), items.size());
+  }
+  [[nodiscard]] MultiArray<T> read(Numbers position, Numbers count) const {
+    MultiArray<T> array{{count.begin(), count.end()}, Array<T>(size_of(count))};
+    read(position, count, array.items.mutate());
+    return array;
+  }
+  void write(Numbers position, Numbers count, std::span<const T> items) const {
+    write_part(position, count, items.data(), items.size());
+  }
+  void write(Numbers position, const MultiArray<T>& array) const {
+    write(position, std::vector<std::uint64_t>(array.dims.begin(), array.dims.end()), array.items);
+  }
+
+  // Defined in rr/async.hpp. Signatures: void(std::exception_ptr, MultiArray<T>) and
+  // void(std::exception_ptr).
+  template <class Token>
+  auto async_read(std::vector<std::uint64_t> position, std::vector<std::uint64_t> count,
+                  Token&& token) const;
+  template <class Token>
+  auto async_write(std::vector<std::uint64_t> position, const MultiArray<T>& array,
+                   Token&& token) const;
+};
 
 }  // namespace rr

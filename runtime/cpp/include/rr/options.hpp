@@ -57,6 +57,9 @@ struct NodeOptions {
   std::chrono::milliseconds generator_timeout{600'000};
 
   Limits limits{};
+  /// Bytes of a memory that travel in one request; the smaller one of both sides counts. Larger
+  /// transfers are cut (07, section 13).
+  std::uint32_t memory_transfer_limit = 102'400;
   /// Largest message, in bytes, before a client has connected to a service.
   std::uint32_t size_before_connect = 512 * 1024;
   /// Incoming connections at a time; 0: no limit.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -12,6 +13,7 @@
 #include "rr/definition.hpp"
 #include "rr/node_id.hpp"
 #include "rr/skeleton.hpp"
+#include "rr/users.hpp"
 #include "rr/varvalue.hpp"
 
 /// The service's side: what a node offers under a name.
@@ -22,6 +24,7 @@ struct ServiceClient {
   std::uint32_t endpoint = 0;  ///< its number in this node
   NodeId node;
   std::string node_name;
+  std::string user{};  ///< who is logged in, empty for nobody; in what clients() returns only
 };
 
 struct ServiceOptions {
@@ -30,6 +33,13 @@ struct ServiceOptions {
   /// Definitions, besides those that the root object's imports, whose types may be used in
   /// varvalues or varobjects.
   std::vector<const Definition*> extra_imports{};
+  /// Who may use the service; null: anybody, and no object can be locked.
+  std::shared_ptr<const Users> users{};
+  /// With users: whether everybody has to be one. Otherwise clients may connect without a user, and
+  /// log in later if they wish; in connecting they may not.
+  bool require_user = true;
+  /// A session that is in an object's monitor and does not use the object for so long is out.
+  std::chrono::milliseconds monitor_patience{30'000};
   /// Called on a thread of the node, before the first and after the last request of a client.
   std::function<void(const ServiceClient&)> on_client_connected{};
   std::function<void(const ServiceClient&)> on_client_disconnected{};
@@ -56,6 +66,8 @@ class ServiceContext {
 
   /// The client whose request this thread handles; 0 outside of handlers. For `perclient` members.
   static std::uint32_t current_client();
+  /// Who is logged in there; null for nobody, and outside of handlers.
+  static std::shared_ptr<const User> current_user();
 };
 
 /// A registered service. The service stays until it is closed or its node goes away, whatever

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -124,6 +125,15 @@ class Skeleton {
   virtual std::shared_ptr<Skeleton> rr_child(std::size_t member, const ObjectIndex& index) = 0;
   /// Null for a member that is no memory.
   virtual std::shared_ptr<MemorySource> rr_memory(std::size_t member);
+
+  /// Whether sessions may have the object to themselves (rr/locks.hpp), and how: enter waits until
+  /// the object is free, for `timeout` at most, and says whether it is this caller's now. Enter and
+  /// exit are called on different threads of the node, so they do not fit a std::mutex; a
+  /// std::binary_semaphore will do. One session at a time is let in; a part of the program that
+  /// takes the same semaphore keeps all of them out.
+  [[nodiscard]] virtual bool rr_has_monitor() const { return false; }
+  virtual bool rr_monitor_enter(std::chrono::milliseconds /*timeout*/) { return true; }
+  virtual void rr_monitor_exit() {}
 
   struct Places;  // internal: where the object is attached
 

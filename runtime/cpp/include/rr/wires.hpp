@@ -42,11 +42,13 @@ class WireEnd {
  protected:
   /// The newest value that has arrived and has not expired; null for none.
   std::shared_ptr<const void> received(TimeSpec& time) const;
-  /// Waits until there is one. False when the time was over, or the end closed, before.
+  /// Waits until there is one. False when the time was over, or the end closed, before. May be
+  /// called anywhere: values arrive while a function of the program runs.
   bool wait_received(std::chrono::milliseconds limit) const;
   void set_lifespan(std::chrono::milliseconds lifespan);
-  /// Calls `function` with each value that arrives and is newer than those before it, in order, on
-  /// a thread of the node; a function that is slow misses values, never the newest.
+  /// Calls `function` with the value that is there, and each that arrives and is newer than those
+  /// before it, in order, on a thread of the node; a function that is slow misses values, never the
+  /// newest.
   Subscription on_received(std::function<void(const void*, const TimeSpec&)> function);
   /// Sends; throws rr::Error (invalid_operation when closed; read_only_member, write_only_member
   /// for a direction that the wire does not have; data_type_error for what may not travel).
@@ -109,7 +111,7 @@ class WireConnection : public TypedWireEnd<T> {
   [[nodiscard]] bool wait_in(std::chrono::milliseconds limit) const {
     return this->wait_received(limit);
   }
-  /// Calls `function(value, time)` for values that arrive.
+  /// Calls `function(value, time)` for the value that is there and for values that arrive.
   template <class Function>
   Subscription on_in(Function function) {
     return this->on_value(std::move(function));
@@ -151,6 +153,11 @@ class WireMember {
   void peek_in(void* value, TimeSpec& time);
   void peek_out(void* value, TimeSpec& time);
   void poke_out(const void* value);
+  // What the asynchronous templates stand on. The places are in the completion.
+  void start_connect(WireEnd* end, std::unique_ptr<Completion> completion);
+  void start_peek(bool of_out, void* value, TimeSpec* time,
+                  std::unique_ptr<Completion> completion);
+  void start_poke(const void* value, std::unique_ptr<Completion> completion);
 
   Stub* stub_;
   const Member* member_;
@@ -178,6 +185,20 @@ class Wire : public WireMember {
     return result;
   }
   void poke_out(const T& value) { WireMember::poke_out(&value); }
+
+  // The asynchronous forms, defined in rr/async.hpp.
+  template <class Token>
+  auto async_connect(Token&& token);
+  template <class Token>
+  auto async_peek_in(Token&& token);
+  template <class Token>
+  auto async_peek_out(Token&& token);
+  template <class Token>
+  auto async_poke_out(const T& value, Token&& token);
+
+ private:
+  template <class Token>
+  auto async_peek(bool of_out, Token&& token);
 };
 
 /// A wire that an object offers, without its type. What is set up here is kept by the object, so a
@@ -240,7 +261,9 @@ class WireServer : public WireServerBase {
     set_connected(
         [function = std::move(function)](WireEnd end) { function(ServedWire<T>(std::move(end))); });
   }
-  /// Calls `function(value, time, client)` for each value that a client sends or pokes.
+  /// Calls `function(value, time, client)` for each value that a client sends or pokes; for pokes
+  /// before they are answered. What is sent while the function runs for that client it gets later,
+  /// only the newest. For different clients, and for pokes, it may run at the same time.
   template <class Function>
   void on_out(Function function) const {
     set_received([function = std::move(function)](const void* value, const TimeSpec& time,

@@ -30,6 +30,12 @@ class Receiver {
   /// wait nor run user code, but leave that in `laters`.
   virtual void take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
                            Laters& laters) = 0;
+  /// A packet of which only the newest counts, if it is alone in its message: the same holds. False
+  /// when it is to go to handle() as others do.
+  virtual bool take_packet(const Message& /*message*/, const Entry& /*entry*/,
+                           const MemoryRef& /*owner*/, Laters& /*laters*/) {
+    return false;
+  }
   /// Any other message, one at a time and in order, on a thread of the node; may run user code.
   /// `first` is its first entry. Callbacks come to a client out of turn, several at a time: whoever
   /// handles something else may be waiting for the call that they are a part of.
@@ -46,6 +52,13 @@ struct Waiter {
   std::atomic<bool> is_reader{false};       // written by the connection
   Waiter* next = nullptr;                   // guarded by the connection
   std::condition_variable* wake = nullptr;  // while the thread sleeps; the same
+};
+
+/// What a message is of which only the newest counts: a value of one stream. While one waits to be
+/// sent, a later one of the same stream takes its place (04, section 3).
+struct Newest {
+  std::uint64_t stream = 0;  ///< from Connection::new_stream()
+  std::int64_t time = 0;     ///< grows
 };
 
 /// Carries messages to and from one other node. Any thread may send.
@@ -81,6 +94,10 @@ class Connection {
   /// connection_error when the connection is gone. `now` need not be exact.
   virtual void send(Writer& message, Time now) = 0;
   void send(Writer& message) { send(message, coarse_now()); }
+  /// The same for a message of which only the newest counts.
+  virtual void send_newest(Writer& message, const Newest& newest, Time now) = 0;
+  /// A number for a stream of such messages.
+  std::uint64_t new_stream() { return next_stream_.fetch_add(1, std::memory_order_relaxed); }
   /// The same for an answer, from Receiver::handle(): it leaves together with other answers to what
   /// one receive has brought. Throws only when it is too large.
   virtual void reply(Writer& message) = 0;
@@ -118,6 +135,7 @@ class Connection {
   std::atomic<bool> is_authorised_{false};
   std::atomic<std::uint32_t> own_endpoint_{0};
   std::atomic<std::uint32_t> remote_endpoint_{0};
+  std::atomic<std::uint64_t> next_stream_{1};
   NodeId remote_node_;  // written once, by the first message
   std::string remote_name_;
 };

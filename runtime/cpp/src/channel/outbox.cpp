@@ -38,7 +38,7 @@ std::ptrdiff_t send_pieces(int socket, std::span<iovec> pieces) {
 void Outbox::add(std::span<const std::byte> bytes) {
   if (bytes.empty()) return;
   size_ += bytes.size();
-  if (!empty() && segments_.back().room >= bytes.size()) {
+  if (!empty() && !segments_.back().is_alone && segments_.back().room >= bytes.size()) {
     Segment& last = segments_.back();
     std::memcpy(const_cast<std::byte*>(last.data) + last.size, bytes.data(), bytes.size());
     last.size += bytes.size();
@@ -64,6 +64,54 @@ void Outbox::add(Writer& message, std::size_t sent) {
     } else {
       add(rest);
     }
+  }
+}
+
+void Outbox::add_newest(Writer& message, std::uint64_t stream, std::int64_t time) {
+  Replaceable* const old = find(stream);
+  if (old == nullptr) {
+    segments_.emplace_back().is_alone = true;
+    fill(segments_.back(), message);
+    replaceable_.push_back({stream, time, segments_.size() - 1});
+  } else if (time > old->time) {
+    old->time = time;
+    fill(segments_[old->segment], message);
+  }
+}
+
+// What waits of a stream; null when there is nothing that may be replaced. Forgets on the way what
+// has been sent.
+Outbox::Replaceable* Outbox::find(std::uint64_t stream) {
+  for (std::size_t i = 0; i < replaceable_.size();) {
+    Replaceable& item = replaceable_[i];
+    if (item.segment < first_ || segments_[item.segment].is_begun) {
+      item = replaceable_.back();
+      replaceable_.pop_back();
+    } else if (item.stream == stream) {
+      return &item;
+    } else {
+      ++i;
+    }
+  }
+  return nullptr;
+}
+
+void Outbox::fill(Segment& segment, Writer& message) {
+  const std::size_t capacity = segment.size + segment.room;
+  size_ += message.size() - segment.size;
+  if (capacity < message.size()) {
+    Allocation memory = allocate(message.size());
+    segment.owner = std::move(memory.owner);
+    segment.data = memory.bytes;
+    segment.room = 0;
+  } else {
+    segment.room = capacity - message.size();
+  }
+  segment.size = message.size();
+  auto* at = const_cast<std::byte*>(segment.data);
+  for (const Piece& piece : message.pieces()) {
+    std::memcpy(at, piece.data, piece.size);
+    at += piece.size;
   }
 }
 
@@ -114,15 +162,31 @@ void Outbox::drop(std::size_t bytes) {
     segment.data += dropped;
     segment.size -= dropped;
     bytes -= dropped;
+    segment.is_begun = true;
     if (segment.size != 0) break;
     segment.owner = MemoryRef();
     ++first_;
   }
-  if (empty()) clear();
+  if (empty()) {
+    clear();
+  } else {
+    compact();
+  }
+}
+
+// A queue that never gets empty is not to grow for ever.
+void Outbox::compact() {
+  constexpr std::size_t worthwhile = 64;
+  if (first_ < worthwhile || first_ < segments_.size() / 2) return;
+  std::erase_if(replaceable_, [&](const Replaceable& item) { return item.segment < first_; });
+  for (Replaceable& item : replaceable_) item.segment -= first_;
+  segments_.erase(segments_.begin(), segments_.begin() + static_cast<std::ptrdiff_t>(first_));
+  first_ = 0;
 }
 
 void Outbox::clear() {
   std::vector<Segment>().swap(segments_);
+  std::vector<Replaceable>().swap(replaceable_);
   first_ = 0;
   size_ = 0;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -22,6 +23,9 @@ class Outbox {
   /// borrows, and keeps what has an owner.
   void add(Writer& message, std::size_t sent);
   void add(std::span<const std::byte> bytes);
+  /// Takes a whole message in place of one of the same stream that waits, unless it is the older of
+  /// the two: then it is dropped.
+  void add_newest(Writer& message, std::uint64_t stream, std::int64_t time);
 
   /// Sends on a socket: what waits, then `more`, without blocking, in as few calls as possible.
   /// What is sent of the outbox is dropped from it. Returns the bytes of `more` that were sent, or
@@ -35,12 +39,25 @@ class Outbox {
     MemoryRef owner;
     const std::byte* data = nullptr;
     std::size_t size = 0;
-    std::size_t room = 0;  ///< bytes behind the data that may be appended to
+    std::size_t room = 0;   ///< bytes behind the data that may be appended to
+    bool is_alone = false;  ///< a message that may be replaced: nothing is appended
+    bool is_begun = false;  ///< a part of it has been sent
+  };
+
+  // A message that may be replaced, alone in its segment.
+  struct Replaceable {
+    std::uint64_t stream = 0;
+    std::int64_t time = 0;
+    std::size_t segment = 0;
   };
 
   void drop(std::size_t bytes);
+  void compact();
+  Replaceable* find(std::uint64_t stream);
+  void fill(Segment& segment, Writer& message);
 
   std::vector<Segment> segments_;
+  std::vector<Replaceable> replaceable_;
   std::size_t first_ = 0;
   std::size_t size_ = 0;
 };

@@ -56,6 +56,7 @@ class StreamConnection final : public Connection,
   [[nodiscard]] std::string local_url() const override;
   using Connection::send;
   void send(Writer& message, Time now) override;
+  void send_newest(Writer& message, const Newest& newest, Time now) override;
   void reply(Writer& message) override;
   void claim(Waiter& waiter) override;
   void wait(Waiter& waiter, Time deadline, Time now) override;
@@ -100,8 +101,9 @@ class StreamConnection final : public Connection,
 
   // Sending (stream_sending.cpp)
   void check_size(const Writer& message) const;
-  void send_or_queue(Writer& message, Time now);
-  void send_with_strings(Writer& message, Time now);
+  void send(Writer& message, Time now, const Newest* newest);
+  void send_or_queue(Writer& message, Time now, const Newest* newest);
+  void send_with_strings(Writer& message, Time now, const Newest* newest);
   [[noreturn]] void fail_sending();
   void flush();
   void watch_for_room();
@@ -110,6 +112,7 @@ class StreamConnection final : public Connection,
   // Reading (stream_reading.cpp)
   Received receive(Scratch& scratch, bool may_block, bool& is_full);
   bool take(Scratch& scratch, const Frame& frame);
+  bool take_packet(Scratch& scratch, const Frame& frame);
   void take_answers(const Message& message, const Entry& first, const MemoryRef& owner,
                     Laters& laters);
   void refuse_stream(const Scratch& scratch, std::size_t size);

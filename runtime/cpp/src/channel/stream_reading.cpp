@@ -25,6 +25,12 @@ bool is_answer(EntryType type) {
          type != EntryType::pipe_packet_ret;
 }
 
+// One of which only the newest counts, so that it need not wait for those before it to be handled.
+bool may_overtake(const Message& message, const Entry& first) {
+  return message.entry_count == 1 &&
+         (first.type == EntryType::wire_packet || first.type == EntryType::wire_closed);
+}
+
 bool has_only_answers(const Message& message, const Entry& first) {
   if (!is_answer(first.type)) return false;
   if (message.entry_count == 1) return true;
@@ -141,11 +147,17 @@ bool StreamConnection::take(Scratch& scratch, const Frame& frame) {
   } else if (role_ == Role::client && message.entry_count == 1 &&
              first.type == EntryType::callback_call_req && begin_absence()) {
     handle_aside(frame);
-  } else {
+  } else if (!take_packet(scratch, frame)) {
     scratch.waiting.push_back(frame);
     scratch.parsed = scratch.waiting.size();
   }
   return true;
+}
+
+bool StreamConnection::take_packet(Scratch& scratch, const Frame& frame) {
+  if (!may_overtake(scratch.message, scratch.first)) return false;
+  complete(scratch.message);
+  return receiver_->take_packet(scratch.message, scratch.first, frame.owner, scratch.laters);
 }
 
 void StreamConnection::take_answers(const Message& message, const Entry& first,

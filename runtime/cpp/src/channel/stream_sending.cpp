@@ -22,36 +22,48 @@ void StreamConnection::check_size(const Writer& message) const {
   }
 }
 
-void StreamConnection::send(Writer& message, Time now) {
+void StreamConnection::send(Writer& message, Time now) { send(message, now, nullptr); }
+
+void StreamConnection::send_newest(Writer& message, const Newest& newest, Time now) {
+  send(message, now, &newest);
+}
+
+void StreamConnection::send(Writer& message, Time now, const Newest* newest) {
   check_size(message);
   if (message.version() == MessageVersion::v4 &&
       (has_local_strings_.load(std::memory_order_relaxed) ||
        has_standard_strings_.load(std::memory_order_relaxed))) {
-    send_with_strings(message, now);
+    send_with_strings(message, now, newest);
   } else {
-    send_or_queue(message, now);
+    send_or_queue(message, now, newest);
   }
 }
 
 // Sends what was held back and the message, and queues what the socket does not take.
-void StreamConnection::send_or_queue(Writer& message, Time now) {
+void StreamConnection::send_or_queue(Writer& message, Time now, const Newest* newest) {
   if (is_closing_.load(std::memory_order_relaxed)) {
     throw Error(ErrorCode::connection_error, "the connection is closed");
   }
   const std::size_t size = message.size();
   std::ptrdiff_t sent = 0;
   bool has_rest = false;
+  bool had_rest = false;
   bool is_broken = false;
   {
     const std::lock_guard lock(sending_);
-    if (!has_unsent_.load(std::memory_order_relaxed)) {
+    had_rest = has_unsent_.load(std::memory_order_relaxed);
+    if (!had_rest) {
       sent = outbox_.send(socket_.get(), message.pieces());
     }
     last_sent_.store(now, std::memory_order_relaxed);
     is_broken = sent < 0;
     has_rest = !is_broken && sent != static_cast<std::ptrdiff_t>(size);
     if (has_rest) {
-      outbox_.add(message, static_cast<std::size_t>(sent));
+      if (newest != nullptr && sent == 0) {
+        outbox_.add_newest(message, newest->stream, newest->time);
+      } else {
+        outbox_.add(message, static_cast<std::size_t>(sent));
+      }
       is_broken = outbox_.size() > options_->send_queue_limit;
       has_unsent_ = true;
     }
@@ -59,7 +71,7 @@ void StreamConnection::send_or_queue(Writer& message, Time now) {
   // A large array is not to be kept until this thread sends again.
   if (size >= Writer::attach_threshold) message.reset(message.version());
   if (is_broken) fail_sending();
-  if (has_rest) {
+  if (has_rest && !had_rest) {
     watch_for_room();
     // There may have been room before anybody knew that it was wanted.
     flush();
@@ -72,13 +84,13 @@ void StreamConnection::fail_sending() {
   throw Error(why);
 }
 
-void StreamConnection::send_with_strings(Writer& message, Time now) {
+void StreamConnection::send_with_strings(Writer& message, Time now, const Newest* newest) {
   const std::vector<std::byte> plain = message.copy();
   const std::vector<std::byte> coded =
       apply_string_table(plain, has_local_strings_, has_standard_strings_);
   Writer writer;
   writer.prepend_bytes(coded.data(), coded.size());
-  send_or_queue(writer, now);
+  send_or_queue(writer, now, newest);
 }
 
 void StreamConnection::reply(Writer& message) {

@@ -36,6 +36,11 @@ const std::string& ClientBase::object_type() const { return session_->object_typ
 std::map<std::string, std::string> ClientBase::definitions() const {
   return session_->definitions();
 }
+void ClientBase::authenticate(const std::string& username,
+                              const std::map<std::string, VarValue>& credentials) {
+  session_->authenticate(username, credentials, std::chrono::milliseconds(0));
+}
+void ClientBase::logout() { session_->log_out(); }
 std::string ClientBase::find_object_type(const std::string& path) const {
   return session_->ask_object_type(path, std::chrono::milliseconds(0));
 }

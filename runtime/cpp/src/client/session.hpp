@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -25,10 +26,12 @@
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/client/callbacks.hpp"
 #include "runtime/cpp/src/client/definition_text.hpp"
+#include "runtime/cpp/src/client/subscription.hpp"
 #include "runtime/cpp/src/endpoint/call_terms.hpp"
 #include "runtime/cpp/src/endpoint/calls.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
 #include "runtime/cpp/src/endpoint/pending.hpp"
+#include "runtime/cpp/src/endpoint/wire_table.hpp"
 
 namespace rr {
 
@@ -77,6 +80,11 @@ class Session final : public channel::Receiver,
   [[nodiscard]] const std::string& object_type() const { return object_type_; }
   [[nodiscard]] std::map<std::string, std::string> definitions() const;
 
+  /// NodeOptions::memory_transfer_limit.
+  [[nodiscard]] std::uint32_t memory_transfer_limit() const {
+    return core_->options().memory_transfer_limit;
+  }
+
   /// Sends a request and waits for its answer. Throws rr::Error, or what the service has thrown.
   void call(const Outgoing& request, const Incoming& answer, Milliseconds timeout);
   void call(const Outgoing& request, const AnswerReader& read, Milliseconds timeout);
@@ -88,9 +96,10 @@ class Session final : public channel::Receiver,
   /// Sends something whose answer, if it has one, nobody waits for.
   void send(const Outgoing& request, bool has_number);
 
+  /// Exists once a stub does.
   [[nodiscard]] channel::Connection& connection() const override { return *connection_; }
-  [[nodiscard]] const endpoint::Core& core() const override { return *core_; }
-  [[nodiscard]] const TypeRegistry& types() const override { return *types_; }
+  [[nodiscard]] const std::shared_ptr<endpoint::Core>& core() const override { return core_; }
+  [[nodiscard]] const std::shared_ptr<const TypeRegistry>& types() const override { return types_; }
   bool take(endpoint::Pending& call) override;
   std::shared_ptr<endpoint::Caller> share() override { return shared_from_this(); }
 
@@ -102,14 +111,25 @@ class Session final : public channel::Receiver,
                   std::shared_ptr<Completion> completion);
   std::string ask_object_type(const std::string& path, Milliseconds timeout);
   std::map<std::string, VarValue> ask_attributes();
+  /// See ClientBase.
+  void authenticate(const std::string& username, const std::map<std::string, VarValue>& credentials,
+                    Milliseconds timeout);
+  void log_out();
 
-  void add_handler(const std::shared_ptr<Subscription::Handler>& handler);
+  [[nodiscard]] endpoint::WireTable& wires() { return wires_; }
+  /// Sends a packet of which only the newest counts; the writer holds its elements.
+  void send_newest(Writer& writer, const EntryHeader& header, std::uint32_t element_count,
+                   const channel::Newest& newest);
+
+  void add_handler(const std::shared_ptr<client::EventSubscription>& handler);
   [[nodiscard]] client::Callbacks& callbacks() { return callbacks_; }
   /// A stub goes away, and with it its handlers and the functions of its callbacks.
   void forget(const Stub& stub);
 
   // From the connection
   void take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
+                   channel::Laters& laters) override;
+  bool take_packet(const Message& message, const Entry& entry, const MemoryRef& owner,
                    channel::Laters& laters) override;
   void handle(const Message& message, const Entry& first, const MemoryRef& owner) override;
   void lost(const Error& why, channel::Laters& laters) override;
@@ -137,7 +157,6 @@ class Session final : public channel::Receiver,
   // Connecting (session_connect.cpp)
   void connect_combined(Milliseconds timeout);
   void connect_in_steps(Milliseconds timeout);
-  void authenticate(Milliseconds timeout);
   void pull_definition(const std::string& name, Milliseconds timeout);
   void pull_imports(Milliseconds timeout);
   void keep_definition(std::string_view text);
@@ -179,17 +198,20 @@ class Session final : public channel::Receiver,
 
   mutable std::mutex mutex_;
   endpoint::PendingTable pending_;
-  std::uint16_t next_message_id_ = 0;
+  std::atomic<std::uint16_t> next_message_id_{0};
   bool is_connected_ = false;  // the service knows this client
   bool is_ending_ = false;     // one side has said that the session ends
   std::optional<Error> why_closed_;
+  std::string user_;  // who is logged in
   std::unordered_map<std::string, std::weak_ptr<Stub>> stubs_;
-  std::vector<std::shared_ptr<Subscription::Handler>> handlers_;
+  std::vector<std::shared_ptr<client::EventSubscription>> handlers_;
   client::Callbacks callbacks_;  // with a lock of its own
   std::map<std::string, std::string> texts_;
   std::map<std::string, client::DefinitionOutline> outlines_;
   std::uint16_t seen_message_id_ = 0;  // at quiet_since_
   channel::Time quiet_since_;
+
+  endpoint::WireTable wires_;
 };
 
 }  // namespace rr

@@ -130,6 +130,20 @@ void Session::send_numbered(const Outgoing& request, Writer& writer, const Numbe
   connection_->send(writer, now);
 }
 
+void Session::send_newest(Writer& writer, const EntryHeader& header, std::uint32_t element_count,
+                          const channel::Newest& newest) {
+  writer.entry(header, element_count, 0);
+  writer.message({.sender_node = core_->options().id,
+                  .receiver_node = remote_node_,
+                  .sender_endpoint = endpoint_,
+                  .receiver_endpoint = remote_endpoint_,
+                  .metadata = header.metadata,
+                  .message_id = next_message_id_++,
+                  .routing = false},
+                 1);
+  connection_->send_newest(writer, newest, channel::coarse_now());
+}
+
 bool Session::take(endpoint::Pending& call) {
   const std::lock_guard lock(mutex_);
   return pending_.take(call);

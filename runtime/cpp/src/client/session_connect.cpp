@@ -148,6 +148,8 @@ void Session::connect_combined(Milliseconds timeout) {
       },
       timeout);
   for (const std::string& text : definitions) keep_definition(text);
+  const std::lock_guard lock(mutex_);
+  user_ = options_.username;
 }
 
 void Session::connect_in_steps(Milliseconds timeout) {
@@ -171,15 +173,33 @@ void Session::connect_in_steps(Milliseconds timeout) {
   }
   object_type_ = ask_object_type(service_, timeout);
   call({EntryType::connect_client, service_, {}}, Incoming{}, timeout);
-  if (!options_.username.empty()) authenticate(timeout);
+  if (!options_.username.empty()) {
+    authenticate(options_.username, options_.credentials, timeout);
+  }
 }
 
-void Session::authenticate(Milliseconds timeout) {
+void Session::authenticate(const std::string& username,
+                           const std::map<std::string, VarValue>& credentials,
+                           Milliseconds timeout) {
   Texts texts;
-  texts.add("username", options_.username);
-  texts.add("credentials", options_.credentials);
+  texts.add("username", username);
+  texts.add("credentials", credentials);
   call(texts.request(EntryType::client_session_op_req, service_, "AuthenticateUser"), Incoming{},
        timeout);
+  const std::lock_guard lock(mutex_);
+  user_ = username;
+}
+
+void Session::log_out() {
+  Texts texts;
+  {
+    const std::lock_guard lock(mutex_);
+    texts.add("username", user_);
+  }
+  call(texts.request(EntryType::client_session_op_req, service_, "LogoutUser"), Incoming{},
+       Milliseconds(0));
+  const std::lock_guard lock(mutex_);
+  user_.clear();
 }
 
 std::string Session::ask_object_type(const std::string& path, Milliseconds timeout) {
@@ -329,6 +349,7 @@ void Session::lost(const Error& why, channel::Laters& laters) {
     if (!why_closed_) why_closed_ = why;
   }
   fail_all(Error(ErrorCode::connection_error, why.message()), laters);
+  for (const auto& end : wires_.take_all()) end->finish(laters);
 }
 
 void Session::closed() {
@@ -354,7 +375,8 @@ void Session::attend(channel::Time now) {
   {
     const std::lock_guard lock(mutex_);
     if (why_closed_ || !is_connected_) return;
-    if (std::exchange(seen_message_id_, next_message_id_) != next_message_id_) quiet_since_ = now;
+    const std::uint16_t next = next_message_id_;
+    if (std::exchange(seen_message_id_, next) != next) quiet_since_ = now;
     if (now - quiet_since_ < core_->options().keep_alive_period) return;
     quiet_since_ = now;
   }

@@ -110,17 +110,33 @@ void Session::release_path(std::string_view path) {
     });
     notify = options_.on_path_released;
   }
+  channel::Laters laters;
+  for (const auto& end : wires_.take_below(path)) end->finish(laters);
+  post(std::move(laters));
   if (notify) notify(std::string(path));
 }
 
-void Session::add_handler(const std::shared_ptr<Subscription::Handler>& handler) {
+bool Session::take_packet(const Message& message, const Entry& entry, const MemoryRef& owner,
+                          channel::Laters& laters) {
+  const auto end = wires_.find(entry.service_path, entry.member);
+  if (!end) return false;
+  if (entry.type == EntryType::wire_packet) {
+    end->take(message, entry, owner, *types_, laters);
+  } else {
+    wires_.remove(*end);
+    end->finish(laters);
+  }
+  return true;
+}
+
+void Session::add_handler(const std::shared_ptr<client::EventSubscription>& handler) {
   const std::lock_guard lock(mutex_);
   std::erase_if(handlers_, [](const auto& item) { return !item->is_connected(); });
   handlers_.push_back(handler);
 }
 
 void Session::forget(const Stub& stub) {
-  std::vector<std::shared_ptr<Subscription::Handler>> removed;
+  std::vector<std::shared_ptr<client::EventSubscription>> removed;
   {
     const std::lock_guard lock(mutex_);
     std::erase_if(handlers_, [&](const auto& item) {
@@ -165,6 +181,13 @@ void Session::handle_entry(const Message& message, const Entry& entry, const Mem
     case EntryType::callback_call_req:
       answer_callback(message, entry, owner);
       break;
+    case EntryType::wire_packet:
+    case EntryType::wire_closed: {  // one of several entries
+      channel::Laters laters;
+      take_packet(message, entry, owner, laters);
+      post(std::move(laters));
+      break;
+    }
     default:
       if (static_cast<std::uint16_t>(entry.type) % 2 != 0) answer_request(message, entry);
       break;
@@ -172,7 +195,7 @@ void Session::handle_entry(const Message& message, const Entry& entry, const Mem
 }
 
 void Session::handle_event(const Message& message, const Entry& entry, const MemoryRef& owner) {
-  std::vector<std::shared_ptr<Subscription::Handler>> handlers;
+  std::vector<std::shared_ptr<client::EventSubscription>> handlers;
   {
     const std::lock_guard lock(mutex_);
     for (const auto& handler : handlers_) {

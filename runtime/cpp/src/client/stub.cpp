@@ -134,7 +134,7 @@ void Stub::rr_start_find(const Member& member, std::string_view index,
 
 Subscription Stub::rr_connect(const Member& member, std::unique_ptr<EventHandler> handler) {
   Session& session = need(rr_session_);
-  auto shared = std::make_shared<Subscription::Handler>(*this, member, std::move(handler));
+  auto shared = std::make_shared<client::EventSubscription>(*this, member, std::move(handler));
   session.add_handler(shared);
   return Subscription(std::move(shared));
 }

@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
-#include <condition_variable>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <thread>
+#include <utility>
 
 #include "rr/definition.hpp"
 #include "rr/stub.hpp"
+#include "runtime/cpp/src/endpoint/subscription.hpp"
 
-namespace rr {
+namespace rr::client {
 
 /// A function that waits for an event of one object.
-struct Subscription::Handler {
-  Handler(const Stub& of, const Member& event, std::unique_ptr<EventHandler> function)
+class EventSubscription final : public Subscription::Handler {
+ public:
+  EventSubscription(const Stub& of, const Member& event, std::unique_ptr<EventHandler> function)
       : stub(&of), path(of.rr_path()), member(&event), function_(std::move(function)) {}
 
   const Stub* const stub;  // compared only
@@ -23,18 +22,14 @@ struct Subscription::Handler {
   const Member* const member;
 
   /// Calls the function unless it has been disconnected. What it throws comes out.
-  void call(const Arguments& arguments);
-  /// Returns when the function is not running any more, unless it is the caller.
-  void disconnect();
-  [[nodiscard]] bool is_connected() const { return is_connected_; }
+  void call(const Arguments& arguments) {
+    run([&] { function_->call(arguments); });
+  }
 
  private:
+  void drop() override { function_.reset(); }
+
   std::unique_ptr<EventHandler> function_;
-  std::mutex mutex_;
-  std::condition_variable ended_;
-  std::atomic<bool> is_connected_{true};  // written under mutex_
-  bool is_running_ = false;
-  std::thread::id runner_;
 };
 
-}  // namespace rr
+}  // namespace rr::client

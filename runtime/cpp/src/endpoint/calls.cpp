@@ -17,7 +17,7 @@ void Caller::cancel(Pending& call, channel::Laters& laters) {
 
 void Caller::post(channel::Laters laters) const {
   for (const std::function<void()>& later : laters) {
-    if (!core().reactor().post(later))
+    if (!core()->reactor().post(later))
       later();  // the node is going away; this thread takes it along
   }
 }
@@ -28,9 +28,9 @@ namespace {
 template <class Read>
 std::exception_ptr take_in(const Caller& caller, const Message& message, const Entry& entry,
                            const MemoryRef& owner, const Read& read) {
-  if (entry.error != 0) return read_error(message, entry, owner, caller.types());
+  if (entry.error != 0) return read_error(message, entry, owner, *caller.types());
   try {
-    Decoder decoder(message.version, &message.strings, owner, &caller.types());
+    Decoder decoder(message.version, &message.strings, owner, caller.types().get());
     read(decoder);
   } catch (...) {
     return std::current_exception();
@@ -77,7 +77,7 @@ AsyncCall::AsyncCall(std::shared_ptr<Caller> caller, AnswerReader read,
                      std::shared_ptr<Completion> completion)
     : caller_(std::move(caller)), read_(std::move(read)), completion_(std::move(completion)) {}
 
-AsyncCall::~AsyncCall() { caller_->core().reactor().cancel(*this); }
+AsyncCall::~AsyncCall() { caller_->core()->reactor().cancel(*this); }
 
 void AsyncCall::open(std::shared_ptr<Cancellation::State> cancellation) {
   cancellation_ = std::move(cancellation);
@@ -87,8 +87,8 @@ void AsyncCall::open(std::shared_ptr<Cancellation::State> cancellation) {
 
 void AsyncCall::expect(channel::Milliseconds timeout) {
   caller_->connection().expect();
-  caller_->core().reactor().schedule(*this, weak_from_this(),
-                                     channel::after(channel::coarse_now(), timeout));
+  caller_->core()->reactor().schedule(*this, weak_from_this(),
+                                      channel::after(channel::coarse_now(), timeout));
 }
 
 // Not from inside the call that starts it. If it has been taken, its end is on the way already.
@@ -126,7 +126,7 @@ void AsyncCall::end(channel::Laters& laters) {
 
 void AsyncCall::complete() {
   if (cancellation_) cancellation_->remove(*this);
-  caller_->core().reactor().cancel(*this);
+  caller_->core()->reactor().cancel(*this);
   try {
     if (error_) {
       completion_->fail(error_);
@@ -134,8 +134,8 @@ void AsyncCall::complete() {
       completion_->succeed();
     }
   } catch (const std::exception& error) {
-    caller_->core().log(LogLevel::error,
-                        std::string("a completion handler has thrown: ") + error.what());
+    caller_->core()->log(LogLevel::error,
+                         std::string("a completion handler has thrown: ") + error.what());
   }
 }
 

@@ -25,8 +25,8 @@ class Caller {
  public:
   virtual ~Caller() = default;
   [[nodiscard]] virtual channel::Connection& connection() const = 0;
-  [[nodiscard]] virtual const Core& core() const = 0;
-  [[nodiscard]] virtual const TypeRegistry& types() const = 0;
+  [[nodiscard]] virtual const std::shared_ptr<Core>& core() const = 0;
+  [[nodiscard]] virtual const std::shared_ptr<const TypeRegistry>& types() const = 0;
   /// Takes an open call out of the table; false when somebody else has.
   virtual bool take(Pending& call) = 0;
   /// Keeps this while there are calls.

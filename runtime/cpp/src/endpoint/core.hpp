@@ -15,6 +15,7 @@
 #include "rr/registry.hpp"
 #include "runtime/cpp/src/channel/channel.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
+#include "runtime/cpp/src/endpoint/sender_clock.hpp"
 
 namespace rr::endpoint {
 
@@ -42,6 +43,9 @@ class Core : public std::enable_shared_from_this<Core> {
 
   void log(LogLevel level, std::string_view text) const;
 
+  /// What the values of wires are stamped with.
+  [[nodiscard]] const SenderClock& clock() const { return clock_; }
+
   /// Makes a definition and its imports known.
   void add_definition(const Definition& definition);
   /// What is known now; does not change any more.
@@ -60,6 +64,7 @@ class Core : public std::enable_shared_from_this<Core> {
  private:
   class Rounds;  // the timer of those that are attended
 
+  const SenderClock clock_;
   std::shared_ptr<const NodeOptions> options_;
   std::shared_ptr<channel::Reactor> reactor_;
   mutable std::mutex mutex_;

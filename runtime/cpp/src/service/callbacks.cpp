@@ -52,8 +52,8 @@ void read_result(Decoder& decoder, const Entry& entry, const Member& member, voi
 }  // namespace
 
 channel::Connection& Callbacks::connection() const { return endpoint_.connection(); }
-const endpoint::Core& Callbacks::core() const { return endpoint_.core(); }
-const TypeRegistry& Callbacks::types() const { return endpoint_.types(); }
+const std::shared_ptr<endpoint::Core>& Callbacks::core() const { return endpoint_.core(); }
+const std::shared_ptr<const TypeRegistry>& Callbacks::types() const { return endpoint_.types(); }
 
 std::shared_ptr<endpoint::Caller> Callbacks::share() {
   return {endpoint_.shared_from_this(), this};
@@ -97,7 +97,7 @@ void Callbacks::call(const CallbackRequest& request, void* result) {
   const channel::Time now = channel::coarse_now();
   Writer& writer = write(request);
   endpoint::BlockingCallOf call(*this, read);
-  call.perform(terms, channel::after(now, timeout_of(terms, core())), now,
+  call.perform(terms, channel::after(now, timeout_of(terms, *core())), now,
                [&](endpoint::Pending& open) { send(request, writer, open); });
 }
 
@@ -110,7 +110,7 @@ void Callbacks::start(const CallbackRequest& request, std::shared_ptr<Completion
   const auto call =
       std::make_shared<endpoint::AsyncCall>(share(), std::move(read), std::move(completion));
   call->start(
-      timeout_of(terms, core()), terms, [&]() -> Writer& { return write(request); },
+      timeout_of(terms, *core()), terms, [&]() -> Writer& { return write(request); },
       [&](endpoint::Pending& open, Writer& writer) { send(request, writer, open); });
 }
 

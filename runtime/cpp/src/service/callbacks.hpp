@@ -43,8 +43,8 @@ class Callbacks final : public endpoint::Caller {
   void end(std::string_view why, channel::Laters& laters);
 
   [[nodiscard]] channel::Connection& connection() const override;
-  [[nodiscard]] const endpoint::Core& core() const override;
-  [[nodiscard]] const TypeRegistry& types() const override;
+  [[nodiscard]] const std::shared_ptr<endpoint::Core>& core() const override;
+  [[nodiscard]] const std::shared_ptr<const TypeRegistry>& types() const override;
   bool take(endpoint::Pending& call) override;
   std::shared_ptr<endpoint::Caller> share() override;
 

@@ -136,7 +136,8 @@ void Generators::drop_unused(channel::Time now, channel::Milliseconds timeout,
 void ServerEndpoint::answer_generator_step(const Question& question) {
   const Entry& entry = question.entry;
   const auto object = find_object(entry.service_path);
-  Decoder decoder(question.message.version, &question.message.strings, question.owner, &types());
+  Decoder decoder(question.message.version, &question.message.strings, question.owner,
+                  types().get());
   std::int32_t index = 0;
   endpoint::read_value(decoder, entry, "index", type_of<std::int32_t>, &index);
   Generators::Use generator(generators_, *object, index, *connection_);

@@ -30,9 +30,6 @@ ServerEndpoint::~ServerEndpoint() {
   if (client_.endpoint != 0) directory_->core()->release_endpoint(client_.endpoint);
 }
 
-const endpoint::Core& ServerEndpoint::core() const { return *directory_->core(); }
-const TypeRegistry& ServerEndpoint::types() const { return *host_->types(); }
-
 // Ends a message of answers, or of one packet, with its header, and sends it.
 void ServerEndpoint::send_answer(Writer& writer, std::uint32_t entry_count, EntryType single_type,
                                  bool is_reply) {
@@ -78,6 +75,33 @@ void ServerEndpoint::send_request(Writer& entry, EntryType type) {
   send_answer(entry, 1, type, false);
 }
 
+void ServerEndpoint::send_marked(Writer& writer, std::string_view metadata,
+                                 const channel::Newest* newest) {
+  writer.message({.sender_node = core()->options().id,
+                  .receiver_node = client_.node,
+                  .sender_endpoint = client_.endpoint,
+                  .receiver_endpoint = remote_endpoint_,
+                  .metadata = metadata,
+                  .message_id = draw_message_id(),
+                  .routing = false},
+                 1);
+  if (newest != nullptr) {
+    connection_->send_newest(writer, *newest, channel::coarse_now());
+  } else {
+    connection_->send(writer);
+  }
+}
+
+const std::shared_ptr<endpoint::Core>& ServerEndpoint::core() const { return directory_->core(); }
+
+const std::shared_ptr<const TypeRegistry>& ServerEndpoint::types() const { return host_->types(); }
+
+Writer& ServerEndpoint::begin_answer(const Question& question) const {
+  Writer& writer = channel::thread_writer();
+  writer.reset(question.gathering ? question.gathering->version() : connection_->version());
+  return writer;
+}
+
 // Sends a finished answer, or puts it where those of the same message gather.
 void ServerEndpoint::finish(const Question& question, Writer& writer) {
   if (question.gathering) {
@@ -94,6 +118,19 @@ void ServerEndpoint::answer_value(const Question& question, std::string_view nam
   type.write(writer, name, value);
   if (writer.failed()) throw endpoint::latched(writer);
   writer.entry(endpoint::answer_header(question.entry), 1, 0);
+  finish(question, writer);
+}
+
+void ServerEndpoint::answer_values(const Question& question, EntryType type,
+                                   std::span<const Parameter> parameters,
+                                   const void* const* values) {
+  Writer& writer = channel::thread_writer();
+  writer.reset(question.gathering ? question.gathering->version() : connection_->version());
+  endpoint::write_values(writer, parameters, values);
+  if (writer.failed()) throw endpoint::latched(writer);
+  EntryHeader header = endpoint::answer_header(question.entry);
+  header.type = type;
+  writer.entry(header, static_cast<std::uint32_t>(parameters.size()), 0);
   finish(question, writer);
 }
 
@@ -153,6 +190,14 @@ void ServerEndpoint::answer_late(const LateAnswer& late, const Error& error) {
   finish_late(late, writer);
 }
 
+void ServerEndpoint::answer_late_text(const LateAnswer& late, std::string_view text) {
+  Writer& writer = channel::thread_writer();
+  writer.reset(late.gathering ? late.gathering->version() : connection_->version());
+  writer.string_element("return", text);
+  writer.entry(endpoint::answer_header(question_of(late)), 1, 0);
+  finish_late(late, writer);
+}
+
 void ServerEndpoint::finish_late(const LateAnswer& late, Writer& writer) {
   if (late.gathering) {
     late.gathering->put(late.place, writer.copy(), true);
@@ -190,6 +235,9 @@ void Gathering::put(std::size_t place, std::vector<std::byte> entry, bool is_lat
 }
 
 void ServerEndpoint::leave() {
+  channel::Laters laters;
+  wires_.end_all(laters);
+  for (const std::function<void()>& later : laters) later();
   if (is_member_.exchange(false)) host_->remove_client(*this);
   end_members();
   connection_->close_after(close_delay);
@@ -197,6 +245,7 @@ void ServerEndpoint::leave() {
 
 void ServerEndpoint::lost(const Error& why, channel::Laters& laters) {
   callbacks_.end(why.message(), laters);
+  wires_.end_all(laters);
 }
 
 void ServerEndpoint::closed() {

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <exception>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -21,6 +22,7 @@
 #include "runtime/cpp/src/service/callbacks.hpp"
 #include "runtime/cpp/src/service/generators.hpp"
 #include "runtime/cpp/src/service/object_tree.hpp"
+#include "runtime/cpp/src/service/wires.hpp"
 
 namespace rr::service {
 
@@ -50,14 +52,15 @@ class ServerEndpoint final : public channel::Receiver,
 
   [[nodiscard]] const ServiceClient& client() const { return client_; }
   [[nodiscard]] channel::Connection& connection() const { return *connection_; }
-  [[nodiscard]] const endpoint::Core& core() const;
-  [[nodiscard]] const TypeRegistry& types() const;
   [[nodiscard]] Callbacks& callbacks() { return callbacks_; }
   [[nodiscard]] Generators& generators() { return generators_; }
   /// The endpoint whose request this thread handles; null outside of handlers.
   static ServerEndpoint* current();
   /// The path of the object that it asks.
   static std::string_view current_path();
+
+  /// Who is logged in; null for nobody.
+  [[nodiscard]] std::shared_ptr<const User> user() const;
 
   /// Sends something that is not answered. Failures are ignored.
   void send_packet(const EntryHeader& header, std::span<const Parameter> parameters,
@@ -67,20 +70,40 @@ class ServerEndpoint final : public channel::Receiver,
   void send_request(Writer& entry, EntryType type);
   /// The service has released the object at a path and those below.
   void release_path(std::string_view path);
+  /// Sends an entry that is not answered, with metadata in the message header; of which only the
+  /// newest counts, unless `newest` is null. Throws rr::Error.
+  void send_marked(Writer& writer, std::string_view metadata, const channel::Newest* newest);
   /// Ends the session, and soon the connection.
   void leave();
+
+  // For the members of each kind, with the dispatch turn.
+  [[nodiscard]] Wires& wires() { return wires_; }
+  [[nodiscard]] const std::shared_ptr<endpoint::Core>& core() const;
+  /// Those that varvalues may need. Once a client has connected.
+  [[nodiscard]] const std::shared_ptr<const TypeRegistry>& types() const;
+  std::shared_ptr<const ServedObject> find_object(std::string_view path);
+  const Member& find_member(const ServedObject& object, std::string_view name, MemberKind kind);
+  [[nodiscard]] bool is_in_session(const Message& message) const;
+  /// A writer for the elements and the entry of an answer, which finish() sends.
+  Writer& begin_answer(const Question& question) const;
+  void finish(const Question& question, Writer& writer);
 
   // Answers of session requests. What cannot be written throws rr::Error, and nothing is sent.
   void answer_value(const Question& question, std::string_view name, const Type& type,
                     const void* value);
+  void answer_values(const Question& question, EntryType type,
+                     std::span<const Parameter> parameters, const void* const* values);
   void answer_empty(const Question& question);
   void answer_error(const Question& question, const Error& error);
   /// The same for an answer given later, by what is left of its question then.
   struct LateAnswer;
   void answer_late(const LateAnswer& late, const void* result);
   void answer_late(const LateAnswer& late, const Error& error);
+  void answer_late_text(const LateAnswer& late, std::string_view text);
 
   void take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
+                   channel::Laters& laters) override;
+  bool take_packet(const Message& message, const Entry& entry, const MemoryRef& owner,
                    channel::Laters& laters) override;
   void handle(const Message& message, const Entry& first, const MemoryRef& owner) override;
   void lost(const Error& why, channel::Laters& laters) override;
@@ -101,6 +124,7 @@ class ServerEndpoint final : public channel::Receiver,
                         const Entry& entry, std::uint32_t& own_endpoint);
   std::uint32_t disconnect(Decoder& decoder, const Message& message, const Entry& entry);
   std::uint32_t join(const std::shared_ptr<ServiceHost>& host, const Message& message);
+  bool let_in(Decoder& decoder, std::string_view user, const Element& credentials);
   void quit();
 
   // Session requests (session_requests.cpp)
@@ -108,7 +132,6 @@ class ServerEndpoint final : public channel::Receiver,
   void handle_question(const Question& question);
   void answer_question(const Question& question);
   void answer_session_object_type(const Question& question);
-  void answer_session_operation(const Question& question);
   void answer_member(const Question& question, MemberKind kind);
   // Generators (generators.cpp)
   void answer_generator_step(const Question& question);
@@ -116,14 +139,26 @@ class ServerEndpoint final : public channel::Receiver,
   static void end_generator(ErrorCode wish, Generators::Use& generator);
   void answer_nothing(const Question& question);
   void answer_unserved(const Question& question);
-  std::shared_ptr<const ServedObject> find_object(std::string_view path);
-  const Member& find_member(const ServedObject& object, std::string_view name, MemberKind kind);
+  // Who may do what (access.cpp)
+  void check_access(const Question& question);
+  void log_in(std::string_view name, const std::map<std::string, VarValue>& credentials);
+  std::shared_ptr<const User> need_user() const;
+  void answer_session_operation(const Question& question);
+  void answer_user_operation(const Question& question);
+  void answer_monitor_operation(const Question& question);
+
+  // Memories (memories.cpp)
+  void answer_memory(const Question& question);
+  void read_memory(const Question& question, Decoder& decoder, const Member& member,
+                   MemorySource& memory);
+  void write_memory(const Question& question, Decoder& decoder, const Member& member,
+                    MemorySource& memory);
+  void answer_memory_parameter(const Question& question, Decoder& decoder, const Member& member,
+                               const MemorySource& memory);
 
   void end_members();
-  void finish(const Question& question, Writer& writer);
   void finish_late(const LateAnswer& late, Writer& writer);
   void send_answer(Writer& writer, std::uint32_t entry_count, EntryType single_type, bool is_reply);
-  [[nodiscard]] bool is_in_session(const Message& message) const;
   std::uint16_t draw_message_id(std::uint16_t count = 1) {
     return next_message_id_.fetch_add(count, std::memory_order_relaxed);
   }
@@ -140,6 +175,8 @@ class ServerEndpoint final : public channel::Receiver,
 
   Callbacks callbacks_{*this};
   Generators generators_;
+  mutable std::mutex user_mutex_;
+  std::shared_ptr<const User> user_;
 
   std::atomic<std::uint16_t> next_message_id_{0};
   std::atomic<channel::Time> last_heard_;
@@ -149,6 +186,8 @@ class ServerEndpoint final : public channel::Receiver,
   std::shared_ptr<const ServedObject> last_object_;
   std::uint32_t last_generation_ = 0;
   const Member* last_member_ = nullptr;
+
+  Wires wires_{*this};
 };
 
 /// What a late answer must remember of its question.

@@ -7,6 +7,7 @@
 #include "rr/error.hpp"
 #include "runtime/cpp/src/service/directory.hpp"
 #include "runtime/cpp/src/service/object_types.hpp"
+#include "runtime/cpp/src/service/offered_wire.hpp"
 #include "runtime/cpp/src/service/places.hpp"
 #include "runtime/cpp/src/service/server_endpoint.hpp"
 
@@ -32,6 +33,13 @@ std::vector<std::pair<std::shared_ptr<service::ServiceHost>, std::string>> Skele
     if (auto alive = host.lock()) result.emplace_back(std::move(alive), path);
   }
   return result;
+}
+
+std::shared_ptr<service::OfferedWire> Skeleton::Places::wire(const Member& member) {
+  const std::lock_guard lock(mutex_);
+  auto& wire = wires_[member.name];
+  if (!wire) wire = std::make_shared<service::OfferedWire>(member);
+  return wire;
 }
 
 Skeleton::Skeleton() : rr_places_(std::make_shared<Places>()) {}
@@ -65,9 +73,17 @@ ServiceHost::ServiceHost(std::shared_ptr<endpoint::Core> core, std::weak_ptr<Dir
       objects_(
           name_, std::move(root), [this](const ServedObject& object) { attach(object); },
           [this](const ServedObject& object) { detach(object); }),
+      monitors_(std::make_shared<Monitors>(core_, options_.monitor_patience)),
       clients_(std::make_shared<const Clients>()) {}
 
-void ServiceHost::start() { attach(*objects_.root()); }
+void ServiceHost::start() {
+  if (options_.users) {
+    for (const std::string& warning : options_.users->warnings()) {
+      core_->log(LogLevel::warning, "`" + name_ + "`: " + warning);
+    }
+  }
+  attach(*objects_.root());
+}
 
 void ServiceHost::attach(const ServedObject& object) {
   Skeleton::Places::of(*object.skeleton).add(weak_from_this(), object.path);
@@ -76,6 +92,8 @@ void ServiceHost::attach(const ServedObject& object) {
 
 void ServiceHost::detach(const ServedObject& object) {
   Skeleton::Places::of(*object.skeleton).remove(*this, object.path);
+  locks_.forget(object.path);
+  monitors_->forget(object.path);
 }
 
 std::map<std::string, VarValue> ServiceHost::attributes() const {
@@ -98,9 +116,16 @@ std::shared_ptr<const ServiceHost::Clients> ServiceHost::connected() const {
   return clients_;
 }
 
+bool ServiceHost::may_hear(const ServerEndpoint& client) const {
+  return !requires_user() || client.user() != nullptr;
+}
+
 std::vector<ServiceClient> ServiceHost::clients() const {
   std::vector<ServiceClient> result;
-  for (const auto& client : *connected()) result.push_back(client->client());
+  for (const auto& client : *connected()) {
+    result.push_back(client->client());
+    if (const auto user = client->user()) result.back().user = user->name;
+  }
   return result;
 }
 
@@ -112,6 +137,7 @@ bool ServiceHost::add_client(const std::shared_ptr<ServerEndpoint>& client) {
     clients->push_back(client);
     clients_ = std::move(clients);
   }
+  locks_.enter(client->client().endpoint);
   notify(options_.on_client_connected, client->client());
   return true;
 }
@@ -125,6 +151,8 @@ void ServiceHost::remove_client(const ServerEndpoint& client) {
     }
     clients_ = std::move(clients);
   }
+  locks_.leave(client.client().endpoint);
+  monitors_->leave(client.client().endpoint);
   notify(options_.on_client_disconnected, client.client());
 }
 
@@ -164,6 +192,8 @@ void ServiceHost::release_path(const std::string& path) {
   }
   for (const auto& client : *connected()) {
     client->release_path(canonical);
+    client->wires().release(canonical);
+    if (!may_hear(*client)) continue;
     client->send_packet({.type = EntryType::service_path_released_req, .service_path = canonical},
                         {}, nullptr);
   }
@@ -174,7 +204,7 @@ void ServiceHost::fire(const std::string& path, const Member& member,
   const EntryHeader header{
       .type = EntryType::event_req, .service_path = path, .member = member.name};
   for (const auto& client : *connected()) {
-    client->send_packet(header, member.parameters, arguments);
+    if (may_hear(*client)) client->send_packet(header, member.parameters, arguments);
   }
 }
 
@@ -186,7 +216,7 @@ void ServiceHost::close() {
   if (const auto directory = directory_.lock()) directory->remove(*this);
   const auto clients = connected();
   for (const auto& client : *clients) {
-    client->send_packet({.type = EntryType::service_closed}, {}, nullptr);
+    if (may_hear(*client)) client->send_packet({.type = EntryType::service_closed}, {}, nullptr);
   }
   for (const auto& client : *clients) client->leave();
   objects_.clear();

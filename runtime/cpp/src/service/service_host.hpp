@@ -12,6 +12,8 @@
 
 #include "rr/service.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/service/locks.hpp"
+#include "runtime/cpp/src/service/monitors.hpp"
 #include "runtime/cpp/src/service/object_tree.hpp"
 
 namespace rr::service {
@@ -47,6 +49,14 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   [[nodiscard]] std::optional<std::string> root_type_for(
       const std::optional<DefinitionVersion>& client) const;
 
+  [[nodiscard]] const Users* users() const { return options_.users.get(); }
+  /// Whether only users may use the service.
+  [[nodiscard]] bool requires_user() const {
+    return options_.users != nullptr && options_.require_user;
+  }
+  [[nodiscard]] Locks& locks() { return locks_; }
+  [[nodiscard]] Monitors& monitors() { return *monitors_; }
+
   /// False when the service has been closed.
   bool add_client(const std::shared_ptr<ServerEndpoint>& client);
   void remove_client(const ServerEndpoint& client);
@@ -58,6 +68,9 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
  private:
   using Clients = std::vector<std::shared_ptr<ServerEndpoint>>;
   [[nodiscard]] std::shared_ptr<const Clients> connected() const;
+  // Whether a client is sent what the service sends to all: not before it has logged in where it
+  // has to.
+  [[nodiscard]] bool may_hear(const ServerEndpoint& client) const;
   void attach(const ServedObject& object);
   void detach(const ServedObject& object);
   void notify(const std::function<void(const ServiceClient&)>& function,
@@ -70,6 +83,8 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   const std::shared_ptr<const TypeRegistry> types_;
   const std::vector<const Definition*> definitions_;
   ObjectTree objects_;
+  Locks locks_;
+  const std::shared_ptr<Monitors> monitors_;
 
   mutable std::mutex mutex_;
   std::shared_ptr<const Clients> clients_;  // replaced, never changed

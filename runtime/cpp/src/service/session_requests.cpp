@@ -70,6 +70,12 @@ bool ServerEndpoint::is_in_session(const Message& message) const {
          (!message.has_routing || message.receiver_node == directory_->core()->options().id);
 }
 
+bool ServerEndpoint::take_packet(const Message& message, const Entry& entry, const MemoryRef& owner,
+                                 channel::Laters& laters) {
+  last_heard_.store(channel::coarse_now(), std::memory_order_relaxed);
+  return wires_.take(message, entry, owner, laters);
+}
+
 void ServerEndpoint::handle_session(const Message& message, const Entry& first,
                                     const MemoryRef& owner) {
   if (message.entry_count == 1) {
@@ -110,6 +116,7 @@ void ServerEndpoint::handle_question(const Question& question) {
 }
 
 void ServerEndpoint::answer_question(const Question& question) {
+  check_access(question);
   switch (question.entry.type) {
     case EntryType::property_get_req:
     case EntryType::property_set_req:
@@ -120,6 +127,11 @@ void ServerEndpoint::answer_question(const Question& question) {
       break;
     case EntryType::generator_next_req:
       answer_generator_step(question);
+      break;
+    case EntryType::memory_read:
+    case EntryType::memory_write:
+    case EntryType::memory_get_param:
+      answer_memory(question);
       break;
     case EntryType::object_type_name:
       if (question.gathering) {
@@ -139,6 +151,14 @@ void ServerEndpoint::answer_question(const Question& question) {
     case EntryType::client_session_op_req:
       answer_session_operation(question);
       break;
+    case EntryType::wire_packet:
+    case EntryType::wire_connect_req:
+    case EntryType::wire_disconnect_req:
+    case EntryType::wire_peek_in_value_req:
+    case EntryType::wire_peek_out_value_req:
+    case EntryType::wire_poke_out_value_req:
+      wires_.answer(question);
+      break;
     default:
       answer_unserved(question);
       break;
@@ -157,22 +177,6 @@ void ServerEndpoint::answer_session_object_type(const Question& question) {
   const auto type = type_for(*object->type, version);
   if (!type) throw Error(ErrorCode::object_not_found, "no type for this version of the client");
   answer_value(question, "objecttype", type_of<std::string>, &*type);
-}
-
-// A service without users: there is nobody to authenticate and nobody to lock for.
-void ServerEndpoint::answer_session_operation(const Question& question) {
-  const std::string_view operation = question.entry.member;
-  if (operation == "AuthenticateUser" || operation == "LogoutUser" ||
-      operation == "RequestObjectLock" || operation == "RequestClientObjectLock" ||
-      operation == "ReleaseObjectLock" || operation == "ReleaseClientObjectLock") {
-    throw Error(ErrorCode::invalid_operation, "User authentication not activated for this service");
-  }
-  if (operation == "MonitorEnter" || operation == "MonitorContinueEnter" ||
-      operation == "MonitorExit") {
-    find_object(question.entry.service_path);
-    throw Error(ErrorCode::invalid_argument, "Object is not monitor lockable");
-  }
-  throw Error(ErrorCode::protocol_error, "Invalid ClientSessionOp command");
 }
 
 std::shared_ptr<const ServedObject> ServerEndpoint::find_object(std::string_view path) {
@@ -230,15 +234,6 @@ void ServerEndpoint::answer_unserved(const Question& question) {
     case EntryType::pipe_packet:
     case EntryType::pipe_connect_req:
     case EntryType::pipe_disconnect_req:
-    case EntryType::wire_packet:
-    case EntryType::wire_connect_req:
-    case EntryType::wire_disconnect_req:
-    case EntryType::wire_peek_in_value_req:
-    case EntryType::wire_peek_out_value_req:
-    case EntryType::wire_poke_out_value_req:
-    case EntryType::memory_read:
-    case EntryType::memory_write:
-    case EntryType::memory_get_param:
       find_object(question.entry.service_path);
       throw Error(ErrorCode::member_not_found, "Member not found");
     default:
@@ -253,6 +248,11 @@ namespace rr {
 std::uint32_t ServiceContext::current_client() {
   const service::ServerEndpoint* const endpoint = service::ServerEndpoint::current();
   return endpoint != nullptr ? endpoint->client().endpoint : 0;
+}
+
+std::shared_ptr<const User> ServiceContext::current_user() {
+  const service::ServerEndpoint* const endpoint = service::ServerEndpoint::current();
+  return endpoint != nullptr ? endpoint->user() : nullptr;
 }
 
 }  // namespace rr

@@ -184,6 +184,8 @@ std::uint32_t ServerEndpoint::write_object_type(Writer& writer, Decoder& decoder
   const std::string_view path = entry.service_path;
   const auto host = directory_->find(path.substr(0, path.find('.')));
   if (!host) throw object_not_found();
+  // Objects other than the root are for users only, and here nobody is one yet.
+  if (host->requires_user() && path != host->name()) throw object_not_found();
   const auto object = host->objects().find(path);
   const auto type = type_for(*object->type, client_version(decoder, entry));
   if (!type) throw object_not_found();
@@ -215,7 +217,8 @@ std::uint32_t ServerEndpoint::connect(Writer& writer, Decoder& decoder, const Me
       endpoint::find_text(decoder, entry, "username", user) &&
       find_element(decoder, entry.elements, entry.element_count, "credentials", credentials);
   own_endpoint = join(host, message);
-  if (has_user) {  // to a service without users it is an error to name one
+  // Where none is needed it is an error to name a user (07, section 5).
+  if (has_user != host->requires_user() || (has_user && !let_in(decoder, user, credentials))) {
     quit();
     throw Error(ErrorCode::authentication_error, "Authentication Failed");
   }
@@ -228,6 +231,20 @@ std::uint32_t ServerEndpoint::connect(Writer& writer, Decoder& decoder, const Me
   count += write_texts(writer, "objectimplements", host->root().rr_object_type().implements);
   writer.string_element("objecttype", *type);
   return count + 1;
+}
+
+// Whoever the credentials name is logged in; false when they name nobody.
+bool ServerEndpoint::let_in(Decoder& decoder, std::string_view user, const Element& credentials) {
+  VarStringMap map;
+  if (!type_of<VarStringMap>.read(decoder, credentials, &map)) return false;
+  try {
+    log_in(user, map);
+  } catch (const std::exception& error) {
+    directory_->core()->log(LogLevel::info,
+                            "`" + std::string(user) + "` is not let in: " + error.what());
+    return false;
+  }
+  return true;
 }
 
 // Makes a session; returns its number.
@@ -255,6 +272,8 @@ void ServerEndpoint::quit() {
   directory_->core()->release_endpoint(client_.endpoint);
   client_ = {};
   connection_->set_endpoints(0, 0);
+  const std::lock_guard lock(user_mutex_);
+  user_.reset();
 }
 
 std::uint32_t ServerEndpoint::disconnect(Decoder& decoder, const Message& message,

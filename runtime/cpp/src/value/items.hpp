@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "rr/array_type.hpp"
 #include "rr/record.hpp"
@@ -14,6 +15,13 @@ namespace rr::value {
 inline const RecordType& record_of(const ItemType& item) {
   return *static_cast<const RecordType*>(item.record);
 }
+
+/// A MultiArray<T> of any T.
+struct AnyMultiArray {
+  std::vector<std::uint32_t> dims;
+  ArrayStorage items;
+};
+static_assert(sizeof(AnyMultiArray) == sizeof(MultiArray<double>));
 
 /// Fails the decoder for an element of another type than `expected`: null is an error of its own.
 bool fail_type(Decoder& decoder, const Element& element);

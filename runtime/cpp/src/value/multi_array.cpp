@@ -10,16 +10,10 @@
 namespace rr {
 namespace {
 
+using value::AnyMultiArray;
 using value::open_items;
 using value::ReceivedItems;
 using value::record_of;
-
-// A MultiArray<T> of any T.
-struct AnyMultiArray {
-  std::vector<std::uint32_t> dims;
-  ArrayStorage items;
-};
-static_assert(sizeof(AnyMultiArray) == sizeof(MultiArray<double>));
 
 bool fail_shape(Latch& latch, std::string_view name) {
   return latch.fail(ErrorCode::data_type_error, "dims do not fit", name);

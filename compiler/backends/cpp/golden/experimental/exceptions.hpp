@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-static_assert(::rr::stub_api == 1, "made for stub API 1; run robdef again");
+static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
 
 namespace experimental::exceptions {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/cpp/src/client/subscription.hpp"
+#include "runtime/cpp/src/endpoint/subscription.hpp"
 
 #include <utility>
 
@@ -7,30 +7,33 @@
 
 namespace rr {
 
-void Subscription::Handler::call(const Arguments& arguments) {
+bool Subscription::Handler::enter() {
+  const std::lock_guard lock(mutex_);
+  if (!is_connected_) return false;
+  is_running_ = true;
+  runner_ = std::this_thread::get_id();
+  return true;
+}
+
+void Subscription::Handler::leave() {
+  bool must_drop = false;
   {
     const std::lock_guard lock(mutex_);
-    if (!is_connected_) return;
-    is_running_ = true;
-    runner_ = std::this_thread::get_id();
+    is_running_ = false;
+    must_drop = !is_connected_ && !std::exchange(is_dropped_, true);
   }
-  struct End {
-    Handler& handler;
-    ~End() {
-      {
-        const std::lock_guard lock(handler.mutex_);
-        handler.is_running_ = false;
-      }
-      handler.ended_.notify_all();
-    }
-  } const end{*this};
-  function_->call(arguments);
+  ended_.notify_all();
+  if (must_drop) drop();
 }
 
 void Subscription::Handler::disconnect() {
-  std::unique_lock lock(mutex_);
-  is_connected_ = false;
-  while (is_running_ && runner_ != std::this_thread::get_id()) ended_.wait(lock);
+  {
+    std::unique_lock lock(mutex_);
+    is_connected_ = false;
+    while (is_running_ && runner_ != std::this_thread::get_id()) ended_.wait(lock);
+    if (is_running_ || std::exchange(is_dropped_, true)) return;
+  }
+  drop();
 }
 
 Subscription::Subscription(std::shared_ptr<Handler> handler) : handler_(std::move(handler)) {}

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rr/node_id.hpp"
+#include "rr/varvalue.hpp"
+
+/// Who may use a service (07, section 6).
+namespace rr {
+
+/// Privileges that the runtime knows.
+inline constexpr std::string_view lock_privilege = "objectlock";
+inline constexpr std::string_view override_lock_privilege = "objectlockoverride";
+
+/// A user that a service has recognised.
+struct User {
+  std::string name;
+  std::vector<std::string> privileges{};
+
+  [[nodiscard]] bool has(std::string_view privilege) const {
+    return std::find(privileges.begin(), privileges.end(), privilege) != privileges.end();
+  }
+};
+
+/// Recognises users: given to a service with ServiceOptions::users.
+class Users {
+ public:
+  virtual ~Users() = default;
+  /// Called on a thread of the node, for several clients at once. `credentials` are what the client
+  /// gives, usually `password`; `node` is what it says of itself. Throws rr::Error
+  /// (authentication_error) for anybody who is not to be let in.
+  [[nodiscard]] virtual User authenticate(const std::string& name,
+                                          const std::map<std::string, VarValue>& credentials,
+                                          const NodeId& node) const = 0;
+  /// What whoever runs the service should know; goes to the log when it is registered.
+  [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
+};
+
+/// Users with passwords, one a line; `#` begins a comment:
+///
+///   alice $y$j9T$... objectlock,objectlockoverride
+///   bob   $y$j9T$... _ {a1b2c3d4-1111-4222-8333-444455556666}
+///
+/// Name, hash, privileges (`_` for none), and, if the user may come from certain nodes only, their
+/// ids. Hashes are those of crypt(5), made by hash() or `mkpasswd -m yescrypt`. The hashes of
+/// existing files, 32 digits of an MD5 without salt, are taken with a warning: whoever reads the
+/// file finds out such passwords.
+class PasswordUsers final : public Users {
+ public:
+  /// Throws rr::Error (invalid_configuration), naming the line.
+  explicit PasswordUsers(std::string_view text);
+  /// Throws as well when the file cannot be read.
+  static std::shared_ptr<PasswordUsers> from_file(const std::filesystem::path& path);
+  ~PasswordUsers() override;
+
+  /// A hash for a line: yescrypt with a random salt. Throws rr::Error: invalid_argument for a
+  /// password that has a NUL or more than 511 bytes.
+  static std::string hash(std::string_view password);
+
+  [[nodiscard]] User authenticate(const std::string& name,
+                                  const std::map<std::string, VarValue>& credentials,
+                                  const NodeId& node) const override;
+  [[nodiscard]] std::vector<std::string> warnings() const override;
+
+ private:
+  struct Account;
+  std::vector<Account> accounts_;
+};
+
+}  // namespace rr

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rr/locks.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "rr/error.hpp"
+#include "rr/type.hpp"
+#include "runtime/cpp/src/client/session.hpp"
+
+namespace rr {
+namespace {
+
+Session& session_of(const Stub& object) {
+  if (!object.rr_session()) {
+    throw Error(ErrorCode::invalid_operation, "the stub is not attached to a session");
+  }
+  return *object.rr_session();
+}
+
+void ask(const Stub& object, std::string_view operation) {
+  std::string answer;
+  session_of(object).call({EntryType::client_session_op_req, object.rr_path(), operation},
+                          Incoming{"return", &type_of<std::string>, &answer}, object.rr_timeout());
+  if (answer != "OK") throw Error(ErrorCode::protocol_error, "the service said " + answer);
+}
+
+}  // namespace
+
+void lock(const Stub& object, LockOwner owner) {
+  ask(object, owner == LockOwner::user ? "RequestObjectLock" : "RequestClientObjectLock");
+}
+
+void unlock(const Stub& object) { ask(object, "ReleaseObjectLock"); }
+
+void enter_monitor(const Stub& object, std::chrono::milliseconds timeout) {
+  constexpr std::int32_t longest = std::numeric_limits<std::int32_t>::max();
+  std::int32_t limit = -1;
+  if (timeout != wait_forever) {
+    limit = static_cast<std::int32_t>(
+        std::clamp<std::chrono::milliseconds::rep>(timeout.count(), 0, longest));
+  }
+  const Parameter parameter{"timeout", &type_of<std::int32_t>};
+  const void* const value = &limit;
+  Outgoing request{
+      EntryType::client_session_op_req, object.rr_path(), "MonitorEnter", {&parameter, 1}, &value};
+  while (true) {
+    std::string answer;
+    session_of(object).call(request, Incoming{"return", &type_of<std::string>, &answer},
+                            object.rr_timeout());
+    if (answer == "OK") return;
+    if (answer != "Continue") {
+      throw Error(ErrorCode::protocol_error, "the service said " + answer);
+    }
+    request = {EntryType::client_session_op_req, object.rr_path(), "MonitorContinueEnter"};
+  }
+}
+
+// Existing services say nothing for an object that nobody has entered.
+void exit_monitor(const Stub& object) {
+  session_of(object).call({EntryType::client_session_op_req, object.rr_path(), "MonitorExit"},
+                          Incoming{}, object.rr_timeout());
+}
+
+MonitorLock::~MonitorLock() {
+  try {
+    exit();
+  } catch (const std::exception&) {
+    // The session has ended, or will drop it.
+  }
+}
+
+}  // namespace rr

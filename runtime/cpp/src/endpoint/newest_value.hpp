@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "rr/time_spec.hpp"
+#include "runtime/cpp/src/channel/time.hpp"
+
+namespace rr::endpoint {
+
+/// What has come last, and until when it counts. Not synchronized.
+class NewestValue {
+ public:
+  /// Gives back what was there, which may be large to free.
+  std::shared_ptr<const void> put(std::shared_ptr<const void> value, const TimeSpec& time) {
+    time_ = time;
+    arrived_ = channel::Clock::now();
+    return std::exchange(value_, std::move(value));
+  }
+  /// Null for none, and for one that has expired.
+  [[nodiscard]] std::shared_ptr<const void> get(TimeSpec& time) const {
+    if (!is_fresh()) return nullptr;
+    time = time_;
+    return value_;
+  }
+  [[nodiscard]] bool is_fresh() const {
+    return value_ && (lifespan_.count() <= 0 || channel::Clock::now() - arrived_ <= lifespan_);
+  }
+  /// Whatever its age.
+  [[nodiscard]] const std::shared_ptr<const void>& value() const { return value_; }
+  /// Its sender's time; of any value before, too.
+  [[nodiscard]] const TimeSpec& time() const { return time_; }
+  /// 0: values do not expire.
+  void set_lifespan(channel::Milliseconds lifespan) { lifespan_ = lifespan; }
+
+ private:
+  std::shared_ptr<const void> value_;
+  TimeSpec time_;
+  channel::Time arrived_{};
+  channel::Milliseconds lifespan_{0};
+};
+
+}  // namespace rr::endpoint

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "rr/stub.hpp"
+
+namespace rr {
+
+/// A function of the program that is called when something arrives, by one thread at a time.
+struct Subscription::Handler {
+ public:
+  virtual ~Handler() = default;
+  Handler(const Handler&) = delete;
+  Handler& operator=(const Handler&) = delete;
+
+  /// Returns when the function is not running any more, unless it is the caller. The function and
+  /// what it holds are freed then, or when it returns.
+  void disconnect();
+  [[nodiscard]] bool is_connected() const { return is_connected_; }
+
+ protected:
+  Handler() = default;
+  /// Calls `function`, which is or stands for the program's, unless this has been disconnected.
+  /// What it throws comes out.
+  template <class Function>
+  void run(Function&& function) {
+    if (!enter()) return;
+    struct Leave {
+      Handler& handler;
+      ~Leave() { handler.leave(); }
+    } const leave{*this};
+    function();
+  }
+  /// Frees the program's function. Called once at most, under no lock.
+  virtual void drop() = 0;
+
+ private:
+  bool enter();
+  void leave();
+
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  std::atomic<bool> is_connected_{true};  // written under mutex_
+  bool is_dropped_ = false;
+  bool is_running_ = false;
+  std::thread::id runner_;
+};
+
+}  // namespace rr

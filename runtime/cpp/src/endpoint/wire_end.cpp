@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// The values of a wire's end: what it sends and what it takes.
+#include "runtime/cpp/src/endpoint/wire_end.hpp"
+
+#include <utility>
+
+#include "runtime/cpp/src/channel/reactor.hpp"
+#include "runtime/cpp/src/channel/scratch.hpp"
+#include "runtime/cpp/src/endpoint/wire_values.hpp"
+
+namespace rr {
+
+WireEnd::State::State(std::shared_ptr<endpoint::Core> core, std::string path, const Member& member)
+    : core_(std::move(core)), path_(std::move(path)), member_(member) {}
+
+WireEnd::State::~State() = default;
+
+void WireEnd::State::send(const void* value) {
+  check_sending();
+  if (!is_open()) throw Error(ErrorCode::invalid_operation, "the wire is not connected");
+  Writer& writer = channel::thread_writer();
+  writer.reset(connection().version());
+  endpoint::write_wire_value(writer, *member_.type, value);
+  endpoint::SenderTime time = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    time = draw_time();
+    if (member_.holding != nullptr) {
+      if (!own_sent_) own_sent_ = member_.holding->make();
+      member_.holding->copy(value, own_sent_.get());
+      is_own_sent_ = true;
+      sent_time_ = time;
+    }
+  }
+  endpoint::write_wire_time(writer, endpoint::as_time_spec(time));
+  transmit(writer, {stream_, time});
+}
+
+void WireEnd::State::keep_sent(std::shared_ptr<const void> value, endpoint::SenderTime time) {
+  const std::lock_guard lock(mutex_);
+  if (time <= sent_time_) return;
+  common_sent_.swap(value);
+  is_own_sent_ = false;
+  sent_time_ = time;
+}
+
+std::shared_ptr<const void> WireEnd::State::sent(TimeSpec& time) const {
+  const std::lock_guard lock(mutex_);
+  if (sent_time_ == 0) return nullptr;
+  time = endpoint::as_time_spec(sent_time_);
+  if (!is_own_sent_) return common_sent_;
+  std::shared_ptr<void> copy = member_.holding->make();  // the next one is written over this one
+  member_.holding->copy(own_sent_.get(), copy.get());
+  return copy;
+}
+
+void WireEnd::State::open() {
+  const std::lock_guard lock(mutex_);
+  if (phase_ == Phase::connecting) phase_ = Phase::open;
+}
+
+void WireEnd::State::take(const Message& message, const Entry& entry, const MemoryRef& owner,
+                          const TypeRegistry& types, channel::Laters& laters) {
+  if (!may_receive_ || member_.holding == nullptr) return;
+  std::shared_ptr<void> made;
+  TimeSpec time;
+  try {
+    made = member_.holding->make();
+    endpoint::read_wire(message, entry, owner, types, *member_.type, time, made.get());
+  } catch (const std::exception&) {
+    return;  // as if it had not been sent (07, section 13)
+  }
+  const std::shared_ptr<const void> value = std::move(made);
+  std::shared_ptr<const void> before;
+  bool must_start = false;
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_ending()) return;
+    if (sequence_ != 0 && !endpoint::is_later(time, in_.time())) return;
+    before = in_.put(value, time);
+    ++sequence_;
+    must_start = must_start_telling();
+    if (waiting_ != 0) arrived_.notify_all();
+  }
+  on_taken(value, time);
+  if (must_start) start_telling(laters);
+}
+
+std::shared_ptr<const void> WireEnd::State::received(TimeSpec& time) const {
+  const std::lock_guard lock(mutex_);
+  return in_.get(time);
+}
+
+bool WireEnd::State::wait_received(std::chrono::milliseconds limit) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (in_.is_fresh()) return true;
+  }
+  const channel::Time deadline = channel::after(channel::Clock::now(), limit);
+  connection().expect();
+  channel::Reactor::about_to_wait();
+  std::unique_lock lock(mutex_);
+  ++waiting_;
+  while (!in_.is_fresh() && !is_ending() && channel::Clock::now() < deadline) {
+    channel::wait_until(arrived_, lock, deadline);
+  }
+  --waiting_;
+  return in_.is_fresh();
+}
+
+void WireEnd::State::set_lifespan(std::chrono::milliseconds lifespan) {
+  const std::lock_guard lock(mutex_);
+  in_.set_lifespan(lifespan);
+}
+
+// Handles
+
+namespace {
+
+WireEnd::State& need(const std::shared_ptr<WireEnd::State>& state) {
+  if (!state) throw Error(ErrorCode::invalid_operation, "the wire is not connected");
+  return *state;
+}
+
+}  // namespace
+
+void WireEnd::close() {
+  if (state_) state_->close();
+}
+bool WireEnd::is_open() const { return state_ && state_->is_open(); }
+void WireEnd::on_closed(std::function<void()> function) {
+  need(state_).on_closed(std::move(function));
+}
+std::uint32_t WireEnd::client() const { return state_ ? state_->client() : 0; }
+std::shared_ptr<const void> WireEnd::received(TimeSpec& time) const {
+  return state_ ? state_->received(time) : nullptr;
+}
+bool WireEnd::wait_received(std::chrono::milliseconds limit) const {
+  return state_ && state_->wait_received(limit);
+}
+void WireEnd::set_lifespan(std::chrono::milliseconds lifespan) {
+  need(state_).set_lifespan(lifespan);
+}
+Subscription WireEnd::on_received(std::function<void(const void*, const TimeSpec&)> function) {
+  return need(state_).on_received(std::move(function));
+}
+void WireEnd::send(const void* value) { need(state_).send(value); }
+std::shared_ptr<const void> WireEnd::sent(TimeSpec& time) const {
+  return state_ ? state_->sent(time) : nullptr;
+}
+void WireEnd::throw_no_value() { throw Error(ErrorCode::value_not_set, "Value not set"); }
+
+}  // namespace rr

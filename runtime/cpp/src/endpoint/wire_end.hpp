@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "rr/definition.hpp"
+#include "rr/error.hpp"
+#include "rr/reader.hpp"
+#include "rr/registry.hpp"
+#include "rr/wires.hpp"
+#include "runtime/cpp/src/channel/connection.hpp"
+#include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/endpoint/newest_value.hpp"
+#include "runtime/cpp/src/endpoint/sender_clock.hpp"
+#include "runtime/cpp/src/endpoint/subscription.hpp"
+
+namespace rr {
+
+/// One end of a wire, of either side. Its owner, a session or a service's endpoint, hands it what
+/// arrives, and ends it.
+///
+/// Functions of the program are called by work that is posted while there is something to tell:
+/// it goes on until every function has seen the newest value, so that one that is slow misses
+/// values and holds up nothing else. Nothing of the program runs under the lock.
+struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
+ public:
+  State(std::shared_ptr<endpoint::Core> core, std::string path, const Member& member);
+  virtual ~State();
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] const Member& member() const { return member_; }
+
+  // What handles do; see WireEnd.
+  virtual void close() = 0;
+  [[nodiscard]] virtual std::uint32_t client() const { return 0; }
+  [[nodiscard]] bool is_open() const { return phase_ == Phase::open; }
+  void on_closed(std::function<void()> function);
+  std::shared_ptr<const void> received(TimeSpec& time) const;
+  bool wait_received(std::chrono::milliseconds limit);
+  void set_lifespan(std::chrono::milliseconds lifespan);
+  Subscription on_received(std::function<void(const void*, const TimeSpec&)> function);
+  void send(const void* value);
+  std::shared_ptr<const void> sent(TimeSpec& time) const;
+
+  // What owners do. None runs code of the program; what could not be posted is left in `laters`.
+  /// Both sides know of the connection. Values are taken before that already.
+  void open();
+  /// A packet has come. What does not count is dropped.
+  void take(const Message& message, const Entry& entry, const MemoryRef& owner,
+            const TypeRegistry& types, channel::Laters& laters);
+  /// The connection has ended. Nothing happens the second time.
+  void finish(channel::Laters& laters);
+
+ protected:
+  enum class Phase : std::uint8_t { connecting, open, closing, closed };
+
+  [[nodiscard]] endpoint::Core& core() const { return *core_; }
+  /// False when somebody else closes it or has closed it. finish() is to follow.
+  bool begin_close();
+  /// finish() for a thread of the program.
+  void finish_now();
+  /// Keeps what is being sent as what was sent last.
+  void keep_sent(std::shared_ptr<const void> value, endpoint::SenderTime time);
+
+  // What the two sides do in their own ways.
+  [[nodiscard]] virtual channel::Connection& connection() const = 0;
+  /// Throws rr::Error when the program may not send in this direction.
+  virtual void check_sending() const = 0;
+  virtual endpoint::SenderTime draw_time() = 0;
+  /// Sends a packet whose elements the writer holds. Throws rr::Error.
+  virtual void transmit(Writer& writer, const channel::Newest& newest) = 0;
+  /// A value has been taken.
+  virtual void on_taken(const std::shared_ptr<const void>& /*value*/, const TimeSpec& /*time*/) {}
+  /// Whether tell() is to be called.
+  [[nodiscard]] virtual bool has_listener() const { return false; }
+  /// As functions of the program are called: with the newest value.
+  virtual void tell(const void* /*value*/, const TimeSpec& /*time*/) {}
+  /// Once, while it ends.
+  virtual void leave() {}
+  /// Once, when nothing will be told any more.
+  virtual void release() {}
+
+  // Set by the constructors of the two sides.
+  std::uint64_t stream_ = 0;
+  bool may_receive_ = true;
+
+ private:
+  class Listener;
+
+  // Telling the program (wire_end_calls.cpp). The first two under the lock.
+  [[nodiscard]] bool must_start_telling();
+  [[nodiscard]] bool has_to_tell() const;
+  void start_telling(channel::Laters& laters);
+  void tell_all();
+  bool next_turn(std::shared_ptr<const void>& value, TimeSpec& time, bool& tells_side,
+                 std::vector<std::function<void()>>& closed,
+                 std::vector<std::shared_ptr<Listener>>& gone);
+  template <class Call>
+  void guard(const Call& call) const;
+  [[nodiscard]] bool is_ending() const {
+    return phase_ == Phase::closing || phase_ == Phase::closed;
+  }
+
+  const std::shared_ptr<endpoint::Core> core_;
+  const std::string path_;
+  const Member& member_;
+  std::atomic<Phase> phase_{Phase::connecting};  // written under mutex_
+
+  mutable std::mutex mutex_;
+  mutable std::condition_variable arrived_;
+  endpoint::NewestValue in_;
+  std::uint64_t sequence_ = 0;               // counts values that were taken
+  unsigned waiting_ = 0;                     // threads in wait_received()
+  std::shared_ptr<void> own_sent_;           // copied into by send()
+  std::shared_ptr<const void> common_sent_;  // what was sent to others too
+  endpoint::SenderTime sent_time_ = 0;       // 0: nothing yet
+  bool is_own_sent_ = false;
+
+  std::vector<std::shared_ptr<Listener>> listeners_;
+  std::vector<std::function<void()>> on_closed_;
+  std::uint64_t told_side_ = 0;                  // the value that tell() was called for
+  bool is_telling_ = false;                      // or will be, by posted work
+  bool is_over_ = false;                         // all has been told
+  std::vector<std::shared_ptr<Listener>> turn_;  // with the telling thread
+};
+
+}  // namespace rr

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a wire's end calls functions of the program, and how it ends.
+#include <algorithm>
+#include <utility>
+
+#include "runtime/cpp/src/endpoint/wire_end.hpp"
+
+namespace rr {
+
+class WireEnd::State::Listener final : public Subscription::Handler {
+ public:
+  Listener(std::function<void(const void*, const TimeSpec&)> function, std::uint64_t last)
+      : seen(last), function_(std::move(function)) {}
+
+  void call(const void* value, const TimeSpec& time) {
+    run([&] { function_(value, time); });
+  }
+
+  std::uint64_t seen;  // the value it was called with last; guarded by the end
+
+ private:
+  void drop() override { function_ = nullptr; }
+
+  std::function<void(const void*, const TimeSpec&)> function_;
+};
+
+// Calls what is the program's.
+template <class Call>
+void WireEnd::State::guard(const Call& call) const {
+  try {
+    call();
+  } catch (const std::exception& error) {
+    core_->log(LogLevel::error, "a function for the wire `" + std::string(member_.name) +
+                                    "` has thrown: " + error.what());
+  } catch (...) {
+    core_->log(LogLevel::error,
+               "a function for the wire `" + std::string(member_.name) + "` has thrown");
+  }
+}
+
+Subscription WireEnd::State::on_received(
+    std::function<void(const void*, const TimeSpec&)> function) {
+  channel::Laters laters;
+  std::shared_ptr<Listener> listener;
+  bool must_start = false;
+  {
+    const std::lock_guard lock(mutex_);
+    // One that has come already is the first.
+    listener = std::make_shared<Listener>(std::move(function), in_.is_fresh() ? 0 : sequence_);
+    if (is_ending()) return Subscription(std::move(listener));
+    listeners_.push_back(listener);
+    must_start = must_start_telling();
+  }
+  connection().expect();
+  if (must_start) start_telling(laters);
+  for (const std::function<void()>& later : laters) later();
+  return Subscription(std::move(listener));
+}
+
+void WireEnd::State::on_closed(std::function<void()> function) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!is_over_) {
+      on_closed_.push_back(std::move(function));
+      return;
+    }
+  }
+  const auto call = [self = shared_from_this(), function = std::move(function)] {
+    self->guard(function);
+  };
+  if (!core_->reactor().post(call)) call();  // the node is going away; this thread takes it along
+}
+
+bool WireEnd::State::begin_close() {
+  const std::lock_guard lock(mutex_);
+  if (is_ending()) return false;
+  phase_ = Phase::closing;
+  arrived_.notify_all();
+  // Who closes it wants no more values.
+  told_side_ = sequence_;
+  for (const auto& listener : listeners_) listener->seen = sequence_;
+  return true;
+}
+
+void WireEnd::State::finish(channel::Laters& laters) {
+  bool must_start = false;
+  {
+    const std::lock_guard lock(mutex_);
+    if (phase_ == Phase::closed) return;
+    phase_ = Phase::closed;
+    must_start = !std::exchange(is_telling_, true);
+    arrived_.notify_all();
+  }
+  leave();
+  if (must_start) start_telling(laters);
+}
+
+void WireEnd::State::finish_now() {
+  channel::Laters laters;
+  finish(laters);
+  for (const std::function<void()>& later : laters) later();
+}
+
+bool WireEnd::State::has_to_tell() const {
+  return (told_side_ != sequence_ && has_listener()) ||
+         std::any_of(listeners_.begin(), listeners_.end(),
+                     [&](const auto& listener) { return listener->seen != sequence_; });
+}
+
+bool WireEnd::State::must_start_telling() { return !is_telling_ && (is_telling_ = has_to_tell()); }
+
+void WireEnd::State::start_telling(channel::Laters& laters) {
+  const auto work = [self = shared_from_this()] { self->tell_all(); };
+  if (!core_->reactor().post(work)) laters.emplace_back(work);
+}
+
+void WireEnd::State::tell_all() {
+  std::shared_ptr<const void> value;
+  TimeSpec time;
+  bool tells_side = false;
+  std::vector<std::function<void()>> closed;
+  std::vector<std::shared_ptr<Listener>> gone;
+  while (next_turn(value, time, tells_side, closed, gone)) {
+    gone.clear();
+    for (const auto& listener : turn_) {
+      guard([&] { listener->call(value.get(), time); });
+    }
+    turn_.clear();
+    if (tells_side) guard([&] { tell(value.get(), time); });
+    for (const std::function<void()>& function : closed) guard(function);
+    closed.clear();
+  }
+}
+
+// What is to be told next. False when there is nothing: then this thread is done.
+bool WireEnd::State::next_turn(std::shared_ptr<const void>& value, TimeSpec& time, bool& tells_side,
+                               std::vector<std::function<void()>>& closed,
+                               std::vector<std::shared_ptr<Listener>>& gone) {
+  std::shared_ptr<const void> before;
+  {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(listeners_, [&](const auto& listener) {
+      if (!listener->is_connected()) gone.push_back(listener);
+      return !listener->is_connected();
+    });
+    for (const auto& listener : listeners_) {
+      if (std::exchange(listener->seen, sequence_) != sequence_) turn_.push_back(listener);
+    }
+    tells_side = std::exchange(told_side_, sequence_) != sequence_ && has_listener();
+    before = std::exchange(value, in_.value());
+    time = in_.time();
+    if (!turn_.empty() || tells_side) return true;
+    if (phase_ != Phase::closed) {
+      is_telling_ = false;
+      return false;
+    }
+    closed.swap(on_closed_);
+    if (!closed.empty()) return true;
+    gone.insert(gone.end(), listeners_.begin(), listeners_.end());
+    listeners_.clear();
+    is_over_ = true;
+  }
+  for (const auto& listener : gone) listener->disconnect();
+  release();
+  return false;
+}
+
+}  // namespace rr

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "runtime/cpp/src/endpoint/wire_end.hpp"
+
+namespace rr::endpoint {
+
+/// The wires of one session that are connected, or being connected: one for each object and member
+/// at most. Keeps their ends alive.
+class WireTable {
+ public:
+  using End = std::shared_ptr<WireEnd::State>;
+
+  [[nodiscard]] End find(std::string_view path, std::string_view member) const;
+  enum class Added { yes, exists, ended };
+  Added add(const End& end);
+  void remove(const WireEnd::State& end);
+  /// Takes out those of an object and of the objects below it.
+  std::vector<End> take_below(std::string_view path);
+  /// Takes out all. None can be added from now on.
+  std::vector<End> take_all();
+
+ private:
+  struct Key {
+    std::string_view path;  // of the end itself
+    std::string_view member;
+    bool operator==(const Key&) const = default;
+  };
+  struct Hash {
+    std::size_t operator()(const Key& key) const {
+      return std::hash<std::string_view>()(key.path) * 31 +
+             std::hash<std::string_view>()(key.member);
+    }
+  };
+
+  mutable std::mutex mutex_;
+  bool is_ended_ = false;
+  std::unordered_map<Key, End, Hash> ends_;
+};
+
+}  // namespace rr::endpoint

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/service/locks.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "rr/error.hpp"
+#include "runtime/cpp/src/endpoint/service_path.hpp"
+
+namespace rr::service {
+
+using endpoint::is_at_or_below;
+
+template <class Condition>
+void Locks::remove_if(Condition condition) {
+  std::erase_if(locks_, condition);
+  are_held_.store(!locks_.empty(), std::memory_order_release);
+}
+
+void Locks::enter(std::uint32_t endpoint) {
+  const std::lock_guard lock(mutex_);
+  sessions_.try_emplace(endpoint);
+}
+
+void Locks::log_in(std::uint32_t endpoint, const User& user) {
+  const std::lock_guard lock(mutex_);
+  const auto session = sessions_.find(endpoint);
+  if (session == sessions_.end()) return;
+  std::vector<std::string>& users = session->second;
+  if (std::find(users.begin(), users.end(), user.name) == users.end()) users.push_back(user.name);
+}
+
+void Locks::leave(std::uint32_t endpoint) {
+  const std::lock_guard lock(mutex_);
+  sessions_.erase(endpoint);
+  remove_if([&](const Lock& held) {
+    if (held.endpoint != 0) return held.endpoint == endpoint;
+    return std::none_of(sessions_.begin(), sessions_.end(), [&](const auto& session) {
+      return std::find(session.second.begin(), session.second.end(), held.user) !=
+             session.second.end();
+    });
+  });
+}
+
+void Locks::request(std::string_view path, const User& user, std::uint32_t endpoint,
+                    bool for_session) {
+  const std::lock_guard lock(mutex_);
+  for (const Lock& held : locks_) {
+    if (is_at_or_below(held.path, path) || is_at_or_below(path, held.path)) {
+      throw Error(ErrorCode::object_locked_error, "Object already locked");
+    }
+  }
+  if (!sessions_.contains(endpoint)) {
+    throw Error(ErrorCode::connection_error, "the session has ended");
+  }
+  locks_.push_back({std::string(path), user.name, for_session ? endpoint : 0});
+  are_held_.store(true, std::memory_order_release);
+}
+
+void Locks::release(std::string_view path, const User& user) {
+  const std::lock_guard lock(mutex_);
+  for (const Lock& held : locks_) {
+    if (!is_at_or_below(path, held.path)) continue;
+    if (held.user != user.name && !user.has(override_lock_privilege)) {
+      throw Error(ErrorCode::object_locked_error, "Service locked by user " + held.user);
+    }
+    if (held.path != path) {
+      throw Error(ErrorCode::object_locked_error, "The lock is at the object " + held.path);
+    }
+    remove_if([&](const Lock& other) { return &other == &held; });
+    return;
+  }
+}
+
+void Locks::forget(std::string_view path) {
+  const std::lock_guard lock(mutex_);
+  remove_if([&](const Lock& held) { return held.path == path; });
+}
+
+void Locks::check(std::string_view path, const User* user, std::uint32_t endpoint) const {
+  const std::lock_guard lock(mutex_);
+  for (const Lock& held : locks_) {
+    if (!is_at_or_below(path, held.path)) continue;
+    const bool may_pass = user != nullptr && user->name == held.user &&
+                          (held.endpoint == 0 || held.endpoint == endpoint);
+    if (!may_pass) throw Error(ErrorCode::object_locked_error, "Object locked by " + held.user);
+  }
+}
+
+}  // namespace rr::service

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rr/error.hpp"
+#include "rr/skeleton.hpp"
+#include "runtime/cpp/src/channel/reactor.hpp"
+#include "runtime/cpp/src/channel/time.hpp"
+#include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/service/object_tree.hpp"
+
+namespace rr::service {
+
+/// Who is in the monitors of a service's objects (07, section 6). Sessions that want to enter wait
+/// in line, without a thread; for the first one, one thread asks the object itself. No user code
+/// runs under the lock.
+class Monitors final : public channel::Timer, public std::enable_shared_from_this<Monitors> {
+ public:
+  enum class Outcome { entered, wait_on, failed };
+  /// Called once for each enter() and go_on() that does not throw. The error is that of `failed`.
+  using Reply = std::function<void(Outcome, const Error*)>;
+
+  /// Sessions that do not use what they hold for `patience` lose it.
+  Monitors(std::shared_ptr<endpoint::Core> core, channel::Milliseconds patience);
+  ~Monitors();
+
+  /// Gets in line; a negative time-out is none. After 5 s the reply is to wait on. Throws rr::Error
+  /// (invalid_operation) when the session is in, or in line.
+  void enter(const ServedObject& object, std::uint32_t endpoint, channel::Milliseconds timeout,
+             Reply reply);
+  /// Throws rr::Error (invalid_operation) when the session is neither in nor in line.
+  void go_on(std::string_view path, std::uint32_t endpoint, Reply reply);
+  /// Leaves, or gets out of the line. False when nobody ever was in. Throws rr::Error
+  /// (invalid_operation) when the session is neither.
+  bool exit(std::string_view path, std::uint32_t endpoint);
+
+  /// A session ends. Runs user code, as do exit() and forget().
+  void leave(std::uint32_t endpoint);
+  /// An object goes away.
+  void forget(std::string_view path);
+
+  /// Whether anybody is in any.
+  [[nodiscard]] bool are_held() const { return held_.load(std::memory_order_acquire) != 0; }
+  /// Throws rr::Error (invalid_operation) when another session is in. Notes that it is used.
+  void check(std::string_view path, std::uint32_t endpoint);
+
+ private:
+  class Attempt;
+  struct Monitor {
+    std::shared_ptr<Skeleton> skeleton;
+    std::uint32_t holder = 0;
+    channel::Time used{};
+    bool is_busy = false;  // a thread asks or leaves the object
+    std::deque<std::shared_ptr<Attempt>> line;
+    std::map<std::uint32_t, Error> failures;  // not told yet
+  };
+  using Replies = std::vector<std::function<void()>>;
+
+  void on_timer() override;
+  void drop_unused();
+  void step(const std::shared_ptr<Monitor>& monitor, const std::shared_ptr<Attempt>& attempt);
+  void ask(const std::shared_ptr<Monitor>& monitor);
+  void give_back(const std::shared_ptr<Monitor>& monitor);
+  void admit_next(const std::shared_ptr<Monitor>& monitor);
+  void fail(Monitor& monitor, Attempt& attempt, const Error& error, Replies& replies);
+  bool take_out(Monitor& monitor, const Attempt& attempt);
+  bool begin_exit(Monitor& monitor, std::uint32_t endpoint);
+  void await(const std::shared_ptr<Attempt>& attempt, Reply reply);
+  void leave_object(const Monitor& monitor);
+  void schedule_drop();
+  static std::shared_ptr<Attempt> find_attempt(const Monitor& monitor, std::uint32_t endpoint);
+  std::shared_ptr<Monitor> find(std::string_view path);
+  void post(std::function<void()> work);
+
+  const std::shared_ptr<endpoint::Core> core_;
+  const channel::Milliseconds patience_;
+  std::atomic<int> held_{0};
+  std::mutex mutex_;
+  std::map<std::string, std::shared_ptr<Monitor>, std::less<>> monitors_;  // by path
+};
+
+}  // namespace rr::service

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "rr/definition.hpp"
+#include "rr/wires.hpp"
+#include "runtime/cpp/src/endpoint/newest_value.hpp"
+#include "runtime/cpp/src/endpoint/sender_clock.hpp"
+
+namespace rr::service {
+
+class ServedWireEnd;
+
+/// A wire that an object offers: what belongs to all its clients. Functions of the program are
+/// called under no lock.
+class OfferedWire {
+ public:
+  using End = std::shared_ptr<ServedWireEnd>;
+  using Ends = std::vector<End>;
+  using Connected = std::function<void(WireEnd)>;
+  using Peek = std::function<std::shared_ptr<void>()>;
+  using Received = std::function<void(const void*, const TimeSpec&, std::uint32_t)>;
+
+  explicit OfferedWire(const Member& member) : member_(member) {}
+
+  // What the object does; see WireServer.
+  void send_all(const void* value);
+  std::shared_ptr<const void> received(TimeSpec& time) const;
+  void set_lifespan(std::chrono::milliseconds lifespan);
+  [[nodiscard]] std::shared_ptr<const Ends> ends() const;
+  void set_connected(Connected function);
+  void set_peek_in(Peek function);
+  void set_peek_out(Peek function);
+  void set_received(Received function);
+
+  // What its clients do.
+  /// Takes part from now on, and gets what was sent last, before the object is told.
+  void join(const End& end);
+  void leave(const ServedWireEnd& end);
+  /// The values that peeks are answered with. Throw rr::Error (value_not_set), and what the program
+  /// throws.
+  std::shared_ptr<const void> peek_in() const;
+  std::shared_ptr<const void> peek_out() const;
+  /// A value that a client has sent.
+  void keep(std::shared_ptr<const void> value, const TimeSpec& time);
+  [[nodiscard]] bool has_received_function() const { return has_received_; }
+  void tell_received(const void* value, const TimeSpec& time, std::uint32_t client) const;
+  endpoint::SenderTime draw_time(const endpoint::SenderClock& clock) { return times_.draw(clock); }
+
+ private:
+  template <class Function>
+  using Shared = std::shared_ptr<const Function>;
+  template <class Function>
+  Shared<Function> get(const Shared<Function>& function) const;
+  template <class Function>
+  void set(Shared<Function>& place, Function function);
+
+  const Member& member_;
+  endpoint::SenderTimes times_;
+  std::atomic<bool> has_received_{false};
+
+  mutable std::mutex mutex_;
+  std::shared_ptr<const Ends> ends_ = std::make_shared<const Ends>();  // replaced, never changed
+  std::shared_ptr<const void> in_;                                     // what was sent to all last
+  endpoint::NewestValue out_;
+  Shared<Connected> connected_;
+  Shared<Peek> peek_in_;
+  Shared<Peek> peek_out_;
+  Shared<Received> received_;
+};
+
+}  // namespace rr::service

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/service/served_wire_end.hpp"
+
+#include <utility>
+
+#include "rr/error.hpp"
+#include "runtime/cpp/src/channel/scratch.hpp"
+#include "runtime/cpp/src/endpoint/wire_values.hpp"
+#include "runtime/cpp/src/service/offered_wire.hpp"
+#include "runtime/cpp/src/service/places.hpp"
+#include "runtime/cpp/src/service/server_endpoint.hpp"
+
+namespace rr::service {
+
+ServedWireEnd::ServedWireEnd(std::shared_ptr<ServerEndpoint> endpoint,
+                             std::shared_ptr<const ServedObject> object, const Member& member)
+    : State(endpoint->core(), object->path, member),
+      endpoint_(std::move(endpoint)),
+      object_(std::move(object)),
+      offered_(Skeleton::Places::of(*object_->skeleton).wire(member)) {
+  stream_ = connection().new_stream();
+  may_receive_ = (member.access & readonly) == 0;
+}
+
+channel::Connection& ServedWireEnd::connection() const { return endpoint_->connection(); }
+std::uint32_t ServedWireEnd::client() const { return endpoint_->client().endpoint; }
+
+void ServedWireEnd::check_sending() const {
+  if ((member().access & writeonly) != 0) {
+    throw Error(ErrorCode::write_only_member, "Write only member");
+  }
+}
+
+endpoint::SenderTime ServedWireEnd::draw_time() { return offered_->draw_time(clock()); }
+
+void ServedWireEnd::transmit(Writer& writer, const channel::Newest& newest) {
+  writer.entry({.type = EntryType::wire_packet,
+                .service_path = path(),
+                .member = member().name,
+                .metadata = endpoint::unreliable_mark},
+               endpoint::wire_elements, 0);
+  endpoint_->send_marked(writer, endpoint::unreliable_mark, &newest);
+}
+
+void ServedWireEnd::send_common(std::shared_ptr<const void> value, Writer& elements,
+                                endpoint::SenderTime time) {
+  keep_sent(std::move(value), time);
+  Writer& writer = channel::thread_writer();
+  writer.reset(elements.version());
+  const std::span<const Piece> pieces = elements.pieces();
+  for (auto piece = pieces.rbegin(); piece != pieces.rend(); ++piece) {
+    writer.prepend_array({piece->data, piece->size}, elements.owner(*piece));
+  }
+  try {
+    transmit(writer, {stream_, time});
+  } catch (const Error&) {
+    // The client is gone, or the value is larger than a message may be.
+  }
+}
+
+void ServedWireEnd::close() {
+  if (!begin_close()) return;
+  Writer& writer = channel::thread_writer();
+  writer.reset(version());
+  writer.entry({.type = EntryType::wire_closed, .service_path = path(), .member = member().name}, 0,
+               0);
+  try {
+    endpoint_->send_marked(writer, endpoint::unreliable_mark, nullptr);
+  } catch (const Error&) {
+    // The client is gone; its session ends.
+  }
+  endpoint_->wires().remove(*this);
+  finish_now();
+}
+
+void ServedWireEnd::on_taken(const std::shared_ptr<const void>& value, const TimeSpec& time) {
+  offered_->keep(value, time);
+}
+bool ServedWireEnd::has_listener() const { return offered_->has_received_function(); }
+void ServedWireEnd::tell(const void* value, const TimeSpec& time) {
+  offered_->tell_received(value, time, client());
+}
+void ServedWireEnd::leave() { offered_->leave(*this); }
+
+}  // namespace rr::service

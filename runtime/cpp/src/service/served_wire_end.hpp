@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "rr/wire.hpp"
+#include "rr/writer.hpp"
+#include "runtime/cpp/src/endpoint/wire_end.hpp"
+#include "runtime/cpp/src/service/object_tree.hpp"
+
+namespace rr::service {
+
+class OfferedWire;
+class ServerEndpoint;
+
+/// A service's end of a wire: that of one client. Keeps the object alive for as long as functions
+/// of the program may be called.
+class ServedWireEnd final : public WireEnd::State {
+ public:
+  ServedWireEnd(std::shared_ptr<ServerEndpoint> endpoint,
+                std::shared_ptr<const ServedObject> object, const Member& member);
+
+  void close() override;
+  [[nodiscard]] std::uint32_t client() const override;
+
+  [[nodiscard]] const endpoint::SenderClock& clock() const { return core().clock(); }
+  [[nodiscard]] MessageVersion version() const { return connection().version(); }
+  /// Sends what others get too: the elements of a packet, which stay in `elements`. Failures are
+  /// ignored.
+  void send_common(std::shared_ptr<const void> value, Writer& elements, endpoint::SenderTime time);
+
+ private:
+  [[nodiscard]] channel::Connection& connection() const override;
+  void check_sending() const override;
+  endpoint::SenderTime draw_time() override;
+  void transmit(Writer& writer, const channel::Newest& newest) override;
+  void on_taken(const std::shared_ptr<const void>& value, const TimeSpec& time) override;
+  [[nodiscard]] bool has_listener() const override;
+  void tell(const void* value, const TimeSpec& time) override;
+  void leave() override;
+  void release() override { object_.reset(); }
+
+  const std::shared_ptr<ServerEndpoint> endpoint_;
+  std::shared_ptr<const ServedObject> object_;
+  const std::shared_ptr<OfferedWire> offered_;
+};
+
+}  // namespace rr::service

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/service/wires.hpp"
+
+#include <utility>
+
+#include "rr/error.hpp"
+#include "runtime/cpp/src/endpoint/requests.hpp"
+#include "runtime/cpp/src/endpoint/wire_values.hpp"
+#include "runtime/cpp/src/service/gathering.hpp"
+#include "runtime/cpp/src/service/offered_wire.hpp"
+#include "runtime/cpp/src/service/places.hpp"
+#include "runtime/cpp/src/service/served_wire_end.hpp"
+#include "runtime/cpp/src/service/server_endpoint.hpp"
+
+namespace rr::service {
+namespace {
+
+OfferedWire& offered(const ServedObject& object, const Member& member) {
+  return *Skeleton::Places::of(*object.skeleton).wire(member);
+}
+
+void run(channel::Laters laters) {
+  for (const std::function<void()>& later : laters) later();
+}
+
+}  // namespace
+
+void Wires::answer(const Question& question) {
+  const auto object = endpoint_.find_object(question.entry.service_path);
+  const Member& member = endpoint_.find_member(*object, question.entry.member, MemberKind::wire);
+  switch (question.entry.type) {
+    case EntryType::wire_connect_req:
+      answer_connect(question, object, member);
+      break;
+    case EntryType::wire_disconnect_req:
+      answer_disconnect(question, *object, member);
+      break;
+    case EntryType::wire_peek_in_value_req:
+    case EntryType::wire_peek_out_value_req:
+      answer_peek(question, *object, member);
+      break;
+    case EntryType::wire_poke_out_value_req:
+      answer_poke(question, *object, member);
+      break;
+    default:
+      answer_packet(question, *object, member);
+      break;
+  }
+}
+
+bool Wires::take(const Message& message, const Entry& entry, const MemoryRef& owner,
+                 channel::Laters& laters) {
+  if (entry.type != EntryType::wire_packet) return false;
+  const auto end = table_.find(entry.service_path, entry.member);
+  if (!end || !endpoint_.is_in_session(message)) return false;
+  end->take(message, entry, owner, *endpoint_.types(), laters);
+  return true;
+}
+
+// Packets come here that are not alone in their message, or whose object was found only now; the
+// others are dropped (07, section 13).
+void Wires::answer_packet(const Question& question, const ServedObject& object,
+                          const Member& member) {
+  if (const auto end = table_.find(object.path, member.name)) {
+    channel::Laters laters;
+    end->take(question.message, question.entry, question.owner, *endpoint_.types(), laters);
+    run(std::move(laters));
+  }
+  if (question.gathering) question.gathering->put(question.place, {});
+}
+
+// A second request is answered as the first (07, section 13). The object's function is called, and
+// may send, before the answer leaves.
+void Wires::answer_connect(const Question& question, std::shared_ptr<const ServedObject> object,
+                           const Member& member) {
+  auto end = std::static_pointer_cast<ServedWireEnd>(table_.find(object->path, member.name));
+  if (!end) {
+    end = std::make_shared<ServedWireEnd>(endpoint_.shared_from_this(), object, member);
+    if (table_.add(end) != endpoint::WireTable::Added::yes) {
+      throw Error(ErrorCode::connection_error, "the client has left");
+    }
+    end->open();
+  }
+  try {
+    if (endpoint_.find_object(question.entry.service_path) != object) {
+      throw Error(ErrorCode::object_not_found, "the object was released");
+    }
+    offered(*object, member).join(end);
+  } catch (...) {
+    table_.remove(*end);
+    channel::Laters laters;
+    end->finish(laters);
+    run(std::move(laters));
+    throw;
+  }
+  // It may have ended before it could join, and would stay with the object.
+  if (!end->is_open()) offered(*object, member).leave(*end);
+  endpoint_.answer_empty(question);
+}
+
+void Wires::answer_disconnect(const Question& question, const ServedObject& object,
+                              const Member& member) {
+  const auto end = table_.find(object.path, member.name);
+  if (!end) throw Error(ErrorCode::service_error, "Invalid wire connection");
+  table_.remove(*end);
+  channel::Laters laters;
+  end->finish(laters);
+  run(std::move(laters));
+  endpoint_.answer_empty(question);
+}
+
+void Wires::answer_peek(const Question& question, const ServedObject& object,
+                        const Member& member) {
+  const bool is_out = question.entry.type == EntryType::wire_peek_out_value_req;
+  if (is_out && (member.access & readonly) != 0) {
+    throw Error(ErrorCode::read_only_member, "Read only member");
+  }
+  if (!is_out && (member.access & writeonly) != 0) {
+    throw Error(ErrorCode::write_only_member, "Write only member");
+  }
+  const OfferedWire& wire = offered(object, member);
+  const std::shared_ptr<const void> value = is_out ? wire.peek_out() : wire.peek_in();
+  Writer& writer = endpoint_.begin_answer(question);
+  endpoint::write_wire_value(writer, *member.type, value.get());
+  endpoint::write_wire_time(writer, endpoint::as_time_spec(endpoint_.core()->clock().now()));
+  writer.entry(endpoint::answer_header(question.entry), endpoint::wire_elements, 0);
+  endpoint_.finish(question, writer);
+}
+
+void Wires::answer_poke(const Question& question, const ServedObject& object,
+                        const Member& member) {
+  if ((member.access & readonly) != 0) {
+    throw Error(ErrorCode::read_only_member, "Read only member");
+  }
+  if (member.holding == nullptr) {
+    throw Error(ErrorCode::not_implemented_error, "values of this wire cannot be kept");
+  }
+  TimeSpec time;
+  const std::shared_ptr<void> value = member.holding->make();
+  endpoint::read_wire(question.message, question.entry, question.owner, *endpoint_.types(),
+                      *member.type, time, value.get());
+  OfferedWire& wire = offered(object, member);
+  wire.keep(value, time);
+  wire.tell_received(value.get(), time, endpoint_.client().endpoint);
+  endpoint_.answer_empty(question);
+}
+
+void Wires::release(std::string_view path) {
+  channel::Laters laters;
+  for (const auto& end : table_.take_below(path)) end->finish(laters);
+  run(std::move(laters));
+}
+
+void Wires::end_all(channel::Laters& laters) {
+  for (const auto& end : table_.take_all()) end->finish(laters);
+}
+
+}  // namespace rr::service

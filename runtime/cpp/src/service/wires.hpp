@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "rr/reader.hpp"
+#include "runtime/cpp/src/channel/connection.hpp"
+#include "runtime/cpp/src/endpoint/wire_table.hpp"
+
+namespace rr::service {
+
+class OfferedWire;
+class ServerEndpoint;
+struct Question;
+struct ServedObject;
+
+/// The wires of one client (07, section 13).
+class Wires {
+ public:
+  explicit Wires(ServerEndpoint& endpoint) : endpoint_(endpoint) {}
+
+  /// Answers a request, or takes a packet that could not be taken at once. Throws rr::Error, and
+  /// what the program throws.
+  void answer(const Question& question);
+  /// A packet, where it is read. False when it is not of a connected wire.
+  bool take(const Message& message, const Entry& entry, const MemoryRef& owner,
+            channel::Laters& laters);
+  void remove(const WireEnd::State& end) { table_.remove(end); }
+  /// An object and those below it are forgotten.
+  void release(std::string_view path);
+  /// The client is gone.
+  void end_all(channel::Laters& laters);
+
+ private:
+  void answer_packet(const Question& question, const ServedObject& object, const Member& member);
+  void answer_connect(const Question& question, std::shared_ptr<const ServedObject> object,
+                      const Member& member);
+  void answer_disconnect(const Question& question, const ServedObject& object,
+                         const Member& member);
+  void answer_peek(const Question& question, const ServedObject& object, const Member& member);
+  void answer_poke(const Question& question, const ServedObject& object, const Member& member);
+
+  ServerEndpoint& endpoint_;
+  endpoint::WireTable table_;
+};
+
+}  // namespace rr::service
