@@ -8,14 +8,17 @@
 #include <boost/asio/executor_work_guard.hpp>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 
 #include "rr/client.hpp"
+#include "rr/generators.hpp"
 #include "rr/memories.hpp"
 #include "rr/node.hpp"
+#include "rr/skeleton.hpp"
 #include "rr/stub.hpp"
 #include "rr/wires.hpp"
 
@@ -34,8 +37,8 @@
 namespace rr {
 
 /// Ends at a handler: keeps its executor busy until then, and calls it there.
-template <class Handler>
-class HandlerCompletion : public Completion {
+template <class Handler, class Base = Completion>
+class HandlerCompletion : public Base {
  public:
   explicit HandlerCompletion(Handler handler)
       : work_(boost::asio::get_associated_executor(handler)), handler_(std::move(handler)) {}
@@ -168,6 +171,130 @@ auto Stub::rr_async_find(const Member& member, Token&& token, const Index&... in
       token, index...);
 }
 
+/// Of a call that opens a generator.
+template <class Handler, class R, class P>
+class GeneratorCompletion final : public HandlerCompletion<Handler> {
+ public:
+  using HandlerCompletion<Handler>::HandlerCompletion;
+  void* result() override { return &state_; }
+  void succeed() override {
+    this->finish(std::exception_ptr(), Generator<R, P>(std::move(state_)));
+  }
+  void fail(std::exception_ptr error) override {
+    this->finish(std::move(error), Generator<R, P>());
+  }
+
+ private:
+  std::shared_ptr<GeneratorState> state_;
+};
+
+/// Of a generator's step that gives an R.
+template <class Handler, class R>
+class StepCompletion final : public HandlerCompletion<Handler, GeneratorStep> {
+ public:
+  using HandlerCompletion<Handler, GeneratorStep>::HandlerCompletion;
+  void* result() override { return &result_; }
+  void succeed() override {
+    this->finish(std::exception_ptr(), std::optional<R>(std::move(result_)));
+  }
+  void stop() override { this->finish(std::exception_ptr(), std::optional<R>()); }
+  void fail(std::exception_ptr error) override {
+    this->finish(std::move(error), std::optional<R>());
+  }
+
+ private:
+  R result_{};
+};
+
+/// Of a step that gives nothing.
+template <class Handler>
+class StepCompletion<Handler, void> final : public HandlerCompletion<Handler, GeneratorStep> {
+ public:
+  using HandlerCompletion<Handler, GeneratorStep>::HandlerCompletion;
+  void* result() override { return nullptr; }
+  void succeed() override { this->finish(std::exception_ptr(), true); }
+  void stop() override { this->finish(std::exception_ptr(), false); }
+  void fail(std::exception_ptr error) override { this->finish(std::move(error), false); }
+};
+
+template <class R, class P, class Token, class... Arguments>
+auto Stub::rr_async_generate(const Member& member, Token&& token, const Arguments&... arguments) {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr, Generator<R, P>)>(
+      [this, call = &member](auto&& handler, const Arguments&... values) {
+        using Handler = std::decay_t<decltype(handler)>;
+        const void* const places[] = {&values..., nullptr};
+        rr_start_generator(*call, places,
+                           std::make_unique<GeneratorCompletion<Handler, R, P>>(
+                               std::forward<decltype(handler)>(handler)));
+      },
+      token, arguments...);
+}
+
+template <class R, class P>
+template <class Token>
+auto Generator<R, P>::async_next(const P& parameter, Token&& token) {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr, std::optional<R>)>(
+      [state = state_](auto&& handler, const P& value) {
+        using Handler = std::decay_t<decltype(handler)>;
+        start_step(
+            state, &value,
+            std::make_unique<StepCompletion<Handler, R>>(std::forward<decltype(handler)>(handler)));
+      },
+      token, parameter);
+}
+
+template <class P>
+template <class Token>
+auto Generator<void, P>::async_next(const P& parameter, Token&& token) {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr, bool)>(
+      [state = state_](auto&& handler, const P& value) {
+        using Handler = std::decay_t<decltype(handler)>;
+        start_step(state, &value,
+                   std::make_unique<StepCompletion<Handler, void>>(
+                       std::forward<decltype(handler)>(handler)));
+      },
+      token, parameter);
+}
+
+template <class R>
+template <class Token>
+auto Generator<R, void>::async_next(Token&& token) {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr, std::optional<R>)>(
+      [state = state_](auto&& handler) {
+        using Handler = std::decay_t<decltype(handler)>;
+        start_step(
+            state, nullptr,
+            std::make_unique<StepCompletion<Handler, R>>(std::forward<decltype(handler)>(handler)));
+      },
+      token);
+}
+
+template <class Token>
+auto GeneratorHandle::async_end(Token&& token, bool aborts) {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr)>(
+      [state = state_, aborts](auto&& handler) {
+        using Handler = std::decay_t<decltype(handler)>;
+        start_end(state, aborts,
+                  std::make_unique<CallCompletion<Handler, void>>(
+                      std::forward<decltype(handler)>(handler)));
+      },
+      token);
+}
+
+template <class R, class Token, class... Arguments>
+auto Skeleton::rr_async_call_back(const Member& member, Token&& token, std::uint32_t client,
+                                  const Arguments&... arguments) const {
+  return boost::asio::async_initiate<Token, typename CompletionSignature<R>::type>(
+      [this, callback = &member, client](auto&& handler, const Arguments&... values) {
+        using Handler = std::decay_t<decltype(handler)>;
+        const void* const places[] = {&values..., nullptr};
+        rr_start_asking(
+            *callback, client, places,
+            std::make_unique<CallCompletion<Handler, R>>(std::forward<decltype(handler)>(handler)));
+      },
+      token, arguments...);
+}
+
 template <class T>
 template <class Token>
 auto ArrayMemory<T>::async_read(std::uint64_t position, std::uint64_t count, Token&& token) const {
@@ -229,8 +356,7 @@ auto MultiMemory<T>::async_write(std::vector<std::uint64_t> position, const Mult
                            std::make_unique<CallCompletion<Handler, void>>(
                                std::forward<decltype(handler)>(handler)));
       },
-      token, std::move(position),
-      std::vector<std::uint64_t>(array.dims.begin(), array.dims.end()),
+      token, std::move(position), std::vector<std::uint64_t>(array.dims.begin(), array.dims.end()),
       array.items.owner() ? array.items : Array<T>(std::span<const T>(array.items)));
 }
 
@@ -281,7 +407,7 @@ auto Wire<T>::async_poke_out(const T& value, Token&& token) {
       [wire = *this](auto&& handler, const T& wanted) mutable {
         using Handler = std::decay_t<decltype(handler)>;
         wire.start_poke(&wanted, std::make_unique<CallCompletion<Handler, void>>(
-                                std::forward<decltype(handler)>(handler)));
+                                     std::forward<decltype(handler)>(handler)));
       },
       token, value);
 }

@@ -32,8 +32,8 @@ class CallbackFunction {
 /// A callback of an object on another node, without its type.
 class CallbackMember {
  public:
-  /// From now on the service is told that there is no function (invalid_operation). Returns when a
-  /// call that runs has ended, unless it is the caller itself.
+  /// From now on the service is told that there is no function (invalid_operation). Returns when
+  /// calls that run have ended, unless one of them is the caller.
   void clear();
 
  protected:
@@ -49,7 +49,8 @@ class Callback;
 
 /// A callback of an object on another node: `stub->ask().set(function)`. The function is called on
 /// a thread of the node, never under a lock and never inside a call that the program makes: it may
-/// make calls itself, while a call of the same client waits, too. It is kept by the stub.
+/// make calls itself, while a call of the same client waits, too. It may be called several times at
+/// once, and while event handlers run. It is kept by the stub, until the session ends.
 template <class R, class... Parameters>
 class Callback<R(Parameters...)> : public CallbackMember {
  public:

@@ -1,44 +1,73 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <coroutine>
-#include <cstdint>
+#include <cstddef>
 #include <exception>
 #include <iterator>
 #include <memory>
 #include <optional>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "rr/definition.hpp"
+#include "rr/sequence.hpp"
 #include "rr/stub.hpp"
 
-/// Generators: functions that give, or take, values one after the other (07, section 8).
+/// Generators: functions that give, or take, values one after the other (07, section 8). What a
+/// service returns is in rr/sequence.hpp.
 namespace rr {
 
-/// A generator on another node, without its types. Copies are handles of the same one.
+/// Where a step of a generator leaves its result.
+class GeneratorStep : public Completion {
+ public:
+  /// Instead of succeed(): the generator has ended.
+  virtual void stop() = 0;
+};
+
+/// A generator on another node, without its types. Copies are handles of the same one; when the
+/// last goes away before the end, the service is told as by close(), without waiting. May be used
+/// from several threads: the service takes the steps one after the other.
 class GeneratorHandle {
  public:
+  /// No generator: using it throws rr::Error (invalid_operation).
   GeneratorHandle() = default;
   /// Tells the service that no more steps are wanted; it ends its work in order. Nothing happens
   /// when the generator has ended already. Throws rr::Error.
-  void close();
+  void close() { end(false); }
   /// Tells the service to break off.
-  void abort();
+  void abort() { end(true); }
+  /// The same with a completion token, see rr/async.hpp. Signature: void(std::exception_ptr).
+  template <class Token>
+  auto async_close(Token&& token) {
+    return async_end(std::forward<Token>(token), false);
+  }
+  template <class Token>
+  auto async_abort(Token&& token) {
+    return async_end(std::forward<Token>(token), true);
+  }
 
-  struct State;  // internal
-  explicit GeneratorHandle(std::shared_ptr<State> state) : state_(std::move(state)) {}
+  explicit GeneratorHandle(std::shared_ptr<GeneratorState> state) : state_(std::move(state)) {}
 
  protected:
   /// One step: `parameter` is null where none is taken, `result` where none is given. False when
   /// the generator has ended. Throws what the service throws, after which it has ended too.
   bool step(const void* parameter, void* result);
+  static void start_step(const std::shared_ptr<GeneratorState>& state, const void* parameter,
+                         std::unique_ptr<GeneratorStep> step);
+  void end(bool aborts);
+  static void start_end(const std::shared_ptr<GeneratorState>& state, bool aborts,
+                        std::unique_ptr<Completion> completion);
+  template <class Token>
+  auto async_end(Token&& token, bool aborts);
 
-  std::shared_ptr<State> state_;
+  std::shared_ptr<GeneratorState> state_;
 };
 
 /// A generator on another node: R what each step gives, P what it takes; either may be void.
+///
+/// The first step that finds the end says so: nothing, or false. A step after the end is refused by
+/// the service: invalid_operation. After close() one more step finds the end, after abort()
+/// operation_aborted.
 template <class R, class P = void>
 class Generator : public GeneratorHandle {
  public:
@@ -50,6 +79,7 @@ class Generator : public GeneratorHandle {
     if (!step(&parameter, &result)) return std::nullopt;
     return result;
   }
+  /// Signature: void(std::exception_ptr, std::optional<R>).
   template <class Token>
   auto async_next(const P& parameter, Token&& token);
 };
@@ -61,6 +91,7 @@ class Generator<void, P> : public GeneratorHandle {
 
   /// Gives the service the next value. False when it takes no more.
   bool next(const P& parameter) { return step(&parameter, nullptr); }
+  /// Signature: void(std::exception_ptr, bool).
   template <class Token>
   auto async_next(const P& parameter, Token&& token);
 };
@@ -112,34 +143,10 @@ class Generator<R, void> : public GeneratorHandle {
   std::default_sentinel_t end() const { return {}; }
 };
 
-/// What a service gives for one call of a generator function, without its types. Steps come one at
-/// a time, on a thread of the node.
-class GeneratorSource {
- public:
-  virtual ~GeneratorSource() = default;
-  /// `parameter` and `result` are values of the member's types, null where there is none. False at
-  /// the end. What it throws ends the generator.
-  virtual bool rr_step(const void* parameter, void* result) = 0;
-  /// The client wants no more steps, or breaks off; none follows.
-  virtual void rr_close() {}
-  virtual void rr_abort() {}
-};
-
-/// Waits in a coroutine for what the next step takes: `const P p = co_await rr::taken<P>;`
-template <class P>
-struct Taken {};
-template <class P>
-inline constexpr Taken<P> taken{};
-
-/// What a generator function of a service returns: a coroutine that yields,
-///
-///   rr::Sequence<double> count(double limit) override {
-///     for (double value = 0; value < limit; ++value) co_yield value;
-///   }
-///
-/// that takes (`co_await rr::taken<P>`), or both; or a GeneratorSource of the program's own. A
-/// coroutine is destroyed when the client closes or breaks off, or leaves.
-template <class R, class P = void>
-class Sequence;
+template <class R, class P, class... Arguments>
+Generator<R, P> Stub::rr_generate(const Member& member, const Arguments&... arguments) {
+  const void* const values[] = {&arguments..., nullptr};
+  return Generator<R, P>(rr_open_generator(member, values));
+}
 
 }  // namespace rr

@@ -52,6 +52,9 @@ struct NodeOptions {
   std::chrono::milliseconds keep_alive_period{60'000};
   /// A service drops clients that it has not heard for so long.
   std::chrono::milliseconds client_timeout{600'000};
+  /// A service drops generators that nobody has used for so long, and those that their client has
+  /// closed after this time or 30 s, whichever is less.
+  std::chrono::milliseconds generator_timeout{600'000};
 
   Limits limits{};
   /// Bytes of a memory that travel in one request; the smaller one of both sides counts. Larger

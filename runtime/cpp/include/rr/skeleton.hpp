@@ -8,11 +8,13 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
 #include "rr/generators.hpp"
+#include "rr/holding.hpp"
 #include "rr/memories.hpp"
 #include "rr/stub.hpp"
 #include "rr/type.hpp"
@@ -78,12 +80,21 @@ class Request {
   ReplyHandle defer();
   /// Answers the call of a generator function: the client may step through `sequence` from now on.
   template <class R, class P>
-  void answer(Sequence<R, P> sequence);
+  void answer(Sequence<R, P> sequence) {
+    const Holding* result = nullptr;
+    const Holding* parameter = nullptr;
+    if constexpr (!std::is_void_v<R>) result = &holding_of<R>;
+    if constexpr (!std::is_void_v<P>) parameter = &holding_of<P>;
+    answer_generator(std::move(sequence).source(), result, parameter);
+  }
 
   struct Source;  // internal
   explicit Request(Source& source) : source_(&source) {}
 
  private:
+  void answer_generator(std::shared_ptr<GeneratorSource> source, const Holding* result,
+                        const Holding* parameter);
+
   Source* source_;
 };
 
@@ -95,7 +106,8 @@ struct ObjectIndex {
 
 /// The base of every generated skeleton: an object that a service offers. Its members are called on
 /// the thread that read the request, one at a time and in order for each client; calls of different
-/// clients may overlap. The skeleton of an object has the members of those it implements.
+/// clients may overlap, and so does one that waits for a callback (rr_call_back) with those that
+/// its client requests meanwhile. The skeleton of an object has the members of those it implements.
 class Skeleton {
  public:
   Skeleton();
@@ -135,12 +147,34 @@ class Skeleton {
   }
 
   /// Calls a callback of one client, `client` being the number of its endpoint in this node
-  /// (ServiceContext::current_client()), and waits for what it returns. Throws rr::Error, or what
-  /// the client has thrown.
+  /// (ServiceContext::current_client()), and waits for what it returns, as long as the thread's
+  /// CallScope or the node's request timeout say. Throws rr::Error (connection_error when there is
+  /// no such client, or when it leaves meanwhile), or what the client has thrown.
+  ///
+  /// May be called anywhere, in a member that this very client has called too: while the member
+  /// waits, the client's next requests are handled, so that its function may make calls itself.
   template <class R, class... Arguments>
-  R rr_call_back(const Member& member, std::uint32_t client, const Arguments&... arguments) const;
+  R rr_call_back(const Member& member, std::uint32_t client, const Arguments&... arguments) const {
+    const void* const values[] = {&arguments..., nullptr};
+    if constexpr (std::is_void_v<R>) {
+      rr_ask_client(member, client, values, nullptr);
+    } else {
+      R result{};
+      rr_ask_client(member, client, values, &result);
+      return result;
+    }
+  }
+  /// The same without waiting: see rr/async.hpp.
+  template <class R, class Token, class... Arguments>
+  auto rr_async_call_back(const Member& member, Token&& token, std::uint32_t client,
+                          const Arguments&... arguments) const;
 
  private:
+  void rr_ask_client(const Member& member, std::uint32_t client, const void* const* arguments,
+                     void* result) const;
+  void rr_start_asking(const Member& member, std::uint32_t client, const void* const* arguments,
+                       std::unique_ptr<Completion> completion) const;
+
   const std::shared_ptr<Places> rr_places_;
 };
 

@@ -26,6 +26,7 @@ inline constexpr int stub_api = 2;
 
 class Session;
 class Stub;
+struct GeneratorState;
 template <class R, class P>
 class Generator;
 
@@ -172,6 +173,8 @@ class Stub {
   auto rr_async_set(const Member& member, Token&& token, const T& value);
   template <class S, class Token, class... Index>
   auto rr_async_find(const Member& member, Token&& token, const Index&... index);
+  template <class R, class P, class Token, class... Arguments>
+  auto rr_async_generate(const Member& member, Token&& token, const Arguments&... arguments);
 
  private:
   friend class Session;
@@ -190,6 +193,11 @@ class Stub {
                      std::unique_ptr<Completion> completion);
   void rr_start_find(const Member& member, std::string_view index,
                      std::unique_ptr<Completion> completion);
+  std::shared_ptr<GeneratorState> rr_open_generator(const Member& member,
+                                                    const void* const* arguments);
+  // The result of the completion is a std::shared_ptr<GeneratorState>.
+  void rr_start_generator(const Member& member, const void* const* arguments,
+                          std::unique_ptr<Completion> completion);
   [[noreturn]] static void rr_refuse(const Member& member);  // an object of another type
   Subscription rr_connect(const Member& member, std::unique_ptr<EventHandler> handler);
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -57,7 +56,7 @@ class PasswordUsers final : public Users {
   /// Throws rr::Error (invalid_configuration), naming the line.
   explicit PasswordUsers(std::string_view text);
   /// Throws as well when the file cannot be read.
-  static std::shared_ptr<PasswordUsers> from_file(const std::filesystem::path& path);
+  static std::shared_ptr<PasswordUsers> from_file(const std::string& path);
   ~PasswordUsers() override;
 
   /// A hash for a line: yescrypt with a random salt. Throws rr::Error: invalid_argument for a

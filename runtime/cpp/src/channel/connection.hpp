@@ -37,7 +37,8 @@ class Receiver {
     return false;
   }
   /// Any other message, one at a time and in order, on a thread of the node; may run user code.
-  /// `first` is its first entry.
+  /// `first` is its first entry. Callbacks come to a client out of turn, several at a time: whoever
+  /// handles something else may be waiting for the call that they are a part of.
   virtual void handle(const Message& message, const Entry& first, const MemoryRef& owner) = 0;
   /// The connection is gone: requests fail. At once, on any thread; may not run user code.
   virtual void lost(const Error& why, Laters& laters) = 0;
@@ -113,6 +114,14 @@ class Connection {
   virtual void expect() = 0;
   /// Brings a reader that waits to look at its deadline and at whether it is done.
   virtual void nudge() = 0;
+
+  /// From Receiver::handle(): lets another thread handle the messages that follow while this one is
+  /// still in there, because it is about to wait for something that they may have to bring. False,
+  /// and nothing happens, on a thread that does not handle a message of this connection, and when
+  /// too many are in there already. Until it comes back the thread may not call reply().
+  virtual bool give_up_turn() = 0;
+  /// Must follow give_up_turn(): waits until this is again the thread that handles messages.
+  virtual void take_turn_again() = 0;
 
   /// Ends the connection. Never blocks; Receiver::closed() follows.
   virtual void close(const Error& why) = 0;

@@ -148,7 +148,8 @@ void StreamConnection::finish_close() {
     is_watched_ = false;
     watch_ = Watch::off;
     is_closed_pending_ = receiver_ != nullptr;
-    must_post = is_closed_pending_ && !std::exchange(is_dispatched_, true);
+    must_post = is_closed_pending_ && !is_dispatched_ && absent_ == 0;
+    if (must_post) loosen_turn();
   }
   if (on_gone_) on_gone_(*this);
   if (must_post) laters.emplace_back([keep = shared_from_this()] { keep->drain_posted(); });

@@ -24,7 +24,10 @@ namespace rr::channel {
 ///
 /// Two turns, each taken by one thread at a time, order what happens to it. Who has the read turn
 /// may receive; user code never runs with it. Who has the dispatch turn hands messages to the
-/// receiver, which may run user code for long; what is read meanwhile waits in a queue.
+/// receiver, which may run user code for long; what is read meanwhile waits in a queue. A thread
+/// that waits in there for what a later message brings gives the turn up for as long. A callback
+/// is handled without it: whoever has the turn may be waiting for a call that the callback is a
+/// part of.
 ///
 /// While a caller reads, the reactor does not watch the socket: it would be woken by every answer.
 /// Calls in a tight loop find the socket unwatched ("parked") and leave it so; a timer of a
@@ -61,6 +64,8 @@ class StreamConnection final : public Connection,
   void finish(Waiter& waiter) override;
   void expect() override;
   void nudge() override;
+  bool give_up_turn() override;
+  void take_turn_again() override;
   void close(const Error& why) override;
   void close_after(Milliseconds delay) override;
   [[nodiscard]] bool is_closed() const override {
@@ -73,6 +78,9 @@ class StreamConnection final : public Connection,
  private:
   enum class Received { some, nothing, end };
   enum class Watch : std::uint8_t { off, full, parked };
+  class Turn;
+  struct Returning;
+  static thread_local Turn* current_turn;
 
   class LifeTimer final : public Timer {
    public:
@@ -113,9 +121,16 @@ class StreamConnection final : public Connection,
   bool leave_read_turn(Scratch& scratch, bool may_dispatch);
   bool hand_on(Scratch& scratch, bool may_dispatch, bool& must_post);
   void enqueue(const Frame& frame);
-  void dispatch(Scratch& scratch);
-  bool drain(Scratch& scratch);
+  void dispatch(Turn& turn);
+  bool drain(Turn& turn);
   void drain_posted();
+  [[nodiscard]] static Frame keep(const Frame& frame);
+
+  // The dispatch turn while its holder waits, and what does without it (dispatch_turn.cpp)
+  void loosen_turn();
+  void handle_aside(const Frame& frame);
+  bool begin_absence();
+  void end_absence();
   void handle_frame(Scratch& scratch, const Frame& frame, bool is_parsed);
   void complete(Message& message) const;
 
@@ -161,8 +176,11 @@ class StreamConnection final : public Connection,
   std::mutex turns_;
   bool is_read_ = false;
   bool read_again_ = false;     // there is more than the thread with the read turn may have seen
-  bool is_dispatched_ = false;  // or will be, by posted work
-  bool is_stalled_ = false;     // not read on because of queued requests
+  bool is_dispatched_ = false;  // the dispatch turn is taken
+  bool is_turn_loose_ = false;  // but by no thread yet: posted work, or one that returns, takes it
+  unsigned absent_ = 0;         // threads in the receiver, now or soon, without the turn
+  Returning* returning_ = nullptr;  // those of them that want it back
+  bool is_stalled_ = false;         // not read on because of queued requests
   bool is_closed_pending_ = false;
   std::atomic<bool> is_closing_{false};  // written under turns_
   Watch watch_ = Watch::off;

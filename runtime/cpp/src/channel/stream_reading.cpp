@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "runtime/cpp/src/channel/dispatch_turn.hpp"
 #include "runtime/cpp/src/channel/stream_connection.hpp"
 
 namespace rr::channel {
@@ -143,6 +144,9 @@ bool StreamConnection::take(Scratch& scratch, const Frame& frame) {
   if (take_own(message, first)) return true;
   if (has_only_answers(message, first)) {
     take_answers(message, first, frame.owner, scratch.laters);
+  } else if (role_ == Role::client && message.entry_count == 1 &&
+             first.type == EntryType::callback_call_req && begin_absence()) {
+    handle_aside(frame);
   } else if (!take_packet(scratch, frame)) {
     scratch.waiting.push_back(frame);
     scratch.parsed = scratch.waiting.size();
@@ -194,8 +198,9 @@ bool StreamConnection::leave_read_turn(Scratch& scratch, bool may_dispatch) {
   }
   scratch.laters.clear();
   if (has_turn) {
-    dispatch(scratch);
-    is_again = drain(scratch) || is_again;
+    Turn turn(*this, scratch);
+    dispatch(turn);
+    is_again = drain(turn) || is_again;
   }
   return is_again && !is_end;
 }
@@ -210,7 +215,8 @@ bool StreamConnection::hand_on(Scratch& scratch, bool may_dispatch, bool& must_p
   }
   for (const Frame& frame : scratch.waiting) enqueue(frame);
   scratch.waiting.clear();
-  must_post = !std::exchange(is_dispatched_, true);
+  must_post = !is_dispatched_;
+  if (must_post) loosen_turn();
   is_stalled_ = queued_bytes_ > options_->request_queue_limit;
   return false;
 }
@@ -219,23 +225,26 @@ bool StreamConnection::hand_on(Scratch& scratch, bool may_dispatch, bool& must_p
 void StreamConnection::enqueue(const Frame& frame) {
   if (!queue_) queue_ = std::make_unique<std::deque<Frame>>();
   queued_bytes_ += frame.bytes.size();
-  if (frame.owner) {
-    queue_->push_back(frame);
-    return;
-  }
+  queue_->push_back(keep(frame));
+}
+
+// The frame with bytes that stay.
+Frame StreamConnection::keep(const Frame& frame) {
+  if (frame.owner) return frame;
   Allocation memory = allocate(frame.bytes.size());
   std::memcpy(memory.bytes, frame.bytes.data(), frame.bytes.size());
-  queue_->push_back({{memory.bytes, frame.bytes.size()}, std::move(memory.owner)});
+  return {{memory.bytes, frame.bytes.size()}, std::move(memory.owner)};
 }
 
 // With the dispatch turn: the messages in the scratch.
-void StreamConnection::dispatch(Scratch& scratch) {
+void StreamConnection::dispatch(Turn& turn) {
+  Scratch& scratch = turn.scratch();
   const std::size_t parsed = scratch.parsed;
   const std::size_t count = scratch.waiting.size();
   // The last one is usually the only one, and still parsed.
-  for (std::size_t i = 0; i < count; ++i) {
-    holds_back_answers_ = i + 1 != count;
-    const Frame frame = std::move(scratch.waiting[i]);
+  while (turn.has_next()) {
+    const Frame frame = turn.next();
+    holds_back_answers_ = turn.has_next();
     handle_frame(scratch, frame, count == 1 && parsed == 1);
   }
   scratch.waiting.clear();
@@ -243,18 +252,22 @@ void StreamConnection::dispatch(Scratch& scratch) {
 }
 
 // With the dispatch turn, which is given back: the queue. True when reading had to stop because of
-// it.
-bool StreamConnection::drain(Scratch& scratch) {
+// it. Whoever has given the turn up and wants it again comes first.
+bool StreamConnection::drain(Turn& turn) {
   std::unique_lock lock(turns_);
   while (true) {
+    if (returning_ != nullptr) {
+      loosen_turn();
+      return false;
+    }
     if (queue_ && !queue_->empty()) {
       const Frame frame = std::move(queue_->front());
       queue_->pop_front();
       queued_bytes_ -= frame.bytes.size();
       lock.unlock();
-      handle_frame(scratch, frame, false);
+      handle_frame(turn.scratch(), frame, false);
       lock.lock();
-    } else if (std::exchange(is_closed_pending_, false)) {
+    } else if (absent_ == 0 && std::exchange(is_closed_pending_, false)) {
       lock.unlock();
       receiver_->closed();
       receiver_.reset();
@@ -272,8 +285,14 @@ bool StreamConnection::drain(Scratch& scratch) {
 void StreamConnection::drain_posted() {
   bool was_stalled = false;
   {
+    {
+      const std::lock_guard lock(turns_);
+      if (!std::exchange(is_turn_loose_, false)) return;  // somebody was faster
+    }
     const ScratchLease scratch;
-    was_stalled = drain(*scratch);
+    scratch->waiting.clear();
+    Turn turn(*this, *scratch);
+    was_stalled = drain(turn);
   }
   if (was_stalled && take_read_turn()) read_as_reactor(true);
 }

@@ -9,9 +9,9 @@
 #include "rr/error.hpp"
 #include "rr/memories.hpp"
 #include "rr/type.hpp"
-#include "runtime/cpp/src/client/call_terms.hpp"
 #include "runtime/cpp/src/client/memory_transfer.hpp"
 #include "runtime/cpp/src/client/session.hpp"
+#include "runtime/cpp/src/endpoint/call_terms.hpp"
 
 namespace rr {
 namespace {

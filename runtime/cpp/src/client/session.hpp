@@ -24,9 +24,11 @@
 #include "rr/url.hpp"
 #include "rr/wire.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
-#include "runtime/cpp/src/client/call_terms.hpp"
+#include "runtime/cpp/src/client/callbacks.hpp"
 #include "runtime/cpp/src/client/definition_text.hpp"
 #include "runtime/cpp/src/client/subscription.hpp"
+#include "runtime/cpp/src/endpoint/call_terms.hpp"
+#include "runtime/cpp/src/endpoint/calls.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
 #include "runtime/cpp/src/endpoint/pending.hpp"
 #include "runtime/cpp/src/endpoint/wire_table.hpp"
@@ -40,6 +42,7 @@ struct Outgoing {
   std::string_view member;
   std::span<const Parameter> parameters{};
   const void* const* values = nullptr;
+  ErrorCode error = ErrorCode::none;  ///< tells the requests of a generator apart
 };
 
 /// What is read of its answer: one element, or nothing when the type is null.
@@ -52,12 +55,11 @@ struct Incoming {
 /// A client's end of a connection: the session of one client with one service.
 class Session final : public channel::Receiver,
                       public endpoint::Attended,
+                      public endpoint::Caller,
                       public std::enable_shared_from_this<Session> {
  public:
   using Milliseconds = std::chrono::milliseconds;
-  /// Reads an answer on whichever thread has received it: may not wait nor run user code. Throws
-  /// rr::Error.
-  using AnswerReader = std::function<void(Decoder&, const Message&, const Entry&)>;
+  using AnswerReader = endpoint::AnswerReader;
 
   Session(std::shared_ptr<endpoint::Core> core, const Url& url, ConnectOptions options);
   ~Session() override;
@@ -91,10 +93,15 @@ class Session final : public channel::Receiver,
              std::shared_ptr<Completion> completion);
   void start(const Outgoing& request, AnswerReader read, Milliseconds timeout,
              std::shared_ptr<Completion> completion);
-  /// Ends a call that nobody else has ended.
-  void cancel(endpoint::Pending& call, channel::Laters& laters);
-  /// Runs what ending calls has left over, on a thread of the node.
-  void post(channel::Laters laters);
+  /// Sends something whose answer, if it has one, nobody waits for.
+  void send(const Outgoing& request, bool has_number);
+
+  /// Exists once a stub does.
+  [[nodiscard]] channel::Connection& connection() const override { return *connection_; }
+  [[nodiscard]] const std::shared_ptr<endpoint::Core>& core() const override { return core_; }
+  [[nodiscard]] const std::shared_ptr<const TypeRegistry>& types() const override { return types_; }
+  bool take(endpoint::Pending& call) override;
+  std::shared_ptr<endpoint::Caller> share() override { return shared_from_this(); }
 
   /// The stub of the object at a path, whose type is or implements `wanted` unless that is empty.
   /// The service is asked unless there is a stub already.
@@ -109,16 +116,14 @@ class Session final : public channel::Receiver,
                     Milliseconds timeout);
   void log_out();
 
-  [[nodiscard]] const std::shared_ptr<endpoint::Core>& core() const { return core_; }
-  /// Exists once a stub does.
-  [[nodiscard]] channel::Connection& connection() const { return *connection_; }
   [[nodiscard]] endpoint::WireTable& wires() { return wires_; }
   /// Sends a packet of which only the newest counts; the writer holds its elements.
   void send_newest(Writer& writer, const EntryHeader& header, std::uint32_t element_count,
                    const channel::Newest& newest);
 
   void add_handler(const std::shared_ptr<client::EventSubscription>& handler);
-  /// A stub goes away, and with it its handlers.
+  [[nodiscard]] client::Callbacks& callbacks() { return callbacks_; }
+  /// A stub goes away, and with it its handlers and the functions of its callbacks.
   void forget(const Stub& stub);
 
   // From the connection
@@ -133,15 +138,11 @@ class Session final : public channel::Receiver,
   void attend(channel::Time now) override;
 
  private:
-  class BlockingCall;
-  template <class Read>
-  class BlockingCallOf;
-  class AsyncCall;
   class Search;
 
   // Requests (session_calls.cpp)
   [[nodiscard]] Milliseconds timeout_for(Milliseconds timeout, const CallTerms& terms) const;
-  void perform(const Outgoing& request, BlockingCall& call, Milliseconds timeout);
+  void perform(const Outgoing& request, endpoint::BlockingCall& call, Milliseconds timeout);
   struct Numbers {
     std::uint32_t request = 0;
     std::uint16_t message = 0;
@@ -151,8 +152,6 @@ class Session final : public channel::Receiver,
   Numbers draw(endpoint::Pending* call, bool has_number);
   void send_numbered(const Outgoing& request, Writer& writer, const Numbers& numbers,
                      channel::Time now);
-  void send(const Outgoing& request, bool has_number);
-  bool take(endpoint::Pending& call);
   void fail_all(const Error& why, channel::Laters& laters);
 
   // Connecting (session_connect.cpp)
@@ -176,6 +175,10 @@ class Session final : public channel::Receiver,
   // Requests of the other node
   void handle_entry(const Message& message, const Entry& entry, const MemoryRef& owner);
   void answer_request(const Message& message, const Entry& entry);
+  std::shared_ptr<client::CallbackSlot> find_callback(const Entry& entry);
+  void answer_callback(const Message& message, const Entry& entry, const MemoryRef& owner);
+  void send_callback_error(const Message& message, const Entry& entry, const Error& error);
+  void send_answer(Writer& writer, const Message& message, const Entry& entry, bool is_reply);
   void give_up(const Error& why);
 
   const std::shared_ptr<endpoint::Core> core_;
@@ -202,6 +205,7 @@ class Session final : public channel::Receiver,
   std::string user_;  // who is logged in
   std::unordered_map<std::string, std::weak_ptr<Stub>> stubs_;
   std::vector<std::shared_ptr<client::EventSubscription>> handlers_;
+  client::Callbacks callbacks_;  // with a lock of its own
   std::map<std::string, std::string> texts_;
   std::map<std::string, client::DefinitionOutline> outlines_;
   std::uint16_t seen_message_id_ = 0;  // at quiet_since_

@@ -12,133 +12,6 @@
 
 namespace rr {
 
-// A request on the stack of the thread that waits for its answer.
-class Session::BlockingCall : public endpoint::Pending {
- public:
-  explicit BlockingCall(Session& session) : session_(session) {}
-
-  void answer(const Message& message, const Entry& entry, const MemoryRef& owner,
-              channel::Laters& /*laters*/) final {
-    if (entry.error != 0) {
-      error = endpoint::read_error(message, entry, owner, *session_.types_);
-    } else {
-      try {
-        Decoder decoder(message.version, &message.strings, owner, session_.types_.get());
-        read(decoder, message, entry);
-      } catch (...) {
-        error = std::current_exception();
-      }
-    }
-    session_.connection_->finish(waiter);  // after which this may be gone
-  }
-  void fail(const Error& why, channel::Laters& /*laters*/) final {
-    error = std::make_exception_ptr(why);
-    session_.connection_->finish(waiter);
-  }
-
-  channel::Waiter waiter;
-  std::exception_ptr error;
-
- protected:
-  ~BlockingCall() = default;
-  virtual void read(Decoder& decoder, const Message& message, const Entry& entry) = 0;
-
- private:
-  Session& session_;
-};
-
-template <class Read>
-class Session::BlockingCallOf final : public BlockingCall {
- public:
-  BlockingCallOf(Session& session, const Read& read) : BlockingCall(session), read_(read) {}
-
- private:
-  void read(Decoder& decoder, const Message& message, const Entry& entry) override {
-    read_(decoder, message, entry);
-  }
-
-  const Read& read_;
-};
-
-// A request whose answer goes to a completion. Keeps itself while it is open.
-class Session::AsyncCall final : public endpoint::Pending,
-                                 public channel::Timer,
-                                 public std::enable_shared_from_this<AsyncCall> {
- public:
-  AsyncCall(std::shared_ptr<Session> session, AnswerReader read,
-            std::shared_ptr<Completion> completion)
-      : session_(std::move(session)), read_(std::move(read)), completion_(std::move(completion)) {}
-  ~AsyncCall() { session_->core_->reactor().cancel(*this); }
-
-  void open(std::shared_ptr<Cancellation::State> cancellation) {
-    cancellation_ = std::move(cancellation);
-    if (cancellation_) cancellation_->add(session_, *this);
-    keep_ = shared_from_this();
-  }
-  void limit(channel::Time when) {
-    session_->core_->reactor().schedule(*this, weak_from_this(), when);
-  }
-
-  void answer(const Message& message, const Entry& entry, const MemoryRef& owner,
-              channel::Laters& laters) override {
-    if (entry.error != 0) {
-      error_ = endpoint::read_error(message, entry, owner, *session_->types_);
-    } else {
-      try {
-        Decoder decoder(message.version, &message.strings, owner, session_->types_.get());
-        read_(decoder, message, entry);
-      } catch (...) {
-        error_ = std::current_exception();
-      }
-    }
-    end(laters);
-  }
-  void fail(const Error& why, channel::Laters& laters) override {
-    error_ = std::make_exception_ptr(why);
-    end(laters);
-  }
-  // For a call that was never sent.
-  void fail_unsent(std::exception_ptr error, channel::Laters& laters) {
-    error_ = std::move(error);
-    end(laters);
-  }
-
- private:
-  void on_timer() override {
-    if (!session_->take(*this)) return;
-    channel::Laters laters;
-    fail(Error(ErrorCode::request_timeout, "no answer in time"), laters);
-    session_->post(std::move(laters));
-  }
-
-  void end(channel::Laters& laters) {
-    laters.emplace_back([self = shared_from_this()] { self->complete(); });
-    keep_.reset();
-  }
-
-  void complete() {
-    if (cancellation_) cancellation_->remove(*this);
-    session_->core_->reactor().cancel(*this);
-    try {
-      if (error_) {
-        completion_->fail(error_);
-      } else {
-        completion_->succeed();
-      }
-    } catch (const std::exception& error) {
-      session_->core_->log(LogLevel::error,
-                           std::string("a completion handler has thrown: ") + error.what());
-    }
-  }
-
-  const std::shared_ptr<Session> session_;
-  const AnswerReader read_;
-  const std::shared_ptr<Completion> completion_;
-  std::shared_ptr<Cancellation::State> cancellation_;
-  std::exception_ptr error_;
-  std::shared_ptr<AsyncCall> keep_;
-};
-
 Session::Milliseconds Session::timeout_for(Milliseconds timeout, const CallTerms& terms) const {
   if (terms.timeout.count() != 0) return terms.timeout;
   if (timeout.count() != 0) return timeout;
@@ -152,27 +25,14 @@ void Session::call(const Outgoing& request, const Incoming& answer, Milliseconds
       endpoint::read_value(decoder, entry, answer.element, *answer.type, answer.value);
     }
   };
-  BlockingCallOf call(*this, read);
+  endpoint::BlockingCallOf call(*this, read);
   perform(request, call, timeout);
 }
 
 void Session::call(const Outgoing& request, const AnswerReader& read, Milliseconds timeout) {
-  BlockingCallOf call(*this, read);
+  endpoint::BlockingCallOf call(*this, read);
   perform(request, call, timeout);
 }
-
-namespace {
-
-// Takes a call out of its cancellation, whatever happens.
-struct CancellationEntry {
-  Cancellation::State* state;
-  const endpoint::Pending& call;
-  ~CancellationEntry() {
-    if (state != nullptr) state->remove(call);
-  }
-};
-
-}  // namespace
 
 Writer& Session::write(const Outgoing& request) const {
   Writer& writer = channel::thread_writer();
@@ -182,29 +42,14 @@ Writer& Session::write(const Outgoing& request) const {
   return writer;
 }
 
-void Session::perform(const Outgoing& request, BlockingCall& call, Milliseconds timeout) {
+void Session::perform(const Outgoing& request, endpoint::BlockingCall& call, Milliseconds timeout) {
   const CallTerms terms = CallTerms::current();
   const channel::Time now = channel::coarse_now();
   const channel::Time deadline = channel::after(now, timeout_for(timeout, terms));
   Writer& writer = write(request);
-  if (terms.cancellation) terms.cancellation->add(shared_from_this(), call);
-  const CancellationEntry entry{terms.cancellation.get(), call};
-  connection_->claim(call.waiter);
-  try {
-    send_numbered(request, writer, draw(&call, true), now);
-  } catch (...) {
-    // Somebody may be ending it at this moment, and must come to the end.
-    const bool is_ours = take(call);
-    connection_->resign(call.waiter);
-    if (!is_ours && call.was_added()) connection_->wait(call.waiter, channel::never, now);
-    throw;
-  }
-  connection_->wait(call.waiter, deadline, now);
-  if (!call.waiter.is_done.load(std::memory_order_acquire)) {
-    if (take(call)) throw Error(ErrorCode::request_timeout, "no answer in time");
-    connection_->wait(call.waiter, channel::never, now);
-  }
-  if (call.error) std::rethrow_exception(call.error);
+  call.perform(terms, deadline, now, [&](endpoint::Pending& open) {
+    send_numbered(request, writer, draw(&open, true), now);
+  });
 }
 
 void Session::start(const Outgoing& request, const Incoming& answer, Milliseconds timeout,
@@ -221,22 +66,14 @@ void Session::start(const Outgoing& request, const Incoming& answer, Millisecond
 
 void Session::start(const Outgoing& request, AnswerReader read, Milliseconds timeout,
                     std::shared_ptr<Completion> completion) {
-  const auto call =
-      std::make_shared<AsyncCall>(shared_from_this(), std::move(read), std::move(completion));
   const CallTerms terms = CallTerms::current();
-  try {
-    Writer& writer = write(request);
-    call->open(terms.cancellation);
-    send_numbered(request, writer, draw(call.get(), true), channel::coarse_now());
-    connection_->expect();
-    call->limit(channel::after(channel::coarse_now(), timeout_for(timeout, terms)));
-  } catch (...) {
-    // Not from inside the call that starts it. If it has been taken, its end is on the way already.
-    if (call->was_added() && !take(*call)) return;
-    channel::Laters laters;
-    call->fail_unsent(std::current_exception(), laters);
-    post(std::move(laters));
-  }
+  const auto call = std::make_shared<endpoint::AsyncCall>(shared_from_this(), std::move(read),
+                                                          std::move(completion));
+  call->start(
+      timeout_for(timeout, terms), terms, [&]() -> Writer& { return write(request); },
+      [&](endpoint::Pending& open, Writer& writer) {
+        send_numbered(request, writer, draw(&open, true), channel::coarse_now());
+      });
 }
 
 void Session::send(const Outgoing& request, bool has_number) {
@@ -275,7 +112,8 @@ void Session::send_numbered(const Outgoing& request, Writer& writer, const Numbe
   writer.entry({.type = request.type,
                 .service_path = request.path,
                 .member = request.member,
-                .request_id = numbers.request},
+                .request_id = numbers.request,
+                .error = static_cast<std::uint16_t>(request.error)},
                static_cast<std::uint32_t>(request.parameters.size()), 0);
   const bool is_special = static_cast<std::uint16_t>(request.type) < 500;
   MessageHeader header{.sender_node = core_->options().id,
@@ -311,12 +149,6 @@ bool Session::take(endpoint::Pending& call) {
   return pending_.take(call);
 }
 
-void Session::cancel(endpoint::Pending& call, channel::Laters& laters) {
-  if (!take(call)) return;
-  call.fail(Error(ErrorCode::operation_cancelled, "the call was cancelled"), laters);
-  connection_->nudge();
-}
-
 void Session::cancel_calls() {
   channel::Laters laters;
   fail_all(Error(ErrorCode::operation_cancelled, "the call was cancelled"), laters);
@@ -333,13 +165,6 @@ void Session::fail_all(const Error& why, channel::Laters& laters) {
     }
     if (call == nullptr) return;
     call->fail(why, laters);
-  }
-}
-
-void Session::post(channel::Laters laters) {
-  for (const std::function<void()>& later : laters) {
-    if (!core_->reactor().post(later))
-      later();  // the node is going away; this thread takes it along
   }
 }
 

@@ -362,6 +362,7 @@ void Session::closed() {
     stubs_.clear();
     handlers_.clear();
   }
+  callbacks_.end();
   if (!on_closed) return;
   try {
     on_closed(*why);

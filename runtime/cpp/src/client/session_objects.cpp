@@ -147,6 +147,7 @@ void Session::forget(const Stub& stub) {
     if (cached != stubs_.end() && cached->second.expired()) stubs_.erase(cached);
   }
   for (const auto& handler : removed) handler->disconnect();
+  callbacks_.forget(stub);
 }
 
 void Session::handle(const Message& message, const Entry& /*first*/, const MemoryRef& owner) {
@@ -176,6 +177,9 @@ void Session::handle_entry(const Message& message, const Entry& entry, const Mem
       break;
     case EntryType::event_req:
       handle_event(message, entry, owner);
+      break;
+    case EntryType::callback_call_req:
+      answer_callback(message, entry, owner);
       break;
     case EntryType::wire_packet:
     case EntryType::wire_closed: {  // one of several entries
@@ -211,16 +215,10 @@ void Session::handle_event(const Message& message, const Entry& entry, const Mem
   }
 }
 
-// What a service may ask of its clients; what is not served here is refused (07, sections 2, 4,
-// 12).
+// What a node may ask of any other; what is not served here is refused (07, sections 2 and 4).
 void Session::answer_request(const Message& message, const Entry& entry) {
   Writer& writer = channel::thread_writer();
   writer.reset(connection_->version());
-  MessageHeader header{.sender_node = core_->options().id,
-                       .receiver_node = message.sender_node,
-                       .sender_endpoint = message.receiver_endpoint,
-                       .receiver_endpoint = message.sender_endpoint,
-                       .routing = false};
   switch (entry.type) {
     case EntryType::get_node_info:
       endpoint::write_empty_answer(writer, entry);
@@ -229,20 +227,23 @@ void Session::answer_request(const Message& message, const Entry& entry) {
     case EntryType::endpoint_check_capability:
       endpoint::write_capability_answer(writer, entry);
       break;
-    case EntryType::callback_call_req: {
-      const bool has_object = known_stub(std::string(entry.service_path)) != nullptr;
-      endpoint::write_error_answer(
-          writer, entry,
-          has_object ? Error(ErrorCode::member_not_found, "Member not found")
-                     : Error(ErrorCode::service_error, "the client does not use this object"));
-      break;
-    }
     default:
       if (static_cast<std::uint16_t>(entry.type) >= 500) return;  // packets that nobody wants
       endpoint::write_error_answer(writer, entry,
                                    Error(ErrorCode::protocol_error, "Invalid Special Operation"));
       break;
   }
+  send_answer(writer, message, entry, true);
+}
+
+// Ends the message of an answer with its header. As a reply only with the dispatch turn.
+void Session::send_answer(Writer& writer, const Message& message, const Entry& entry,
+                          bool is_reply) {
+  MessageHeader header{.sender_node = core_->options().id,
+                       .receiver_node = message.sender_node,
+                       .sender_endpoint = message.receiver_endpoint,
+                       .receiver_endpoint = message.sender_endpoint,
+                       .routing = false};
   if (static_cast<std::uint16_t>(entry.type) < 500) {
     header.sender_name = core_->options().name;
     header.receiver_name = message.sender_name;
@@ -252,7 +253,11 @@ void Session::answer_request(const Message& message, const Entry& entry) {
     header.message_id = next_message_id_++;
   }
   writer.message(header, 1);
-  connection_->reply(writer);
+  if (is_reply) {
+    connection_->reply(writer);
+  } else {
+    connection_->send(writer);
+  }
 }
 
 // Asynchronous search: the answer brings the type, and the rest may ask more, on a thread of the

@@ -108,8 +108,8 @@ void WireMember::start_connect(WireEnd* end, std::unique_ptr<Completion> complet
                    error = std::current_exception()] { shared->fail(error); }});
     return;
   }
-  auto connecting = std::make_shared<ConnectCompletion>(stub_->rr_session(), made, end,
-                                                        std::move(completion));
+  auto connecting =
+      std::make_shared<ConnectCompletion>(stub_->rr_session(), made, end, std::move(completion));
   session.start({EntryType::wire_connect_req, made->path(), member_->name}, Incoming{},
                 stub_->rr_timeout(), std::move(connecting));
 }

@@ -67,7 +67,8 @@ Core::Core(NodeOptions options)
     : options_(with_id(std::move(options))),
       reactor_(std::make_shared<channel::Reactor>(options_->max_threads)),
       types_(std::make_shared<const TypeRegistry>()) {
-  const auto limit = std::min(options_->keep_alive_period, options_->client_timeout);
+  const auto limit = std::min(
+      {options_->keep_alive_period, options_->client_timeout, options_->generator_timeout});
   const auto period = std::clamp<channel::Milliseconds>(limit / 4, channel::Milliseconds(10),
                                                         channel::Milliseconds(longest_round));
   rounds_ = std::make_shared<Rounds>(reactor_, period);

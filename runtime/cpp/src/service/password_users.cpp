@@ -109,11 +109,11 @@ PasswordUsers::PasswordUsers(std::string_view text) {
   }
 }
 
-std::shared_ptr<PasswordUsers> PasswordUsers::from_file(const std::filesystem::path& path) {
+std::shared_ptr<PasswordUsers> PasswordUsers::from_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   if (!file) {
-    throw Error(ErrorCode::invalid_configuration, "cannot read `" + path.string() + "`");
+    throw Error(ErrorCode::invalid_configuration, "cannot read `" + path + "`");
   }
   return std::make_shared<PasswordUsers>(text);
 }

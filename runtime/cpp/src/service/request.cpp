@@ -32,6 +32,9 @@ void Request::answer(const void* value) {
     throw Error(ErrorCode::invalid_operation, "the request has been answered already");
   }
   const bool is_call = source.member.kind == MemberKind::function;
+  if (source.member.generator != GeneratorForm::none) {
+    throw Error(ErrorCode::internal_error, "the handler has given no generator");
+  }
   if (source.is_set) {
     source.endpoint.answer_empty(source.question);
   } else if (source.member.type != nullptr && value != nullptr) {
@@ -54,6 +57,9 @@ ReplyHandle Request::defer() {
   Source& source = *source_;
   if (source.state != Source::State::open) {
     throw Error(ErrorCode::invalid_operation, "the request has been answered already");
+  }
+  if (source.member.generator != GeneratorForm::none) {
+    throw Error(ErrorCode::invalid_operation, "a generator cannot be given later");
   }
   const Entry& entry = source.question.entry;
   auto state = std::make_unique<ReplyHandle::State>(ReplyHandle::State{

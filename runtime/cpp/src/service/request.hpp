@@ -19,6 +19,7 @@ struct Request::Source {
   const service::Question& question;
   const TypeRegistry& types;
   const Member& member;
+  const std::shared_ptr<const service::ServedObject>& object;
   bool is_set;
   State state = State::open;
 

@@ -71,6 +71,10 @@ void ServerEndpoint::send_packet(const EntryHeader& header, std::span<const Para
   }
 }
 
+void ServerEndpoint::send_request(Writer& entry, EntryType type) {
+  send_answer(entry, 1, type, false);
+}
+
 void ServerEndpoint::send_marked(Writer& writer, std::string_view metadata,
                                  const channel::Newest* newest) {
   writer.message({.sender_node = core()->options().id,
@@ -235,17 +239,30 @@ void ServerEndpoint::leave() {
   wires_.end_all(laters);
   for (const std::function<void()>& later : laters) later();
   if (is_member_.exchange(false)) host_->remove_client(*this);
+  end_members();
   connection_->close_after(close_delay);
 }
 
-void ServerEndpoint::lost(const Error& /*why*/, channel::Laters& laters) {
+void ServerEndpoint::lost(const Error& why, channel::Laters& laters) {
+  callbacks_.end(why.message(), laters);
   wires_.end_all(laters);
 }
 
 void ServerEndpoint::closed() {
   if (is_member_.exchange(false)) host_->remove_client(*this);
+  end_members();
   last_object_.reset();
 }
+
+// The client has gone: what it has begun ends with it.
+void ServerEndpoint::end_members() {
+  channel::Laters laters;
+  callbacks_.end("the client has left", laters);
+  callbacks_.post(std::move(laters));
+  generators_.end();
+}
+
+void ServerEndpoint::release_path(std::string_view path) { generators_.release_path(path); }
 
 void ServerEndpoint::attend(channel::Time now) {
   const channel::Milliseconds limit = directory_->core()->options().client_timeout;
@@ -253,10 +270,18 @@ void ServerEndpoint::attend(channel::Time now) {
     connection_->close(
         Error(ErrorCode::connection_error, "the client has been silent for too long"));
   }
+  channel::Laters laters;
+  generators_.drop_unused(now, directory_->core()->options().generator_timeout, laters);
+  callbacks_.post(std::move(laters));
 }
 
-// No request of ours is ever open: callbacks are not served.
-void ServerEndpoint::take_answer(const Message& /*message*/, const Entry& /*entry*/,
-                                 const MemoryRef& /*owner*/, channel::Laters& /*laters*/) {}
+void ServerEndpoint::take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
+                                 channel::Laters& laters) {
+  last_heard_.store(channel::coarse_now(), std::memory_order_relaxed);
+  callbacks_.take_answer(message, entry, owner, laters);
+  if (static_cast<ErrorCode>(entry.error) == ErrorCode::invalid_endpoint) {  // 07, section 1
+    laters.emplace_back([self = shared_from_this()] { self->leave(); });
+  }
+}
 
 }  // namespace rr::service

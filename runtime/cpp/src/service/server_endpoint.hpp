@@ -19,6 +19,8 @@
 #include "rr/writer.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/service/callbacks.hpp"
+#include "runtime/cpp/src/service/generators.hpp"
 #include "runtime/cpp/src/service/object_tree.hpp"
 #include "runtime/cpp/src/service/wires.hpp"
 
@@ -50,8 +52,12 @@ class ServerEndpoint final : public channel::Receiver,
 
   [[nodiscard]] const ServiceClient& client() const { return client_; }
   [[nodiscard]] channel::Connection& connection() const { return *connection_; }
+  [[nodiscard]] Callbacks& callbacks() { return callbacks_; }
+  [[nodiscard]] Generators& generators() { return generators_; }
   /// The endpoint whose request this thread handles; null outside of handlers.
   static ServerEndpoint* current();
+  /// The path of the object that it asks.
+  static std::string_view current_path();
 
   /// Who is logged in; null for nobody.
   [[nodiscard]] std::shared_ptr<const User> user() const;
@@ -59,6 +65,11 @@ class ServerEndpoint final : public channel::Receiver,
   /// Sends something that is not answered. Failures are ignored.
   void send_packet(const EntryHeader& header, std::span<const Parameter> parameters,
                    const void* const* values);
+  /// Puts the header of a message before an entry of the service's own, and sends it. Throws
+  /// rr::Error.
+  void send_request(Writer& entry, EntryType type);
+  /// The service has released the object at a path and those below.
+  void release_path(std::string_view path);
   /// Sends an entry that is not answered, with metadata in the message header; of which only the
   /// newest counts, unless `newest` is null. Throws rr::Error.
   void send_marked(Writer& writer, std::string_view metadata, const channel::Newest* newest);
@@ -122,6 +133,11 @@ class ServerEndpoint final : public channel::Receiver,
   void answer_question(const Question& question);
   void answer_session_object_type(const Question& question);
   void answer_member(const Question& question, MemberKind kind);
+  // Generators (generators.cpp)
+  void answer_generator_step(const Question& question);
+  void step_generator(const Question& question, Decoder& decoder, Generators::Use& generator);
+  static void end_generator(ErrorCode wish, Generators::Use& generator);
+  void answer_nothing(const Question& question);
   void answer_unserved(const Question& question);
   // Who may do what (access.cpp)
   void check_access(const Question& question);
@@ -140,7 +156,7 @@ class ServerEndpoint final : public channel::Receiver,
   void answer_memory_parameter(const Question& question, Decoder& decoder, const Member& member,
                                const MemorySource& memory);
 
-
+  void end_members();
   void finish_late(const LateAnswer& late, Writer& writer);
   void send_answer(Writer& writer, std::uint32_t entry_count, EntryType single_type, bool is_reply);
   std::uint16_t draw_message_id(std::uint16_t count = 1) {
@@ -157,6 +173,8 @@ class ServerEndpoint final : public channel::Receiver,
   std::atomic<bool> is_member_{false};  // of the host's clients
   bool is_leaving_ = false;             // has said farewell; with the dispatch turn
 
+  Callbacks callbacks_{*this};
+  Generators generators_;
   mutable std::mutex user_mutex_;
   std::shared_ptr<const User> user_;
 

@@ -156,6 +156,14 @@ void ServiceHost::remove_client(const ServerEndpoint& client) {
   notify(options_.on_client_disconnected, client.client());
 }
 
+std::shared_ptr<ServerEndpoint> ServiceHost::find_client(std::uint32_t endpoint) const {
+  const auto clients = connected();
+  for (const auto& client : *clients) {
+    if (client->client().endpoint == endpoint) return client;
+  }
+  return nullptr;
+}
+
 void ServiceHost::notify(const std::function<void(const ServiceClient&)>& function,
                          const ServiceClient& client) const {
   if (!function) return;
@@ -183,6 +191,7 @@ void ServiceHost::release_path(const std::string& path) {
     throw Error(ErrorCode::service_error, "Unknown service path");
   }
   for (const auto& client : *connected()) {
+    client->release_path(canonical);
     client->wires().release(canonical);
     if (!may_hear(*client)) continue;
     client->send_packet({.type = EntryType::service_path_released_req, .service_path = canonical},

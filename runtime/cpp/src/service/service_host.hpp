@@ -60,6 +60,8 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   /// False when the service has been closed.
   bool add_client(const std::shared_ptr<ServerEndpoint>& client);
   void remove_client(const ServerEndpoint& client);
+  /// The client of this number; null when there is none.
+  [[nodiscard]] std::shared_ptr<ServerEndpoint> find_client(std::uint32_t endpoint) const;
   /// Sends an event to all clients.
   void fire(const std::string& path, const Member& member, const void* const* arguments);
 

@@ -18,18 +18,24 @@ namespace rr::service {
 namespace {
 
 thread_local ServerEndpoint* current_endpoint = nullptr;
+thread_local std::string_view path_of_request;
 
 // While a handler runs.
 class CurrentEndpoint {
  public:
-  explicit CurrentEndpoint(ServerEndpoint& endpoint)
-      : outer_(std::exchange(current_endpoint, &endpoint)) {}
-  ~CurrentEndpoint() { current_endpoint = outer_; }
+  CurrentEndpoint(ServerEndpoint& endpoint, std::string_view path)
+      : outer_(std::exchange(current_endpoint, &endpoint)),
+        outer_path_(std::exchange(path_of_request, path)) {}
+  ~CurrentEndpoint() {
+    current_endpoint = outer_;
+    path_of_request = outer_path_;
+  }
   CurrentEndpoint(const CurrentEndpoint&) = delete;
   CurrentEndpoint& operator=(const CurrentEndpoint&) = delete;
 
  private:
   ServerEndpoint* const outer_;
+  const std::string_view outer_path_;
 };
 
 bool is_odd(EntryType type) { return static_cast<std::uint16_t>(type) % 2 != 0; }
@@ -42,6 +48,7 @@ bool is_special(EntryType type) {
 }  // namespace
 
 ServerEndpoint* ServerEndpoint::current() { return current_endpoint; }
+std::string_view ServerEndpoint::current_path() { return path_of_request; }
 
 void ServerEndpoint::handle(const Message& message, const Entry& first, const MemoryRef& owner) {
   last_heard_.store(channel::coarse_now(), std::memory_order_relaxed);
@@ -63,8 +70,8 @@ bool ServerEndpoint::is_in_session(const Message& message) const {
          (!message.has_routing || message.receiver_node == directory_->core()->options().id);
 }
 
-bool ServerEndpoint::take_packet(const Message& message, const Entry& entry,
-                                 const MemoryRef& owner, channel::Laters& laters) {
+bool ServerEndpoint::take_packet(const Message& message, const Entry& entry, const MemoryRef& owner,
+                                 channel::Laters& laters) {
   last_heard_.store(channel::coarse_now(), std::memory_order_relaxed);
   return wires_.take(message, entry, owner, laters);
 }
@@ -93,7 +100,7 @@ void ServerEndpoint::handle_question(const Question& question) {
     if (question.gathering) question.gathering->put(question.place, {});
     return;
   }
-  const CurrentEndpoint current(*this);
+  const CurrentEndpoint current(*this, entry.service_path);
   std::exception_ptr exception;
   try {
     answer_question(question);
@@ -117,6 +124,9 @@ void ServerEndpoint::answer_question(const Question& question) {
       break;
     case EntryType::function_call_req:
       answer_member(question, MemberKind::function);
+      break;
+    case EntryType::generator_next_req:
+      answer_generator_step(question);
       break;
     case EntryType::memory_read:
     case EntryType::memory_write:
@@ -197,9 +207,6 @@ const Member& ServerEndpoint::find_member(const ServedObject& object, std::strin
 void ServerEndpoint::answer_member(const Question& question, MemberKind kind) {
   const auto object = find_object(question.entry.service_path);
   const Member& member = find_member(*object, question.entry.member, kind);
-  if (member.generator != GeneratorForm::none) {
-    throw Error(ErrorCode::not_implemented_error, "generators are not served");
-  }
   const bool is_set = question.entry.type == EntryType::property_set_req;
   if (is_set && (member.access & readonly) != 0) {
     throw Error(ErrorCode::read_only_member, "Read only property");
@@ -207,7 +214,7 @@ void ServerEndpoint::answer_member(const Question& question, MemberKind kind) {
   if (!is_set && (member.access & writeonly) != 0) {
     throw Error(ErrorCode::write_only_member, "Write only property");
   }
-  Request::Source source{*this, question, *host_->types(), member, is_set};
+  Request::Source source{*this, question, *host_->types(), member, object, is_set};
   Request request(source);
   try {
     const auto place = static_cast<std::size_t>(&member - object->type->members.data());
@@ -229,13 +236,6 @@ void ServerEndpoint::answer_unserved(const Question& question) {
     case EntryType::pipe_disconnect_req:
       find_object(question.entry.service_path);
       throw Error(ErrorCode::member_not_found, "Member not found");
-    case EntryType::generator_next_req: {
-      find_object(question.entry.service_path);
-      Decoder decoder(question.message.version, &question.message.strings);
-      std::int32_t index = 0;
-      endpoint::read_value(decoder, question.entry, "index", type_of<std::int32_t>, &index);
-      throw Error(ErrorCode::invalid_operation, "Invalid generator");
-    }
     default:
       throw Error(ErrorCode::protocol_error, "Unknown request type");
   }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/cpp/src/client/call_terms.hpp"
+#include "runtime/cpp/src/endpoint/call_terms.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include "rr/error.hpp"
-#include "runtime/cpp/src/client/session.hpp"
+#include "runtime/cpp/src/endpoint/calls.hpp"
 
 namespace rr {
 namespace {
@@ -37,10 +37,10 @@ CallTerms CallTerms::current() {
   return terms;
 }
 
-void Cancellation::State::add(std::shared_ptr<Session> session, endpoint::Pending& call) {
+void Cancellation::State::add(std::shared_ptr<endpoint::Caller> caller, endpoint::Pending& call) {
   const std::lock_guard lock(mutex_);
   if (is_cancelled_) throw Error(ErrorCode::operation_cancelled, "the call was cancelled");
-  calls_.push_back({std::move(session), &call});
+  calls_.push_back({std::move(caller), &call});
 }
 
 void Cancellation::State::remove(const endpoint::Pending& call) {
@@ -49,16 +49,16 @@ void Cancellation::State::remove(const endpoint::Pending& call) {
 }
 
 void Cancellation::State::cancel() {
-  std::vector<std::pair<std::shared_ptr<Session>, channel::Laters>> left_over;
+  std::vector<std::pair<std::shared_ptr<endpoint::Caller>, channel::Laters>> left_over;
   {
     const std::lock_guard lock(mutex_);
     is_cancelled_ = true;
     for (const Call& call : calls_) {
-      left_over.emplace_back(call.session, channel::Laters());
-      call.session->cancel(*call.pending, left_over.back().second);
+      left_over.emplace_back(call.caller, channel::Laters());
+      call.caller->cancel(*call.pending, left_over.back().second);
     }
   }
-  for (auto& [session, laters] : left_over) session->post(std::move(laters));
+  for (auto& [caller, laters] : left_over) caller->post(std::move(laters));
 }
 
 bool Cancellation::State::is_cancelled() {

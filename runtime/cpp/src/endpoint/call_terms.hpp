@@ -12,7 +12,9 @@
 
 namespace rr {
 
-class Session;
+namespace endpoint {
+class Caller;
+}
 
 /// What the calling thread's scopes say about the next call.
 struct CallTerms {
@@ -26,14 +28,14 @@ struct CallTerms {
 /// over, so that a call in the list exists.
 struct Cancellation::State {
   /// Throws rr::Error (operation_cancelled) when it is too late.
-  void add(std::shared_ptr<Session> session, endpoint::Pending& call);
+  void add(std::shared_ptr<endpoint::Caller> caller, endpoint::Pending& call);
   void remove(const endpoint::Pending& call);
   void cancel();
   [[nodiscard]] bool is_cancelled();
 
  private:
   struct Call {
-    std::shared_ptr<Session> session;
+    std::shared_ptr<endpoint::Caller> caller;
     endpoint::Pending* pending;
   };
   std::mutex mutex_;

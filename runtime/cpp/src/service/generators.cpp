@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/service/generators.hpp"
+
+#include <algorithm>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "rr/error.hpp"
+#include "rr/type.hpp"
+#include "runtime/cpp/src/channel/reactor.hpp"
+#include "runtime/cpp/src/endpoint/service_path.hpp"
+#include "runtime/cpp/src/endpoint/values.hpp"
+#include "runtime/cpp/src/service/request.hpp"
+#include "runtime/cpp/src/service/server_endpoint.hpp"
+
+namespace rr {
+namespace service {
+namespace {
+
+// How long the number of a closed generator is known (07, section 8).
+constexpr channel::Milliseconds closed_time{30'000};
+
+Error invalid_generator() { return {ErrorCode::invalid_operation, "Invalid generator"}; }
+
+}  // namespace
+
+std::int32_t Generators::add(const std::shared_ptr<ClientGenerator>& generator) {
+  std::random_device random;
+  generator->last_used = channel::coarse_now();
+  const std::lock_guard lock(mutex_);
+  if (has_ended_) throw Error(ErrorCode::connection_error, "the client has left");
+  while (true) {
+    const auto index = static_cast<std::int32_t>(random() & 0x7FFF'FFFFU);
+    if (generators_.emplace(index, generator).second) return index;
+  }
+}
+
+void Generators::remove(std::int32_t index) {
+  std::shared_ptr<ClientGenerator> removed;
+  const std::lock_guard lock(mutex_);
+  const auto found = generators_.find(index);
+  if (found == generators_.end()) return;
+  removed = std::move(found->second);
+  generators_.erase(found);
+}
+
+// A step that waits for a callback lets the next request in. When that is for the same generator it
+// waits in turn, and like the other lets messages pass, of which one may bring the end of it.
+Generators::Use::Use(Generators& generators, const ServedObject& object, std::int32_t index,
+                     channel::Connection& connection)
+    : generators_(generators), index_(index) {
+  std::unique_lock lock(generators_.mutex_);
+  const auto found = generators_.generators_.find(index);
+  if (found == generators_.generators_.end() || found->second->object.get() != &object) {
+    throw invalid_generator();
+  }
+  generator_ = found->second;
+  const std::uint32_t step = generator_->next_step++;
+  if (generator_->current_step == step) return;
+  lock.unlock();
+  const bool has_given_up = connection.give_up_turn();
+  if (has_given_up) channel::Reactor::about_to_wait();
+  lock.lock();
+  if (!has_given_up) {
+    --generator_->next_step;  // with the turn, so nobody has come behind
+    throw Error(ErrorCode::member_busy, "too many steps wait for their turn");
+  }
+  while (generator_->current_step != step) generators_.stepped_.wait(lock);
+  lock.unlock();
+  connection.take_turn_again();
+}
+
+Generators::Use::~Use() {
+  {
+    const std::lock_guard lock(generators_.mutex_);
+    ++generator_->current_step;
+    generator_->last_used = channel::coarse_now();
+  }
+  generators_.stepped_.notify_all();
+}
+
+ClientGenerator::State Generators::Use::state() const {
+  const std::lock_guard lock(generators_.mutex_);
+  return generator_->state;
+}
+
+void Generators::Use::set_state(ClientGenerator::State state) {
+  const std::lock_guard lock(generators_.mutex_);
+  generator_->state = state;
+}
+
+void Generators::Use::end() {
+  set_state(ClientGenerator::State::ended);
+  generators_.remove(index_);
+}
+
+void Generators::release_path(std::string_view path) {
+  std::vector<std::shared_ptr<ClientGenerator>> removed;
+  const std::lock_guard lock(mutex_);
+  std::erase_if(generators_, [&](auto& item) {
+    if (!endpoint::is_at_or_below(item.second->object->path, path)) return false;
+    item.second->state = ClientGenerator::State::ended;
+    removed.push_back(std::move(item.second));
+    return true;
+  });
+}
+
+void Generators::end() {
+  decltype(generators_) removed;
+  const std::lock_guard lock(mutex_);
+  has_ended_ = true;
+  for (const auto& [index, generator] : generators_) {
+    generator->state = ClientGenerator::State::ended;
+  }
+  removed.swap(generators_);
+}
+
+void Generators::drop_unused(channel::Time now, channel::Milliseconds timeout,
+                             channel::Laters& laters) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(generators_, [&](auto& item) {
+    const ClientGenerator& generator = *item.second;
+    const bool is_open = generator.state == ClientGenerator::State::open;
+    const channel::Milliseconds limit = is_open ? timeout : std::min(timeout, closed_time);
+    if (generator.next_step != generator.current_step || now - generator.last_used <= limit) {
+      return false;
+    }
+    laters.emplace_back([removed = std::make_shared<std::shared_ptr<ClientGenerator>>(
+                             std::move(item.second))] { removed->reset(); });
+    return true;
+  });
+}
+
+// In a request an error is a wish (07, section 8); any answer with an error is the last.
+void ServerEndpoint::answer_generator_step(const Question& question) {
+  const Entry& entry = question.entry;
+  const auto object = find_object(entry.service_path);
+  Decoder decoder(question.message.version, &question.message.strings, question.owner,
+                  types().get());
+  std::int32_t index = 0;
+  endpoint::read_value(decoder, entry, "index", type_of<std::int32_t>, &index);
+  Generators::Use generator(generators_, *object, index, *connection_);
+  try {
+    if (generator.state() == ClientGenerator::State::ended) throw invalid_generator();
+    if (entry.error == 0) {
+      step_generator(question, decoder, generator);
+    } else {
+      end_generator(static_cast<ErrorCode>(entry.error), generator);
+      answer_nothing(question);
+    }
+  } catch (...) {
+    generator.end();
+    throw;
+  }
+}
+
+void ServerEndpoint::step_generator(const Question& question, Decoder& decoder,
+                                    Generators::Use& generator) {
+  if (generator.state() == ClientGenerator::State::aborted) {
+    throw Error(ErrorCode::operation_aborted, "generator was aborted");
+  }
+  if (generator.state() == ClientGenerator::State::closed) {
+    throw Error(ErrorCode::stop_iteration, "");
+  }
+  std::shared_ptr<void> parameter;
+  std::shared_ptr<void> result;
+  if (generator->parameter != nullptr) {
+    parameter = generator->parameter->make();
+    endpoint::read_value(decoder, question.entry, "parameter",
+                         *generator->member->generator_parameter, parameter.get());
+  }
+  if (generator->result != nullptr) result = generator->result->make();
+  if (!generator->source->rr_step(parameter.get(), result.get())) {
+    throw Error(ErrorCode::stop_iteration, "");
+  }
+  if (result) {
+    answer_value(question, "return", *generator->member->type, result.get());
+  } else {
+    answer_nothing(question);
+  }
+}
+
+// The number stays known for a while, the rest goes.
+void ServerEndpoint::end_generator(ErrorCode wish, Generators::Use& generator) {
+  if (generator.state() != ClientGenerator::State::open) return;
+  const bool is_close = wish == ErrorCode::stop_iteration;
+  generator.set_state(is_close ? ClientGenerator::State::closed : ClientGenerator::State::aborted);
+  const std::shared_ptr<GeneratorSource> source = std::move(generator->source);
+  if (is_close) {
+    source->rr_close();
+  } else {
+    source->rr_abort();
+  }
+}
+
+void ServerEndpoint::answer_nothing(const Question& question) {
+  const std::int32_t nothing = 0;  // what void looks like
+  answer_value(question, "return", type_of<std::int32_t>, &nothing);
+}
+
+}  // namespace service
+
+void Request::answer_generator(std::shared_ptr<GeneratorSource> generator, const Holding* result,
+                               const Holding* parameter) {
+  Source& source = *source_;
+  if (source.state != Source::State::open) {
+    throw Error(ErrorCode::invalid_operation, "the request has been answered already");
+  }
+  if (source.member.generator == GeneratorForm::none || !generator) {
+    throw Error(ErrorCode::internal_error, "the handler has given no generator");
+  }
+  service::Generators& generators = source.endpoint.generators();
+  const std::int32_t index =
+      generators.add(std::make_shared<service::ClientGenerator>(service::ClientGenerator{
+          source.object, &source.member, std::move(generator), result, parameter}));
+  try {
+    source.endpoint.answer_value(source.question, "index", type_of<std::int32_t>, &index);
+  } catch (...) {
+    generators.remove(index);
+    throw;
+  }
+  source.state = Source::State::answered;
+}
+
+}  // namespace rr
