@@ -171,6 +171,9 @@ TEST_F(ComparisonTest, AGeneratorIndexMayDifferButMustStayTheSame) {
   EXPECT_EQ(comparison_.difference(given, changed(given, index, 7), connection_, nullptr),
             std::nullopt);
   EXPECT_EQ(addressed(step, connection_), changed(step, index, 7));
+  const Frame& close = captures().find("generators", "v4")->frames.at(21);
+  ASSERT_TRUE(is(close, EntryType::generator_next_req));
+  EXPECT_EQ(addressed(close, connection_), close.bytes);  // of another generator
 }
 
 }  // namespace

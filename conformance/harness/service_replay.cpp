@@ -155,10 +155,22 @@ class ServiceReplay::Play {
     return nullptr;
   }
 
+  // The service calls functions of its client, too.
+  [[nodiscard]] bool was_asked_for(const Step& step, const Frame& answer) const {
+    for (int i = 0; i < step.frame_count; ++i) {
+      const Frame& frame = scenario_.frames[static_cast<std::size_t>(step.first_frame + i)];
+      if (frame.number >= answer.number) return false;
+      if (!frame.from_client && frame.entry_type() + 1 == answer.entry_type()) return true;
+    }
+    return false;
+  }
+
   // An entry of an even type is an answer, and no request: the recorded library answers it
   // nevertheless.
   [[nodiscard]] bool answers_even_type(const Step& step, const Frame& frame) const {
-    if (!frame.from_client || frame.entry_type() % 2 != 0) return false;
+    if (!frame.from_client || frame.entry_type() % 2 != 0 || was_asked_for(step, frame)) {
+      return false;
+    }
     const auto last = static_cast<std::size_t>(step.first_frame + step.frame_count - 1);
     return !scenario_.frames[last].from_client;
   }
