@@ -228,8 +228,7 @@ auto MultiMemory<T>::async_write(std::vector<std::uint64_t> position, const Mult
                            std::make_unique<CallCompletion<Handler, void>>(
                                std::forward<decltype(handler)>(handler)));
       },
-      token, std::move(position),
-      std::vector<std::uint64_t>(array.dims.begin(), array.dims.end()),
+      token, std::move(position), std::vector<std::uint64_t>(array.dims.begin(), array.dims.end()),
       array.items.owner() ? array.items : Array<T>(std::span<const T>(array.items)));
 }
 
