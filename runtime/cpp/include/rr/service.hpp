@@ -30,7 +30,9 @@ struct ServiceOptions {
   /// Definitions, besides those that the root object's imports, whose types may be used in
   /// varvalues or varobjects.
   std::vector<const Definition*> extra_imports{};
-  /// Called on a thread of the node, before the first and after the last request of a client.
+  /// Called on a thread of the node, before the first and after the last request of a client. The
+  /// second comes when the connection has ended, which is up to 0.1 s after disconnect() or
+  /// close().
   std::function<void(const ServiceClient&)> on_client_connected{};
   std::function<void(const ServiceClient&)> on_client_disconnected{};
 };

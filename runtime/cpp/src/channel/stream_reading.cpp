@@ -246,6 +246,7 @@ bool StreamConnection::drain(Scratch& scratch) {
       lock.unlock();
       receiver_->closed();
       receiver_.reset();
+      reactor_->end_connection();
       lock.lock();
     } else {
       break;

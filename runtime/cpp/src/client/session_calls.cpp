@@ -323,10 +323,7 @@ void Session::fail_all(const Error& why, channel::Laters& laters) {
 }
 
 void Session::post(channel::Laters laters) {
-  for (const std::function<void()>& later : laters) {
-    if (!core_->reactor().post(later))
-      later();  // the node is going away; this thread takes it along
-  }
+  for (std::function<void()>& later : laters) core_->reactor().post(std::move(later));
 }
 
 void Session::take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,

@@ -114,8 +114,12 @@ void Session::release_path(std::string_view path) {
 }
 
 void Session::add_handler(const std::shared_ptr<Subscription::Handler>& handler) {
+  std::vector<std::shared_ptr<Subscription::Handler>> removed;  // goes when the lock has
   const std::lock_guard lock(mutex_);
-  std::erase_if(handlers_, [](const auto& item) { return !item->is_connected(); });
+  std::erase_if(handlers_, [&](const auto& item) {
+    if (!item->is_connected()) removed.push_back(item);
+    return !item->is_connected();
+  });
   handlers_.push_back(handler);
 }
 

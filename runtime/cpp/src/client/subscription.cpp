@@ -17,10 +17,14 @@ void Subscription::Handler::call(const Arguments& arguments) {
   struct End {
     Handler& handler;
     ~End() {
-      {
-        const std::lock_guard lock(handler.mutex_);
-        handler.is_running_ = false;
+      std::unique_lock lock(handler.mutex_);
+      if (handler.is_left_to_runner_) {
+        auto unused = std::move(handler.function_);
+        lock.unlock();
+        unused.reset();  // may own the stub, which comes back to disconnect()
+        lock.lock();
       }
+      handler.is_running_ = false;
       handler.ended_.notify_all();
     }
   } const end{*this};
@@ -28,9 +32,15 @@ void Subscription::Handler::call(const Arguments& arguments) {
 }
 
 void Subscription::Handler::disconnect() {
+  std::unique_ptr<EventHandler> unused;
   std::unique_lock lock(mutex_);
   is_connected_ = false;
   while (is_running_ && runner_ != std::this_thread::get_id()) ended_.wait(lock);
+  if (is_running_) {
+    is_left_to_runner_ = true;
+  } else {
+    unused = std::move(function_);
+  }
 }
 
 Subscription::Subscription(std::shared_ptr<Handler> handler) : handler_(std::move(handler)) {}

@@ -24,7 +24,8 @@ struct Subscription::Handler {
 
   /// Calls the function unless it has been disconnected. What it throws comes out.
   void call(const Arguments& arguments);
-  /// Returns when the function is not running any more, unless it is the caller.
+  /// Returns when the function is not running any more, unless it is the caller. It goes, with what
+  /// it owns, as soon as it does not run.
   void disconnect();
   [[nodiscard]] bool is_connected() const { return is_connected_; }
 
@@ -34,6 +35,7 @@ struct Subscription::Handler {
   std::condition_variable ended_;
   std::atomic<bool> is_connected_{true};  // written under mutex_
   bool is_running_ = false;
+  bool is_left_to_runner_ = false;  // the function has disconnected itself
   std::thread::id runner_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -24,8 +25,10 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
  public:
   ServiceHost(std::shared_ptr<endpoint::Core> core, std::weak_ptr<Directory> directory,
               std::string name, std::shared_ptr<Skeleton> root, ServiceOptions options);
-  /// Attaches the root object.
+  /// Attaches the root object. Throws what that throws.
   void start();
+  /// False until then: clients may not connect yet.
+  [[nodiscard]] bool is_started() const { return is_started_; }
 
   [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] const Skeleton& root() const override { return *objects_.root()->skeleton; }
@@ -50,6 +53,8 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   /// False when the service has been closed.
   bool add_client(const std::shared_ptr<ServerEndpoint>& client);
   void remove_client(const ServerEndpoint& client);
+  /// Tells that a client has gone: on a thread of the node, behind its last request.
+  void announce_end(const ServerEndpoint& client) const;
   /// Sends an event to all clients.
   void fire(const std::string& path, const Member& member, const void* const* arguments);
 
@@ -69,6 +74,7 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   const std::vector<const Definition*> definitions_;
   ObjectTree objects_;
 
+  std::atomic<bool> is_started_{false};
   mutable std::mutex mutex_;
   std::shared_ptr<const Clients> clients_;  // replaced, never changed
   bool is_closed_ = false;
