@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <string_view>
 #include <system_error>
 #include <unordered_map>
 #include <unordered_set>
@@ -23,21 +24,30 @@ namespace fs = std::filesystem;
 // Far beyond any definition, and well within what a span can reach.
 constexpr std::size_t largest_file = 64U << 20U;
 
-std::optional<std::string> read_file(const std::string& path) {
+// What is in a file, or that it cannot be read and why, as far as that is known.
+struct Contents {
+  std::optional<std::string> text;
+  std::string_view failure = "cannot be read";
+};
+
+Contents read_file(const std::string& path) {
   std::error_code error;
   // Opening a folder for reading succeeds on some systems.
-  if (fs::is_directory(path, error)) return std::nullopt;
+  if (fs::is_directory(path, error)) return {};
   std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
+  if (!file) return {};
   std::string text;
   std::array<char, 65536> buffer;
   do {
     file.read(buffer.data(), buffer.size());
     text.append(buffer.data(), static_cast<std::size_t>(file.gcount()));
-    if (text.size() > largest_file) return std::nullopt;
+    if (text.size() > largest_file) {
+      static_assert(largest_file == 64U << 20U);
+      return {std::nullopt, "cannot be read: it is larger than 64 MiB"};
+    }
   } while (file);
-  if (file.bad()) return std::nullopt;
-  return text;
+  if (file.bad()) return {};
+  return {std::move(text)};
 }
 
 bool exists(const std::string& path) {
@@ -74,13 +84,13 @@ class Loader {
  private:
   void load_input(const std::string& path) {
     if (!loaded_.insert(identity(path)).second) return;
-    auto text = read_file(path);
+    auto [text, failure] = read_file(path);
     const bool is_found = text.has_value();
     const SourceId id = sources_.add(path, std::move(text).value_or(std::string()));
     if (is_found) {
       add(parse(sources_[id], id, report_), false);
     } else if (exists(path)) {
-      report_.add(Code::R0510, {id, 0, 0}, fmt::format("`{}` cannot be read", path));
+      report_.add(Code::R0510, {id, 0, 0}, fmt::format("`{}` {}", path, failure));
     } else {
       report_.add(Code::R0509, {id, 0, 0}, fmt::format("there is no file `{}`", path));
     }
@@ -118,9 +128,9 @@ class Loader {
   bool load_import(const Name& name) {
     const std::string path = find(name);
     if (path.empty()) return true;
-    auto text = read_file(path);
+    auto [text, failure] = read_file(path);
     if (!text) {
-      report_.add(Code::R0510, name.span, fmt::format("`{}` cannot be read", path))
+      report_.add(Code::R0510, name.span, fmt::format("`{}` {}", path, failure))
           .label("imported here");
       return false;
     }

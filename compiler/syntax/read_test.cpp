@@ -120,6 +120,16 @@ TEST_F(ReadTest, AFolderCannotBeRead) {
   EXPECT_THAT(findings(), HasSubstr(": error: R0510 "));
 }
 
+TEST_F(ReadTest, AFileThatIsTooLargeIsReportedWithItsLimit) {
+  const std::string large = write("large.robdef", "service large\n");
+  fs::resize_file(large, (std::uintmax_t{64} << 20U) + 1);
+  const std::string input = write("a.robdef", "service a\nimport large\n");
+  EXPECT_THAT(services(read_files({input, large})), ElementsAre("a"));
+  const std::string text =
+      ": error: R0510 `" + large + "` cannot be read: it is larger than 64 MiB\n";
+  EXPECT_EQ(findings(), input + "(2,8)" + text + large + "(1,1)" + text);
+}
+
 TEST_F(ReadTest, AnUnreadableImportIsReportedWhereItIsImported) {
   const Program program = read_files({(corpus / "R0510_unreadable.robdef").string()});
   EXPECT_TRUE(program.files[0].file.imports[0].is_reported);

@@ -36,7 +36,7 @@ struct Connection {
 struct Step {
   int index = 0;
   std::string label;
-  Json plan;  ///< what the recorded client did; null in hand-made scenarios
+  Json plan;                   ///< what the recorded client did; null in hand-made scenarios
   bool is_unanswered = false;  ///< hand-made: the recorded service stayed silent, and alive
   int first_frame = 0;
   int frame_count = 0;

@@ -116,6 +116,9 @@ std::vector<std::string> write_definitions(const fs::path& captures, const fs::p
       if (service_name(text) == name) definitions[name] = text;
     }
   }
+  if (definitions.empty()) {
+    throw std::runtime_error("no service definitions in " + captures.string());
+  }
   std::set<std::string> services;
   for (const auto& [name, text] : definitions) services.insert(name);
   const std::set<std::string> types = types_of_values(captures);

@@ -98,7 +98,7 @@ bool ListEntry::covers(const Run& run) const {
          lists(role_, name_of(run.role));
 }
 
-Deviations::Deviations(const std::filesystem::path& file) {
+Deviations::Deviations(const std::filesystem::path& file, bool borrowed) : are_borrowed_(borrowed) {
   for (Line& line : read_lines(file)) {
     entries_.emplace_back(std::move(line.fields), std::move(line.where));
   }

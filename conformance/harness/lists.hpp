@@ -50,13 +50,16 @@ class ListEntry {
 class Deviations {
  public:
   Deviations() = default;
-  explicit Deviations(const std::filesystem::path& file);
+  /// `borrowed` when the list was written for other captures: not each entry must occur in these.
+  explicit Deviations(const std::filesystem::path& file, bool borrowed = false);
   /// Null when nothing is listed there.
   [[nodiscard]] const ListEntry* find(const Run& run, std::string_view place) const;
   [[nodiscard]] const std::vector<ListEntry>& entries() const { return entries_; }
+  [[nodiscard]] bool are_borrowed() const { return are_borrowed_; }
 
  private:
   std::vector<ListEntry> entries_;
+  bool are_borrowed_ = false;
 };
 
 /// `language | scenario | versions | role | place | why`

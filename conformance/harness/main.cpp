@@ -17,13 +17,15 @@ namespace {
 constexpr std::string_view usage =
     R"(usage: conformance_harness play --captures DIR (--runner PROGRAM | --connect HOST:PORT | --listen PORT)
                            [--language NAME] [--only REGEX] [--before COMMAND]
-                           [--expected FILE] [--deviations FILE] [--json FILE]
+                           [--expected FILE] [--deviations FILE | --borrowed-deviations FILE]
+                           [--json FILE]
        conformance_harness definitions --captures DIR --output DIR
        conformance_harness record --captures DIR --runner PROGRAM --plan NAME --version v2|v4|v4st
 
 play: plays a folder of captures. With --runner, a language's runner is the service and the client, and
   decodes and encodes; with --connect, a service that runs elsewhere is tested, and COMMAND (a shell
-  command) brings it to its first state before each scenario; with --listen, a client.
+  command) brings it to its first state before each scenario; with --listen, a client. Deviations are
+  borrowed when the list was written for other captures: not each of them must occur.
 definitions: writes the service definitions of the folder, for a compiler.
 record: plays a plan of the folder with a runner on both ends and writes it down as a scenario.
 Exit code: 0 when all holds, 1 when not, 2 when used wrongly.
@@ -70,6 +72,11 @@ void take_option(CommandLine& line, const std::string& name, const std::string& 
       {"--only", [&] { options.only = value; }},
       {"--expected", [&] { options.expected = value; }},
       {"--deviations", [&] { options.deviations = value; }},
+      {"--borrowed-deviations",
+       [&] {
+         options.deviations = value;
+         options.deviations_are_borrowed = true;
+       }},
       {"--json", [&] { options.json = value; }},
   };
   const auto option = known.find(name);

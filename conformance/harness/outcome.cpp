@@ -50,6 +50,9 @@ std::optional<std::string> fault_of_outcome(const Comparison& comparison,
   if (outcome.contains("unsupported")) {
     return "not supported: " + outcome["unsupported"].get<std::string>();
   }
+  if (outcome.contains("error")) {
+    return "the runner says: " + outcome["error"].get<std::string>();
+  }
   const Json& plan = step.plan;
   if (plan.contains("raised")) {
     if (outcome.contains("raised")) {

@@ -19,11 +19,38 @@ using Clock = std::chrono::steady_clock;
 
 constexpr Milliseconds settle{12};  // late messages still belong to their step
 constexpr Milliseconds step_limit{20000};
+constexpr std::string_view any_node = "00000000-0000-0000-0000-000000000000";
+
+// The bytes of the long texts of the folder are written as their names.
+std::string hex_with_blobs(const Bytes& bytes, const Blobs& blobs) {
+  std::string hex = hex_of_bytes(bytes);
+  for (const auto& [name, text] : blobs) {
+    const std::string wanted = hex_of_bytes(bytes_of_text(text));
+    const std::string written = "{" + name + "}";
+    std::size_t at = wanted.empty() ? std::string::npos : hex.find(wanted);
+    for (; at != std::string::npos; at = hex.find(wanted, at)) {
+      hex.replace(at, wanted.size(), written);
+      at += written.size();
+    }
+  }
+  return hex;
+}
+
+Json with_blobs(Json json, const Blobs& blobs) {
+  for (const auto& [name, text] : blobs) {
+    if (!text.empty() && json == text) return "{" + name + "}";
+  }
+  if (json.is_structured()) {
+    for (Json& item : json) item = with_blobs(item, blobs);
+  }
+  return json;
+}
 
 // Between client and service: passes on every message and keeps it.
 class Proxy {
  public:
-  explicit Proxy(int service_port) : listener_(0), service_port_(service_port) {}
+  Proxy(int service_port, const Scenario& scenario, const Blobs& blobs)
+      : listener_(0), service_port_(service_port), scenario_(scenario), blobs_(blobs) {}
 
   [[nodiscard]] int port() const { return listener_.port(); }
   [[nodiscard]] const Json& frames() const { return frames_; }
@@ -72,8 +99,16 @@ class Proxy {
   void note_end(std::size_t line, bool by_client) {
     Json& connection = connections_[line];
     if (connection.contains("closed_by")) return;
-    connection["closed_after_frame"] = static_cast<int>(frames_.size()) - 1;
+    connection["closed_after_frame"] = last_frame_of(line);
     connection["closed_by"] = by_client ? "client" : "service";
+  }
+
+  [[nodiscard]] int last_frame_of(std::size_t line) const {
+    int last = -1;
+    for (const Json& frame : frames_) {
+      if (frame.at("conn") == line) last = frame.at("n");
+    }
+    return last;
   }
 
   void keep(std::size_t line, const Bytes& message, bool from_client) {
@@ -82,14 +117,29 @@ class Proxy {
     frames_.push_back({{"n", frames_.size()},
                        {"conn", line},
                        {"dir", from_client ? "c2s" : "s2c"},
-                       {"hex", hex_of_bytes(message)},
-                       {"decoded", json_of_message(tree)}});
+                       {"hex", hex_with_blobs(message, blobs_)},
+                       {"decoded", readable(tree)}});
     const char* side = from_client ? "client_endpoint" : "service_endpoint";
     if (tree.sender_endpoint != 0) connections_[line].emplace(side, tree.sender_endpoint);
   }
 
+  [[nodiscard]] Json readable(const rr::MessageTree& tree) const {
+    Json decoded = with_blobs(json_of_message(tree), blobs_);
+    Json& header = decoded.at("header");
+    for (const char* key : {"sender_node_id", "receiver_node_id"}) {
+      if (!header.contains(key)) continue;
+      Json& id = header[key];
+      if (id == scenario_.client.id) id = "client";
+      if (id == scenario_.service.id) id = "service";
+      if (id == any_node) id = "any";
+    }
+    return decoded;
+  }
+
   Listener listener_;
   int service_port_;
+  const Scenario& scenario_;
+  const Blobs& blobs_;
   std::vector<Line> lines_;
   Json frames_ = Json::array();
   Json connections_ = Json::array();
@@ -127,9 +177,12 @@ void play_step(Json& planned, const Scenario& scenario, Proxy& proxy, RunnerClie
     if (!outcome && (outcome = client.outcome(Milliseconds(1)))) last = Clock::now();
     if (Clock::now() > end) throw std::runtime_error("a step did not end: " + planned.dump());
   }
-  if (outcome->contains("unsupported")) throw std::runtime_error(outcome->dump());
+  if (outcome->contains("unsupported") || outcome->contains("error")) {
+    throw std::runtime_error(planned.dump() + ": " + outcome->dump());
+  }
   for (const char* key : {"result", "raised"}) {
     planned.erase(key);
+    if (planned.value("result_as_set", false)) continue;
     if (outcome->contains(key) && !(*outcome)[key].is_null()) planned[key] = (*outcome)[key];
   }
 }
@@ -164,8 +217,8 @@ void record(const fs::path& folder, const std::string& plan_name, const std::str
   Json plan = read_json(folder / plan_file);
   const Scenario scenario = blank_scenario(captures, plan, version);
   Runner service(command, "serve");
-  const Json served = service.ask(serve_request(captures, scenario));
-  Proxy proxy(served.at("port"));
+  const Json served = service.order(serve_request(captures, scenario));
+  Proxy proxy(served.at("port"), scenario, captures.blobs);
   RunnerClient client(command);
   client.begin(scenario, proxy.port());
   Json step_frames = Json::array();

@@ -61,11 +61,13 @@ void Report::add(Result result) {
 std::vector<std::string> Report::stale_entries() const {
   std::vector<std::string> stale;
   if (!complete_) return stale;
-  for (const auto* entries : {&expected_.entries(), &deviations_.entries()}) {
-    for (const ListEntry& entry : *entries) {
+  const auto add_unmet = [&](const std::vector<ListEntry>& entries) {
+    for (const ListEntry& entry : entries) {
       if (!entry.met) stale.push_back(entry.where_listed() + ": nothing that was played is meant");
     }
-  }
+  };
+  add_unmet(expected_.entries());
+  if (!deviations_.are_borrowed()) add_unmet(deviations_.entries());
   return stale;
 }
 

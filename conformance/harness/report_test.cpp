@@ -100,5 +100,17 @@ TEST_F(ReportTest, AnEntryThatNothingMeetsIsAFaultOfACompleteRun) {
   EXPECT_TRUE(partial.holds());
 }
 
+TEST_F(ReportTest, ABorrowedDeviationThatNothingMeetsIsNoFault) {
+  std::ofstream(file_) << "* | * | service | message without entries | closed | it is malformed\n";
+  const Deviations own(file_);
+  const Deviations borrowed(file_, true);
+  Report with_own("cpp", expected_, own, true);
+  with_own.add(result("a"));
+  EXPECT_FALSE(with_own.holds());
+  Report with_borrowed("cpp", expected_, borrowed, true);
+  with_borrowed.add(result("a"));
+  EXPECT_TRUE(with_borrowed.holds());
+}
+
 }  // namespace
 }  // namespace rr::conformance

@@ -100,4 +100,12 @@ Json Runner::ask(const Json& request, Milliseconds limit) {
   throw std::runtime_error(name_ + " gave no answer to " + request.dump().substr(0, 200));
 }
 
+Json Runner::order(const Json& request) {
+  Json json = ask(request);
+  if (json.contains("error")) {
+    throw std::runtime_error(name_ + ": " + json["error"].get<std::string>());
+  }
+  return json;
+}
+
 }  // namespace rr::conformance

@@ -28,6 +28,8 @@ class Runner {
   std::optional<Json> answer(Milliseconds limit);
   /// Both at once; throws std::runtime_error, also when no answer came in time.
   Json ask(const Json& request, Milliseconds limit = Milliseconds(20000));
+  /// Asks for what has to succeed: also throws when the runner answers with an error.
+  Json order(const Json& request);
 
  private:
   std::string name_;

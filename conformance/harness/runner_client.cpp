@@ -15,7 +15,7 @@ void RunnerClient::begin(const Scenario& scenario, int port) {
   if (scenario.heartbeat_ms.is_object()) {
     request["heartbeat_ms"] = scenario.heartbeat_ms.at("client");
   }
-  runner_->ask(request);
+  runner_->order(request);
 }
 
 void RunnerClient::start(const Json& step) {

@@ -44,7 +44,9 @@ class Suite {
         comparison_(captures_),
         expected_(options.expected ? ExpectedFailures(*options.expected, options.language)
                                    : ExpectedFailures()),
-        deviations_(options.deviations ? Deviations(*options.deviations) : Deviations()),
+        deviations_(options.deviations
+                        ? Deviations(*options.deviations, options.deviations_are_borrowed)
+                        : Deviations()),
         report_(options.language, expected_, deviations_,
                 options.only.empty() && !options.connect && !options.listen) {}
 
@@ -146,10 +148,10 @@ class Suite {
   Result serve(const Scenario& scenario) {
     if (scenario.web_socket) return not_playable(scenario, Role::service);
     Runner runner(options_.runner, "serve");
-    const Json started = runner.ask(serve_request(captures_, scenario));
+    const Json started = runner.order(serve_request(captures_, scenario));
     ServiceReplay replay(comparison_, deviations_, {"127.0.0.1", started.at("port")},
                          [&](const std::string& service) {
-                           runner.ask({{"do", "close_service"}, {"service", service}});
+                           runner.order({{"do", "close_service"}, {"service", service}});
                          });
     return replay.play(scenario, is_expected_to_fail(scenario, Role::service));
   }
@@ -171,7 +173,7 @@ class Suite {
     const Scenario* scenario = captures_.find("connect", "v" + std::to_string(version));
     if (scenario == nullptr) throw std::runtime_error("no scenario connect to connect with");
     Runner runner(options_.runner, "serve");
-    const Json started = runner.ask(serve_request(captures_, *scenario));
+    const Json started = runner.order(serve_request(captures_, *scenario));
     return check_malformed(captures_, version, deviations_, {"127.0.0.1", started.at("port")});
   }
 

@@ -21,6 +21,7 @@ struct Options {
   std::string only;                 ///< regular expression of scenario names; empty for all
   std::optional<std::filesystem::path> expected;
   std::optional<std::filesystem::path> deviations;
+  bool deviations_are_borrowed = false;       ///< from other captures
   std::optional<std::filesystem::path> json;  ///< where the matrix is written
 };
 

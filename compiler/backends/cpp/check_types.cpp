@@ -18,6 +18,9 @@ class Checker {
     for (const model::Record& record : definition.records) {
       check(record.constants);
       for (const model::Field& field : record.fields) value(field.type);
+      if (record.kind == model::RecordKind::namedarray && record.number_count == 0) {
+        refuse(record.span, "a namedarray without numbers");
+      }
     }
     for (const model::Object& object : definition.objects) {
       check(object.constants);

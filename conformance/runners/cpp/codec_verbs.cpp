@@ -73,7 +73,11 @@ std::vector<std::byte> with_additions(std::span<const std::byte> bytes, const Js
 Json pack(const Adapters& adapters, const Json& request) {
   const ValueAdapter& adapter = adapters.value(type_of_request(request));
   Value value(adapter);
-  adapter.read(adapters, request.at("value"), value.place());
+  try {
+    adapter.read(adapters, request.at("value"), value.place());
+  } catch (const Error& error) {
+    return {{"refused", error.message()}};
+  }
   Writer writer;
   writer.reset(version_of(request));
   if (request.contains("element_number")) {

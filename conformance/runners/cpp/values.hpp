@@ -9,6 +9,7 @@
 #include <optional>
 #include <rr/complex.hpp>
 #include <rr/definition.hpp>
+#include <rr/error.hpp>
 #include <rr/varvalue.hpp>
 #include <span>
 #include <stdexcept>
@@ -145,6 +146,11 @@ struct Notation<std::map<K, T>> {
   }
 };
 
+/// A value of the right kind that the C++ type cannot hold; the runtime would refuse to send it.
+[[noreturn]] inline void refuse_value(const std::string& why) {
+  throw Error(ErrorCode::data_type_error, why);
+}
+
 template <class T>
 struct Notation<Array<T>> {
   static void read(const Adapters& adapters, const Json& json, Array<T>& value) {
@@ -162,7 +168,7 @@ struct Notation<Array<T>> {
 template <class T, std::size_t Length>
 struct Notation<std::array<T, Length>> {
   static void read(const Adapters& adapters, const Json& json, std::array<T, Length>& value) {
-    if (json.size() != Length) throw std::runtime_error("not " + std::to_string(Length) + " items");
+    if (json.size() != Length) refuse_value("not " + std::to_string(Length) + " items");
     for (std::size_t i = 0; i < Length; ++i) from_json(adapters, json.at(i), value[i]);
   }
   static Json write(const Adapters& adapters, const std::array<T, Length>& value) {
@@ -173,6 +179,7 @@ struct Notation<std::array<T, Length>> {
 template <class T, std::size_t Maximum>
 struct Notation<BoundedArray<T, Maximum>> {
   static void read(const Adapters& adapters, const Json& json, BoundedArray<T, Maximum>& value) {
+    if (json.size() > Maximum) refuse_value("more than " + std::to_string(Maximum) + " items");
     value.resize(json.size());
     for (std::size_t i = 0; i < value.size(); ++i) from_json(adapters, json.at(i), value[i]);
   }
@@ -196,7 +203,7 @@ template <class T, std::size_t... Dims>
 struct Notation<FixedMultiArray<T, Dims...>> {
   using Shaped = FixedMultiArray<T, Dims...>;
   static void read(const Adapters& adapters, const Json& json, Shaped& value) {
-    if (json.at("dims") != Json(Shaped::dims)) throw std::runtime_error("another shape");
+    if (json.at("dims") != Json(Shaped::dims)) refuse_value("another shape");
     from_json(adapters, json.at("array"), value.items);
   }
   static Json write(const Adapters& adapters, const Shaped& value) {
@@ -208,7 +215,7 @@ struct Notation<FixedMultiArray<T, Dims...>> {
 template <class Number, class T>
 void numbers_from_json(const Adapters& adapters, const Json& json, T& value) {
   const auto places = numbers<Number>(value);
-  if (json.size() != places.size()) throw std::runtime_error("another count of numbers");
+  if (json.size() != places.size()) refuse_value("another count of numbers");
   for (std::size_t i = 0; i < places.size(); ++i) from_json(adapters, json.at(i), places[i]);
 }
 template <class Number, class T>

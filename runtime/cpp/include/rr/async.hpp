@@ -2,6 +2,10 @@
 #pragma once
 
 // First: the Boost headers of some releases use std::exchange without including it.
+// clang-format off
+#include <utility>
+// clang-format on
+
 #include <boost/asio/associated_executor.hpp>
 #include <boost/asio/async_result.hpp>
 #include <boost/asio/dispatch.hpp>
@@ -12,7 +16,6 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 
 #include "rr/client.hpp"
 #include "rr/generators.hpp"
@@ -421,15 +424,15 @@ auto async_connect(Node& node, std::string url, Token&& token, ConnectOptions op
         using Handler = std::decay_t<decltype(handler)>;
         const auto completion = std::make_shared<CallCompletion<Handler, Client<S>>>(
             std::forward<decltype(handler)>(handler));
-        node.run_aside([&node, completion, place = std::move(place), wishes = std::move(wishes)] {
-          try {
-            *static_cast<Client<S>*>(completion->result()) = node.connect<S>(place, wishes);
-          } catch (...) {
-            completion->fail(std::current_exception());
-            return;
-          }
-          completion->succeed();
-        });
+        node.connect_aside<S>(std::move(place), std::move(wishes),
+                              [completion](std::exception_ptr error, Client<S> client) {
+                                if (error) {
+                                  completion->fail(std::move(error));
+                                  return;
+                                }
+                                *static_cast<Client<S>*>(completion->result()) = std::move(client);
+                                completion->succeed();
+                              });
       },
       token, std::move(url), std::move(options));
 }

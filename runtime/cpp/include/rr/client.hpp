@@ -27,8 +27,9 @@ struct ConnectOptions {
   /// For calls of this client's stubs; 0: the node's request timeout.
   std::chrono::milliseconds request_timeout{0};
   /// Called once when the session has ended, whoever ended it, on a thread of the node: the reason.
-  /// operation_aborted means that this side closed it, connection_error a lost connection,
-  /// service_not_found that the service was closed.
+  /// operation_aborted means that this side closed it, connection_error a lost connection or a
+  /// service that sends this client away, service_not_found that the service was closed,
+  /// protocol_error that what came was no message or one over the limits.
   std::function<void(const Error&)> on_closed{};
   /// Called when the service has released the object at a path, on a thread of the node. Stubs for
   /// it and for what lies below may still be used and reach the object that is there then, if any.
@@ -46,7 +47,8 @@ class ClientBase {
   ~ClientBase();
 
   /// Tells the service, waits for its answer for at most half a second, and ends the connection.
-  /// Calls that are open fail with connection_error. Nothing happens the second time.
+  /// Calls that are open fail with connection_error. Nothing happens the second time. A CallScope
+  /// around it counts for nothing.
   void close();
   /// False once the session has ended, whoever ended it.
   [[nodiscard]] bool is_open() const;

@@ -34,26 +34,27 @@ namespace rr {
 /// Threads. A node has few threads of its own: one waits for the network and handles what comes in
 /// place, another watches it. What user code may rely on:
 ///
-/// - Members of a service are called on a thread of the node, for each client one at a time, in the
-///   order of its requests. Calls of different clients may overlap, so objects that are shared need
-///   their own locks.
-/// - A handler that takes long holds up its own client only: after a few milliseconds another
-/// thread
-///   waits for the network (NodeOptions::max_threads bounds how many). A handler can answer later
-///   (Request::defer), and then holds up nobody.
-/// - A blocking call sends in the calling thread, which reads the connection itself until its
-/// answer is
-///   there, if no other thread does. It may be made anywhere, in handlers too.
-/// - Event handlers and completions of asynchronous calls run on a thread of the node, never inside
-/// a
-///   call that the program makes. Events of one session come one at a time, in order.
-/// - No user code runs while the runtime holds a lock.
+/// Members of a service are called on a thread of the node, for each client one at a time, in the
+/// order of its requests. Calls of different clients may overlap, so objects that are shared need
+/// their own locks.
 ///
-/// The object must not be destroyed by one of its own threads.
+/// A handler that takes long holds up its own client only: after a few milliseconds another thread
+/// waits for the network (NodeOptions::max_threads bounds how many). A handler can answer later
+/// (Request::defer), and then holds up nobody.
+///
+/// A blocking call sends in the calling thread, which reads the connection itself until its answer
+/// is there, if no other thread does. It may be made anywhere, in handlers too.
+///
+/// Event handlers and completions of asynchronous calls run on a thread of the node, never inside a
+/// call that the program makes. Events of one session come one at a time, in order.
+///
+/// No user code runs, and nothing that belongs to user code is destroyed, while the runtime holds a
+/// lock.
 class Node {
  public:
   explicit Node(NodeOptions options = {});
-  /// As shutdown().
+  /// As shutdown(). On a thread of the node, or of run_aside(), it does not wait; what the node
+  /// still runs must not need what goes away behind it.
   ~Node();
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
@@ -84,8 +85,7 @@ class Node {
   /// any object will do that this program has a definition of. Throws rr::Error.
   template <class S>
   Client<S> connect(std::string_view url, ConnectOptions options = {}) {
-    auto [session, stub] = open(url, std::move(options), type_of_stub<S>());
-    return Client<S>(std::move(session), cast<S>(std::move(stub)));
+    return connect<S>(*state_, url, std::move(options));
   }
   /// The same without waiting: it happens on a thread of its own. With other completion tokens see
   /// rr/async.hpp.
@@ -93,24 +93,45 @@ class Node {
   std::future<Client<S>> async_connect(std::string url, ConnectOptions options = {}) {
     auto promise = std::make_shared<std::promise<Client<S>>>();
     auto future = promise->get_future();
-    run_aside([this, promise, url = std::move(url), options = std::move(options)] {
-      try {
-        promise->set_value(connect<S>(url, options));
-      } catch (...) {
-        promise->set_exception(std::current_exception());
-      }
-    });
+    connect_aside<S>(std::move(url), std::move(options),
+                     [promise](std::exception_ptr error, Client<S> client) {
+                       if (error) {
+                         promise->set_exception(std::move(error));
+                       } else {
+                         promise->set_value(std::move(client));
+                       }
+                     });
     return future;
   }
-  /// Runs something on a thread of its own, which shutdown() waits for. It may not throw.
+  /// The same, calling `done(std::exception_ptr, Client<S>)` on that thread.
+  template <class S, class Done>
+  void connect_aside(std::string url, ConnectOptions options, Done done) {
+    // The node may go while this runs; its state waits.
+    run_aside([state = state_.get(), url = std::move(url), options = std::move(options),
+               done = std::move(done)]() mutable {
+      Client<S> client;
+      std::exception_ptr error;
+      try {
+        client = connect<S>(*state, url, std::move(options));
+      } catch (...) {
+        error = std::current_exception();
+      }
+      done(std::move(error), std::move(client));
+    });
+  }
+  /// Runs something on a thread of its own, which shutdown() waits for. It may not throw. Throws
+  /// rr::Error (invalid_operation) after shutdown().
   void run_aside(std::function<void()> work);
 
-  /// Closes all services, clients and connections, and waits for the node's threads, and so for
-  /// handlers that run. Nothing happens the second time.
+  /// Closes all services, clients and connections, and waits for the node's threads: for handlers
+  /// that run, for what they are still to be told, and for run_aside(). On a thread of the node, or
+  /// of run_aside(), it does not wait, which is left to the destructor or to the next call from
+  /// another thread. May be called again, and by several threads.
   void shutdown();
 
   /// Serves a connection that came another way: one end of a connected stream socket, which is
-  /// taken over.
+  /// taken over. Throws rr::Error (connection_error) when the node has been shut down or has as
+  /// many connections as it may.
   void adopt(int descriptor);
 
  private:
@@ -131,8 +152,14 @@ class Node {
     if (!result) refuse();
     return result;
   }
+  template <class S>
+  static Client<S> connect(State& state, std::string_view url, ConnectOptions options) {
+    auto [session, stub] = open(state, url, std::move(options), type_of_stub<S>());
+    return Client<S>(std::move(session), cast<S>(std::move(stub)));
+  }
   [[noreturn]] static void refuse();
-  Opened open(std::string_view url, ConnectOptions options, const ObjectType* type);
+  static Opened open(State& state, std::string_view url, ConnectOptions options,
+                     const ObjectType* type);
   std::unique_ptr<State> state_;
 };
 

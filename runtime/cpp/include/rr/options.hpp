@@ -22,9 +22,11 @@ struct Offer {
   bool combined_connect = true;  ///< connecting to a service in one step instead of four
 };
 
-/// How a node behaves. The defaults are those of the existing implementations.
+/// How a node behaves. The defaults are those of the existing implementations. Times over a hundred
+/// years, as milliseconds::max(), never come.
 struct NodeOptions {
-  /// Name of the node: letters, digits, `_`, `.`, `-`, a letter first. Empty for none.
+  /// Name of the node: letters, digits, `_`, `.`, `-`, a letter first, 1024 at most. Empty for
+  /// none. Another one makes the node throw rr::Error (invalid_argument).
   std::string name{};
   /// Zero: a random one.
   NodeId id{};
@@ -39,7 +41,8 @@ struct NodeOptions {
 
   /// How long a call waits for its answer, unless the call says otherwise.
   std::chrono::milliseconds request_timeout{15'000};
-  /// From looking up the name to the first message both understand.
+  /// From looking up the host's name to the first message both understand. The look-up itself is
+  /// not interrupted: a name server that does not answer can take longer.
   std::chrono::milliseconds connect_timeout{5'000};
   /// A server closes connections that have not brought a whole message after this time.
   std::chrono::milliseconds first_message_timeout{5'000};
@@ -62,7 +65,8 @@ struct NodeOptions {
   std::uint32_t memory_transfer_limit = 102'400;
   /// Largest message, in bytes, before a client has connected to a service.
   std::uint32_t size_before_connect = 512 * 1024;
-  /// Incoming connections at a time; 0: no limit.
+  /// Incoming connections at a time, those of adopt() included; 0: no limit. One more is closed at
+  /// once.
   std::size_t max_connections = 0;
   /// Bytes that may wait to be sent on one connection before it is given up.
   std::size_t send_queue_limit = 64 * 1024 * 1024;

@@ -40,7 +40,9 @@ struct ServiceOptions {
   bool require_user = true;
   /// A session that is in an object's monitor and does not use the object for so long is out.
   std::chrono::milliseconds monitor_patience{30'000};
-  /// Called on a thread of the node, before the first and after the last request of a client.
+  /// Called on a thread of the node, before the first and after the last request of a client. The
+  /// second comes when the connection has ended, which is up to 0.1 s after disconnect() or
+  /// close().
   std::function<void(const ServiceClient&)> on_client_connected{};
   std::function<void(const ServiceClient&)> on_client_disconnected{};
 };

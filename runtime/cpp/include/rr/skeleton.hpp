@@ -138,7 +138,8 @@ class Skeleton {
   struct Places;  // internal: where the object is attached
 
  protected:
-  /// Sends an event to every client of each service that offers this object.
+  /// Sends an event to every client of each service that offers this object. Throws rr::Error for
+  /// values that cannot be written. Where it is too large to be sent, NodeOptions::log is told.
   void rr_fire(const Member& member, const void* const* arguments) const;
   template <class... Arguments>
   void rr_fire_event(const Member& member, const Arguments&... arguments) const {

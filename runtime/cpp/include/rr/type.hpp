@@ -23,9 +23,10 @@
 ///   T[m,n]                rr::FixedMultiArray<T, m, n>        likewise, above: rr::MultiArray<T>
 ///   struct S              std::optional<S>; rr::Recursive<S> in a field where S may contain itself
 ///   X{list}               std::optional<std::vector<X>>
-///   X{int32}, X{string}   std::optional<std::map<std::int32_t, X>>,
-///   std::optional<std::map<std::string, X>> varvalue              rr::VarValue pod P, namedarray N
-///   P, N; in the array forms above as T
+///   X{int32}              std::optional<std::map<std::int32_t, X>>
+///   X{string}             std::optional<std::map<std::string, X>>
+///   varvalue              rr::VarValue
+///   pod P, namedarray N   P, N; in the array forms above as T
 ///
 /// What the protocol allows to be null is std::optional (structs, containers) or has a null state
 /// (varvalue); inside a container an item that is a struct is std::optional too.

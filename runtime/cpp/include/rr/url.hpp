@@ -24,6 +24,9 @@ struct Url {
 
   /// Throws rr::Error (invalid_argument).
   static Url parse(std::string_view text);
+  /// Whether a node may be named so: a letter, then letters, digits, `_`, `.` and `-`; 1024 at
+  /// most.
+  static bool is_node_name(std::string_view text);
 };
 
 }  // namespace rr

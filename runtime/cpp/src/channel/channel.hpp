@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
@@ -13,10 +15,29 @@
 
 namespace rr::channel {
 
+/// How many incoming connections a node has.
+class AcceptedCount {
+ public:
+  /// 0: no limit.
+  explicit AcceptedCount(std::size_t limit) : limit_(limit) {}
+  /// False when there are as many as may be.
+  bool add() {
+    if (count_.fetch_add(1) < limit_ || limit_ == 0) return true;
+    --count_;
+    return false;
+  }
+  void remove() { --count_; }
+
+ private:
+  const std::size_t limit_;
+  std::atomic<std::size_t> count_{0};
+};
+
 /// What channels work with.
 struct Ground {
   std::shared_ptr<Reactor> reactor;
   std::shared_ptr<const NodeOptions> options;  ///< with the id filled in
+  std::shared_ptr<AcceptedCount> accepted;
 };
 
 /// Somebody who listens; ends with the object.
@@ -46,7 +67,8 @@ class Channel {
 std::unique_ptr<Channel> make_tcp_channel(Ground ground);
 
 /// A connection over one end of a connected stream socket, as a server: for tests, fuzzing, and
-/// sockets that come from elsewhere. Takes over the descriptor.
+/// sockets that come from elsewhere. Takes over the descriptor. Throws rr::Error (connection_error)
+/// when the node has as many connections as it may, and what `accept` throws.
 std::shared_ptr<Connection> adopt_socket(const Ground& ground, int descriptor,
                                          const AcceptHandler& accept);
 

@@ -73,22 +73,21 @@ void Reactor::stop() {
     is_stopping_ = true;
     threads.swap(threads_);
     ended_.clear();
+    for (std::function<void()>& work : posted_) late_.add(std::move(work));
+    posted_.clear();
   }
   idle_.notify_all();
   watch_.notify_all();
   wake_polling_thread();
   for (std::thread& thread : threads) thread.join();
-  std::deque<std::function<void()>> posted;
+  late_.wait();
   std::vector<std::shared_ptr<void>> retired;
-  {
-    const std::lock_guard lock(mutex_);
-    posted.swap(posted_);
-    retired.swap(retired_);
-  }
-  for (const std::function<void()>& work : posted) work();
+  const std::lock_guard lock(mutex_);
+  has_ended_ = true;
+  retired.swap(retired_);
 }
 
-bool Reactor::is_own_thread() const { return current_reactor == this; }
+bool Reactor::is_own_thread() const { return current_reactor == this || late_.is_own_thread(); }
 
 void Reactor::add(int descriptor, std::uint32_t events, Pollable& pollable) {
   epoll_event event{};
@@ -112,22 +111,39 @@ void Reactor::remove(int descriptor) {
 void Reactor::retire(std::shared_ptr<void> pollable) {
   {
     const std::lock_guard lock(mutex_);
-    if (is_stopping_) return;
+    if (has_ended_) return;
     retired_.push_back(std::move(pollable));
     has_work_.store(true, std::memory_order_release);
   }
   wake_polling_thread();
 }
 
-bool Reactor::post(std::function<void()> work) {
+void Reactor::post(std::function<void()> work) {
   {
     const std::lock_guard lock(mutex_);
-    if (is_stopping_) return false;
+    if (is_stopping_) {
+      late_.add(std::move(work));
+      return;
+    }
     posted_.push_back(std::move(work));
     has_work_.store(true, std::memory_order_release);
   }
   wake_polling_thread();
-  return true;
+}
+
+void Reactor::begin_connection() {
+  const std::lock_guard lock(mutex_);
+  ++connections_;
+}
+
+void Reactor::end_connection() {
+  const std::lock_guard lock(mutex_);
+  if (--connections_ == 0) no_connection_.notify_all();
+}
+
+void Reactor::wait_for_connections() {
+  std::unique_lock lock(mutex_);
+  no_connection_.wait(lock, [&] { return connections_ == 0; });
 }
 
 void Reactor::wake_polling_thread() {
@@ -287,9 +303,9 @@ void Reactor::about_to_wait() {
                                  reactor.live_threads_ >= reactor.max_threads_)) {
       return;
     }
-    handling = reactor.handling_;
     std::uint64_t expected = polling->turn * 2 + 1;
     if (!reactor.turn_.compare_exchange_strong(expected, (polling->turn + 1) * 2)) return;
+    handling = reactor.handling_;  // nobody else's yet
     reactor.is_polled_ = false;
     reactor.need_thread();
   }

@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "runtime/cpp/src/channel/late_work.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 
 struct epoll_event;
@@ -68,9 +69,10 @@ class Reactor {
 
   /// Starts the threads unless they run. Throws std::system_error.
   void start();
-  /// Waits until all threads have ended; handlers that run are waited for. Not from one of them.
+  /// Waits until all threads have ended and posted work is done; handlers that run are waited for.
+  /// Not from one of them.
   void stop();
-  /// True on a thread that belongs to this reactor.
+  /// True on a thread that belongs to this reactor, work posted after stop() included.
   [[nodiscard]] bool is_own_thread() const;
 
   // The descriptor's interest: EPOLL bits, to which edge-triggered is added. Throw
@@ -81,9 +83,15 @@ class Reactor {
   /// Keeps what is no longer watched until no event can name it any more.
   void retire(std::shared_ptr<void> pollable);
 
-  /// Runs `work` on the polling thread soon. May run user code.
-  /// Returns false when the threads have been stopped: then nothing is done.
-  bool post(std::function<void()> work);
+  /// Runs `work` soon: on the polling thread or, once the threads have been told to stop, on one
+  /// that is made for it. Never in place. May run user code.
+  void post(std::function<void()> work);
+
+  // A connection counts from when it has a receiver until it has told that one of its end.
+  void begin_connection();
+  void end_connection();
+  /// Waits until there is none. Not from a thread of the reactor.
+  void wait_for_connections();
 
   /// Makes a timer due at `when`, unless its owner has gone by then; replaces an earlier `when`.
   void schedule(Timer& timer, std::weak_ptr<void> owner, Time when);
@@ -138,6 +146,7 @@ class Reactor {
   std::condition_variable idle_;
   std::condition_variable watch_;
   std::atomic<bool> is_stopping_{false};  // written under mutex_
+  bool has_ended_ = false;                // no thread is left that could name what is retired
   bool is_polled_ = false;
   bool is_watched_ = false;
   unsigned idle_threads_ = 0;
@@ -148,6 +157,9 @@ class Reactor {
   std::vector<Timer*> timers_;  // a heap, earliest first
   std::deque<std::function<void()>> posted_;
   std::vector<std::shared_ptr<void>> retired_;
+  std::size_t connections_ = 0;
+  std::condition_variable no_connection_;
+  LateWork late_;  // what is posted from is_stopping_ on
 };
 
 }  // namespace rr::channel

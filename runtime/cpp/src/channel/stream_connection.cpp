@@ -40,11 +40,12 @@ void StreamConnection::set_agreement(const NodeId& remote_node, std::string remo
 }
 
 void StreamConnection::start(std::shared_ptr<Receiver> receiver) {
-  receiver_ = std::move(receiver);
   was_heard_ = role_ == Role::client;
   {
     const std::lock_guard lock(turns_);
     if (is_closing_) return;
+    receiver_ = std::move(receiver);
+    reactor_->begin_connection();
     self_ = shared_from_this();
     // A client's first call follows at once and reads by itself.
     if (role_ == Role::client) {
@@ -88,7 +89,8 @@ void StreamConnection::look_after() {
     close(Error(ErrorCode::connection_error, "the connection was closed"));
     return;
   }
-  if (!was_heard_ && now >= created_ + options_->first_message_timeout) {
+  const Time first_message_due = after(created_, options_->first_message_timeout);
+  if (!was_heard_ && now >= first_message_due) {
     close(Error(ErrorCode::connection_error, "the other side has not said who it is"));
     return;
   }
@@ -102,10 +104,10 @@ void StreamConnection::look_after() {
     if (was_heard_) send_test();
     next = after(now, heartbeat_period());
   }
-  if (!was_heard_) next = std::min(next, created_ + options_->first_message_timeout);
+  if (!was_heard_) next = std::min(next, first_message_due);
   // Many connections of one age are looked after together.
   constexpr Milliseconds grain{50};
-  if (heartbeat_period() > 100 * grain) next += grain - (next - Time{}) % grain;
+  if (next != never && heartbeat_period() > 100 * grain) next += grain - (next - Time{}) % grain;
   reactor_->schedule(life_timer_, weak_from_this(), std::min(next, close_at));
 }
 
@@ -153,9 +155,7 @@ void StreamConnection::finish_close() {
   }
   if (on_gone_) on_gone_(*this);
   if (must_post) laters.emplace_back([keep = shared_from_this()] { keep->drain_posted(); });
-  for (const std::function<void()>& later : laters) {
-    if (!reactor_->post(later)) later();  // the node is going away; this thread takes it along
-  }
+  for (std::function<void()>& later : laters) reactor_->post(std::move(later));
   if (self) reactor_->retire(std::move(self));
 }
 

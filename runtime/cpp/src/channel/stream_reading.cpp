@@ -271,6 +271,7 @@ bool StreamConnection::drain(Turn& turn) {
       lock.unlock();
       receiver_->closed();
       receiver_.reset();
+      reactor_->end_connection();
       lock.lock();
     } else {
       break;

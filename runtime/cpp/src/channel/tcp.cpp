@@ -40,9 +40,19 @@ std::unique_ptr<Channel> make_tcp_channel(Ground ground) {
 
 std::shared_ptr<Connection> adopt_socket(const Ground& ground, int descriptor,
                                          const AcceptHandler& accept) {
+  Descriptor socket(descriptor);
+  if (!ground.accepted->add()) {
+    throw Error(ErrorCode::connection_error, "the node has as many connections as it may");
+  }
   auto connection = std::make_shared<StreamConnection>(
-      StreamConnection::Role::server, Descriptor(descriptor), ground.reactor, ground.options);
-  connection->start(accept(connection));
+      StreamConnection::Role::server, std::move(socket), ground.reactor, ground.options);
+  connection->set_on_gone([count = ground.accepted](StreamConnection&) { count->remove(); });
+  try {
+    connection->start(accept(connection));
+  } catch (const std::exception& error) {
+    connection->close(Error(ErrorCode::connection_error, error.what()));
+    throw;
+  }
   return connection;
 }
 

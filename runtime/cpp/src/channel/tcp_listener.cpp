@@ -74,12 +74,8 @@ class TcpListener::Port final : public Pollable,
                                 public Timer,
                                 public std::enable_shared_from_this<Port> {
  public:
-  Port(Ground ground, Descriptor socket, AcceptHandler accept,
-       std::shared_ptr<std::atomic<std::size_t>> count)
-      : ground_(std::move(ground)),
-        socket_(std::move(socket)),
-        accept_(std::move(accept)),
-        count_(std::move(count)) {}
+  Port(Ground ground, Descriptor socket, AcceptHandler accept)
+      : ground_(std::move(ground)), socket_(std::move(socket)), accept_(std::move(accept)) {}
   ~Port() { ground_.reactor->cancel(*this); }
 
   void start() { ground_.reactor->add(socket_.get(), EPOLLIN, *this); }
@@ -112,12 +108,10 @@ class TcpListener::Port final : public Pollable,
   }
 
   void take(Descriptor accepted) {
-    const std::size_t limit = ground_.options->max_connections;
-    if (limit != 0 && *count_ >= limit) return;
-    ++*count_;
+    if (!ground_.accepted->add()) return;
     auto connection = std::make_shared<StreamConnection>(
         StreamConnection::Role::server, std::move(accepted), ground_.reactor, ground_.options);
-    connection->set_on_gone([count = count_](StreamConnection&) { --*count; });
+    connection->set_on_gone([count = ground_.accepted](StreamConnection&) { count->remove(); });
     try {
       connection->start(accept_(connection));
     } catch (const std::exception& error) {
@@ -128,7 +122,6 @@ class TcpListener::Port final : public Pollable,
   const Ground ground_;
   const Descriptor socket_;
   const AcceptHandler accept_;
-  const std::shared_ptr<std::atomic<std::size_t>> count_;
   std::atomic<bool> is_stopped_{false};
 };
 
@@ -138,9 +131,8 @@ TcpListener::TcpListener(Ground ground, const Url& url, AcceptHandler accept)
     throw Error(ErrorCode::invalid_argument,
                 "port 48653 is reserved for a port sharer; choose another, or 0 for any");
   }
-  const auto count = std::make_shared<std::atomic<std::size_t>>(0);
   for (Descriptor& socket : open_all(resolve_for_listening(url.host, url.port), url.port)) {
-    ports_.push_back(std::make_shared<Port>(ground, std::move(socket), accept, count));
+    ports_.push_back(std::make_shared<Port>(ground, std::move(socket), accept));
   }
   if (ports_.empty()) {
     throw Error(ErrorCode::connection_error,

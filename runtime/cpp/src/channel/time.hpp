@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <ctime>
@@ -23,10 +24,16 @@ inline Time coarse_now() {
   return Time(std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec));
 }
 
-/// `now + span`, or never when that is out of range.
+/// As long as for ever: what a span is cut to, so that it can be added, compared and enlarged
+/// without overflow.
+inline constexpr Milliseconds longest_span = std::chrono::hours(24 * 365 * 100);
+inline constexpr Milliseconds saturated(Milliseconds span) {
+  return std::clamp(span, -longest_span, longest_span);
+}
+
+/// `now + span`, or never when the span is as long as for ever.
 inline Time after(Time now, Milliseconds span) {
-  constexpr Milliseconds longest = std::chrono::hours(24 * 365 * 100);
-  return span > longest ? never : now + span;
+  return span >= longest_span ? never : now + saturated(span);
 }
 
 /// Waits until notified or `deadline`; spurious returns are possible.

@@ -18,13 +18,6 @@ namespace {
 constexpr bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-bool is_node_name(std::string_view text) {
-  if (text.empty() || text.size() > 1024 || !is_letter(text.front())) return false;
-  return std::all_of(text.begin(), text.end(), [](char c) {
-    return is_letter(c) || is_digit(c) || c == '_' || c == '.' || c == '-';
-  });
-}
-
 std::optional<std::uint16_t> default_port(std::string_view scheme) {
   if (scheme == "rr+tcp" || scheme == "rrs+tcp") return 48653;
   if (scheme == "rr+ws" || scheme == "rrs+ws") return 80;
@@ -83,7 +76,7 @@ void read_authority(std::string_view url, std::string_view text, Url& result, bo
 void read_node(std::string_view url, std::string_view text, Url& result) {
   if (const auto id = NodeId::parse(text)) {
     result.node_id = *id;
-  } else if (is_node_name(text)) {
+  } else if (Url::is_node_name(text)) {
     result.node_name = text;
   } else {
     refuse(url, "the node is neither a node id nor a node name");
@@ -115,7 +108,7 @@ void read_query(std::string_view url, Url& result) {
       result.node_id = *id;
     } else if (key == "nodename" && !has_name) {
       has_name = true;
-      if (!is_node_name(value)) refuse(url, "the node name is not well formed");
+      if (!Url::is_node_name(value)) refuse(url, "the node name is not well formed");
       result.node_name = std::move(value);
     }
   }
@@ -140,6 +133,13 @@ void read_legacy_path(std::string_view url, Url& result) {
 }
 
 }  // namespace
+
+bool Url::is_node_name(std::string_view text) {
+  if (text.empty() || text.size() > 1024 || !is_letter(text.front())) return false;
+  return std::all_of(text.begin(), text.end(), [](char c) {
+    return is_letter(c) || is_digit(c) || c == '_' || c == '.' || c == '-';
+  });
+}
 
 Url Url::parse(std::string_view text) {
   Url result;

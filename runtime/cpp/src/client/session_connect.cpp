@@ -119,9 +119,10 @@ std::shared_ptr<Stub> Session::connect(const Url& url, const ObjectType* wanted)
     core_->attend(weak_from_this());
     return stub;
   } catch (const Error&) {
+    std::function<void(const Error&)> on_closed;
     {
       const std::lock_guard lock(mutex_);
-      options_.on_closed = nullptr;  // it never was open
+      on_closed.swap(options_.on_closed);  // it never was open
     }
     drop();
     connection_->close(Error(ErrorCode::connection_error, "the session has ended"));
@@ -305,6 +306,7 @@ void Session::close() {
     is_ending_ = true;
   }
   try {
+    const CallTerms::Suspended scopes;  // neither shorter, nor longer, nor left out
     Texts texts;
     texts.add("servicename", service_);
     call(texts.request(EntryType::disconnect_client, {}), Incoming{}, farewell_time);
@@ -355,12 +357,16 @@ void Session::lost(const Error& why, channel::Laters& laters) {
 void Session::closed() {
   std::optional<Error> why;
   std::function<void(const Error&)> on_closed;
+  // What the program has given goes when the lock has: it may own stubs, which forget themselves.
+  std::function<void(const std::string&)> on_path_released;
+  std::vector<std::shared_ptr<Subscription::Handler>> handlers;
   {
     const std::lock_guard lock(mutex_);
     why = why_closed_;
-    on_closed = std::move(options_.on_closed);
+    on_closed.swap(options_.on_closed);
+    on_path_released.swap(options_.on_path_released);
     stubs_.clear();
-    handlers_.clear();
+    handlers.swap(handlers_);
   }
   callbacks_.end();
   if (!on_closed) return;

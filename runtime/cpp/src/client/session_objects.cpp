@@ -130,8 +130,12 @@ bool Session::take_packet(const Message& message, const Entry& entry, const Memo
 }
 
 void Session::add_handler(const std::shared_ptr<client::EventSubscription>& handler) {
+  std::vector<std::shared_ptr<client::EventSubscription>> removed;  // goes when the lock has
   const std::lock_guard lock(mutex_);
-  std::erase_if(handlers_, [](const auto& item) { return !item->is_connected(); });
+  std::erase_if(handlers_, [&](const auto& item) {
+    if (!item->is_connected()) removed.push_back(item);
+    return !item->is_connected();
+  });
   handlers_.push_back(handler);
 }
 

@@ -37,6 +37,9 @@ CallTerms CallTerms::current() {
   return terms;
 }
 
+CallTerms::Suspended::Suspended() : scope_(std::exchange(innermost_scope, nullptr)) {}
+CallTerms::Suspended::~Suspended() { innermost_scope = scope_; }
+
 void Cancellation::State::add(std::shared_ptr<endpoint::Caller> caller, endpoint::Pending& call) {
   const std::lock_guard lock(mutex_);
   if (is_cancelled_) throw Error(ErrorCode::operation_cancelled, "the call was cancelled");
@@ -44,8 +47,13 @@ void Cancellation::State::add(std::shared_ptr<endpoint::Caller> caller, endpoint
 }
 
 void Cancellation::State::remove(const endpoint::Pending& call) {
+  std::shared_ptr<Session> session;  // goes when the lock has, with what the program gave it
   const std::lock_guard lock(mutex_);
-  std::erase_if(calls_, [&](const Call& item) { return item.pending == &call; });
+  const auto found = std::find_if(calls_.begin(), calls_.end(),
+                                  [&](const Call& item) { return item.pending == &call; });
+  if (found == calls_.end()) return;
+  session = std::move(found->session);
+  calls_.erase(found);
 }
 
 void Cancellation::State::cancel() {

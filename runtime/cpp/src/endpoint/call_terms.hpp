@@ -22,6 +22,18 @@ struct CallTerms {
   std::shared_ptr<Cancellation::State> cancellation;
 
   static CallTerms current();
+
+  /// While it exists the thread's scopes say nothing.
+  class Suspended {
+   public:
+    Suspended();
+    ~Suspended();
+    Suspended(const Suspended&) = delete;
+    Suspended& operator=(const Suspended&) = delete;
+
+   private:
+    const CallScope* const scope_;
+  };
 };
 
 /// The open calls that a cancellation ends. Each call takes part from before it is sent until it is

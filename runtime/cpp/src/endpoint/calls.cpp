@@ -16,10 +16,7 @@ void Caller::cancel(Pending& call, channel::Laters& laters) {
 }
 
 void Caller::post(channel::Laters laters) const {
-  for (const std::function<void()>& later : laters) {
-    if (!core()->reactor().post(later))
-      later();  // the node is going away; this thread takes it along
-  }
+  for (std::function<void()>& later : laters) core()->reactor().post(std::move(later));
 }
 
 namespace {

@@ -6,14 +6,27 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/url.hpp"
 
 namespace rr::endpoint {
 namespace {
 
 constexpr std::chrono::seconds longest_round{5};
 
-std::shared_ptr<const NodeOptions> with_id(NodeOptions options) {
+// As the rest of the runtime relies on: checked, with an id, and with times that can be added.
+std::shared_ptr<const NodeOptions> completed(NodeOptions options) {
+  if (!options.name.empty() && !Url::is_node_name(options.name)) {
+    throw Error(ErrorCode::invalid_argument,
+                "`" + options.name + "` is no name for a node: a letter, then letters, digits, " +
+                    "`_`, `.` and `-`, 1024 at most");
+  }
   if (options.id.is_any()) options.id = NodeId::random();
+  for (channel::Milliseconds* const time :
+       {&options.request_timeout, &options.connect_timeout, &options.first_message_timeout,
+        &options.heartbeat_period, &options.receive_timeout, &options.keep_alive_period,
+        &options.client_timeout}) {
+    *time = channel::saturated(*time);
+  }
   return std::make_shared<const NodeOptions>(std::move(options));
 }
 
@@ -64,8 +77,9 @@ class Core::Rounds final : public channel::Timer, public std::enable_shared_from
 };
 
 Core::Core(NodeOptions options)
-    : options_(with_id(std::move(options))),
+    : options_(completed(std::move(options))),
       reactor_(std::make_shared<channel::Reactor>(options_->max_threads)),
+      accepted_(std::make_shared<channel::AcceptedCount>(options_->max_connections)),
       types_(std::make_shared<const TypeRegistry>()) {
   const auto limit = std::min(
       {options_->keep_alive_period, options_->client_timeout, options_->generator_timeout});

@@ -35,7 +35,7 @@ class Core : public std::enable_shared_from_this<Core> {
 
   [[nodiscard]] const NodeOptions& options() const { return *options_; }
   [[nodiscard]] channel::Reactor& reactor() const { return *reactor_; }
-  [[nodiscard]] channel::Ground ground() const { return {reactor_, options_}; }
+  [[nodiscard]] channel::Ground ground() const { return {reactor_, options_, accepted_}; }
   /// Starts the threads unless they run.
   void start() { reactor_->start(); }
   /// Waits for all threads to end. No connection may be left.
@@ -67,6 +67,7 @@ class Core : public std::enable_shared_from_this<Core> {
   const SenderClock clock_;
   std::shared_ptr<const NodeOptions> options_;
   std::shared_ptr<channel::Reactor> reactor_;
+  std::shared_ptr<channel::AcceptedCount> accepted_;
   mutable std::mutex mutex_;
   std::shared_ptr<const TypeRegistry> types_;
   std::unordered_set<std::uint32_t> endpoints_;

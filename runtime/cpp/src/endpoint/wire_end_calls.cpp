@@ -65,10 +65,8 @@ void WireEnd::State::on_closed(std::function<void()> function) {
       return;
     }
   }
-  const auto call = [self = shared_from_this(), function = std::move(function)] {
-    self->guard(function);
-  };
-  if (!core_->reactor().post(call)) call();  // the node is going away; this thread takes it along
+  core_->reactor().post(
+      [self = shared_from_this(), function = std::move(function)] { self->guard(function); });
 }
 
 bool WireEnd::State::begin_close() {
@@ -110,8 +108,7 @@ bool WireEnd::State::has_to_tell() const {
 bool WireEnd::State::must_start_telling() { return !is_telling_ && (is_telling_ = has_to_tell()); }
 
 void WireEnd::State::start_telling(channel::Laters& laters) {
-  const auto work = [self = shared_from_this()] { self->tell_all(); };
-  if (!core_->reactor().post(work)) laters.emplace_back(work);
+  core_->reactor().post([self = shared_from_this()] { self->tell_all(); });
 }
 
 void WireEnd::State::tell_all() {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rr/async.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,34 +17,10 @@
 #include <thread>
 
 #include "rr/call.hpp"
+#include "runtime/cpp/src/node/testing/async_counter.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 
 namespace rr::testing {
-
-template <class Token>
-auto CounterStub::async_get_value(Token&& token) {
-  return rr_async_get<double>(rr_Counter.members[1], std::forward<Token>(token));
-}
-template <class Token>
-auto CounterStub::async_set_value(double value, Token&& token) {
-  return rr_async_set<double>(rr_Counter.members[1], std::forward<Token>(token), value);
-}
-template <class Token>
-auto CounterStub::async_add(double a, double b, Token&& token) {
-  return rr_async_call<double>(rr_Counter.members[4], std::forward<Token>(token), a, b);
-}
-template <class Token>
-auto CounterStub::async_slow(std::int32_t milliseconds, Token&& token) {
-  return rr_async_call<void>(rr_Counter.members[11], std::forward<Token>(token), milliseconds);
-}
-template <class Token>
-auto CounterStub::async_raise(std::int32_t code, const std::string& text, Token&& token) {
-  return rr_async_call<void>(rr_Counter.members[10], std::forward<Token>(token), code, text);
-}
-template <class Token>
-auto CounterStub::async_get_by_name(const std::string& index, Token&& token) {
-  return rr_async_find<CounterStub>(rr_Counter.members[17], std::forward<Token>(token), index);
-}
 
 namespace {
 
@@ -122,6 +96,33 @@ TEST(Async, ManyCallsMayBeOpenAtOnce) {
   sums.reserve(1000);
   for (int i = 0; i < 1000; ++i) sums.push_back(counter->async_add(i, 1, use_future));
   for (int i = 0; i < 1000; ++i) EXPECT_EQ(sums[static_cast<std::size_t>(i)].get(), i + 1);
+}
+
+TEST(Async, CallsOfOneClientAreHandledInTheOrderOfTheirStart) {
+  class OrderedCounter : public Counter {
+   public:
+    double add(double a, double b) override {
+      EXPECT_EQ(running.fetch_add(1), 0);
+      EXPECT_EQ(a, next.fetch_add(1));
+      running.fetch_sub(1);
+      return a + b;
+    }
+    std::atomic<int> running{0};
+    std::atomic<int> next{0};
+  };
+  const auto object = std::make_shared<OrderedCounter>();
+  Pair pair({}, {}, object);
+  auto counter = pair.connect();
+  std::vector<std::future<double>> sums;
+  for (int i = 0; i < 2000; ++i) {
+    if (i % 100 == 99) {  // a blocking call comes behind those that were started before
+      EXPECT_EQ(counter->add(i, 0), i);
+    } else {
+      sums.push_back(counter->async_add(i, 0, use_future));
+    }
+  }
+  for (auto& sum : sums) sum.get();
+  EXPECT_EQ(object->next, 2000);
 }
 
 TEST(Async, ACallWithoutAnAnswerInTimeFails) {

@@ -308,7 +308,7 @@ TEST(Calls, ACallWithoutAnAnswerInTimeFailsAndTheNextOneWorks) {
     const CallScope scope(60ms);
     EXPECT_EQ(error_of([&] { counter->slow(0); }).code(), ErrorCode::request_timeout);
   }
-  EXPECT_GE(Clock::now() - before, 55ms);
+  EXPECT_GE(Clock::now() - before, 45ms);  // the clock of deadlines is coarse
   EXPECT_LT(Clock::now() - before, 5000ms);
   object->gate.set_value();
   EXPECT_EQ(counter->add(1, 2), 3);

@@ -17,7 +17,7 @@ namespace rr {
 struct Node::State {
   std::shared_ptr<endpoint::Core> core;
   std::shared_ptr<service::Directory> directory;
-  // Threads of asynchronous connects, and whether they have done their work.
+  // Threads of run_aside(), and whether they have done their work.
   struct Worker {
     std::thread thread;
     std::shared_ptr<std::atomic<bool>> is_done;
@@ -29,6 +29,9 @@ struct Node::State {
   std::vector<std::weak_ptr<channel::Connection>> accepted;
   std::vector<std::weak_ptr<Session>> sessions;
   std::vector<Worker> workers;
+  static thread_local const State* served_aside;  // by this thread, if it is a worker
+
+  std::mutex ending;  // while a thread waits for the others to end; taken before `mutex`
 
   // Gives each new connection a receiver, and remembers it for the end.
   channel::AcceptHandler accept_handler() {
@@ -58,7 +61,66 @@ struct Node::State {
       return true;
     });
   }
+
+  void run_aside(std::function<void()> work) {
+    auto is_done = std::make_shared<std::atomic<bool>>(false);
+    const std::lock_guard lock(mutex);
+    if (is_shut_down) throw Error(ErrorCode::invalid_operation, "the node is shut down");
+    join_done();
+    std::thread thread([this, work = std::move(work), is_done]() mutable {
+      served_aside = this;
+      work();
+      work = nullptr;  // what it owns may use the node when it goes
+      *is_done = true;
+    });
+    workers.push_back({std::move(thread), std::move(is_done)});
+  }
+
+  [[nodiscard]] bool is_own_thread() const {
+    return served_aside == this || core->reactor().is_own_thread();
+  }
+  void begin_end();
+  void finish_end();
 };
+
+thread_local const Node::State* Node::State::served_aside = nullptr;
+
+// Ends what the node has to do with others. Waits for nobody.
+void Node::State::begin_end() {
+  std::vector<std::unique_ptr<channel::Listener>> old_listeners;
+  std::vector<std::weak_ptr<channel::Connection>> old_accepted;
+  std::vector<std::weak_ptr<Session>> old_sessions;
+  {
+    const std::lock_guard lock(mutex);
+    if (std::exchange(is_shut_down, true)) return;
+    old_listeners.swap(listeners);
+    old_accepted.swap(accepted);
+    old_sessions.swap(sessions);
+  }
+  old_listeners.clear();
+  for (const auto& session : old_sessions) {
+    if (const auto alive = session.lock()) alive->drop();
+  }
+  directory->close();
+  for (const auto& connection : old_accepted) {
+    if (const auto alive = connection.lock()) {
+      alive->close(Error(ErrorCode::connection_error, "the node is shut down"));
+    }
+  }
+}
+
+// Waits for the node's threads, and so for what runs on them. Not on one of them.
+void Node::State::finish_end() {
+  const std::lock_guard one_at_a_time(ending);
+  std::vector<Worker> old_workers;
+  {
+    const std::lock_guard lock(mutex);
+    old_workers.swap(workers);
+  }
+  for (Worker& worker : old_workers) worker.thread.join();
+  core->reactor().wait_for_connections();
+  core->stop();
+}
 
 Node::Node(NodeOptions options) : state_(std::make_unique<State>()) {
   state_->core = std::make_shared<endpoint::Core>(std::move(options));
@@ -66,7 +128,15 @@ Node::Node(NodeOptions options) : state_(std::make_unique<State>()) {
   state_->directory->start();
 }
 
-Node::~Node() { shutdown(); }
+Node::~Node() {
+  state_->begin_end();
+  if (!state_->is_own_thread()) {
+    state_->finish_end();
+    return;
+  }
+  // This thread cannot wait for its own end.
+  std::thread([state = std::move(state_)] { state->finish_end(); }).detach();
+}
 
 const NodeId& Node::id() const { return state_->core->options().id; }
 const std::string& Node::name() const { return state_->core->options().name; }
@@ -77,6 +147,7 @@ std::uint16_t Node::listen(std::string_view url) {
   auto listener = state_->core->channel(parsed.scheme).listen(parsed, state_->accept_handler());
   const std::uint16_t port = Url::parse(listener->urls().front()).port;
   const std::lock_guard lock(state_->mutex);
+  if (state_->is_shut_down) throw Error(ErrorCode::invalid_operation, "the node is shut down");
   state_->listeners.push_back(std::move(listener));
   return port;
 }
@@ -111,30 +182,21 @@ void Node::refuse() {
   throw Error(ErrorCode::service_error, "Invalid object type: the root object has another class");
 }
 
-Node::Opened Node::open(std::string_view url, ConnectOptions options, const ObjectType* type) {
+Node::Opened Node::open(State& state, std::string_view url, ConnectOptions options,
+                        const ObjectType* type) {
   const Url parsed = Url::parse(url);
-  if (type != nullptr) state_->core->add_definition(type->definition);
-  auto session = std::make_shared<Session>(state_->core, parsed, std::move(options));
+  if (type != nullptr) state.core->add_definition(type->definition);
+  auto session = std::make_shared<Session>(state.core, parsed, std::move(options));
   {
-    const std::lock_guard lock(state_->mutex);
-    if (state_->is_shut_down) throw Error(ErrorCode::invalid_operation, "the node is shut down");
-    State::remember(state_->sessions, session);
+    const std::lock_guard lock(state.mutex);
+    if (state.is_shut_down) throw Error(ErrorCode::invalid_operation, "the node is shut down");
+    State::remember(state.sessions, session);
   }
   auto stub = session->connect(parsed, type);
   return {std::move(session), std::move(stub)};
 }
 
-void Node::run_aside(std::function<void()> work) {
-  auto is_done = std::make_shared<std::atomic<bool>>(false);
-  const std::lock_guard lock(state_->mutex);
-  if (state_->is_shut_down) throw Error(ErrorCode::invalid_operation, "the node is shut down");
-  state_->join_done();
-  state_->workers.push_back({std::thread([work = std::move(work), is_done] {
-                               work();
-                               *is_done = true;
-                             }),
-                             is_done});
-}
+void Node::run_aside(std::function<void()> work) { state_->run_aside(std::move(work)); }
 
 void Node::adopt(int descriptor) {
   state_->core->start();
@@ -142,30 +204,8 @@ void Node::adopt(int descriptor) {
 }
 
 void Node::shutdown() {
-  std::vector<std::unique_ptr<channel::Listener>> listeners;
-  std::vector<std::weak_ptr<channel::Connection>> accepted;
-  std::vector<std::weak_ptr<Session>> sessions;
-  std::vector<State::Worker> workers;
-  {
-    const std::lock_guard lock(state_->mutex);
-    if (std::exchange(state_->is_shut_down, true)) return;
-    listeners.swap(state_->listeners);
-    accepted.swap(state_->accepted);
-    sessions.swap(state_->sessions);
-    workers.swap(state_->workers);
-  }
-  listeners.clear();
-  for (const auto& session : sessions) {
-    if (const auto alive = session.lock()) alive->drop();
-  }
-  for (State::Worker& worker : workers) worker.thread.join();
-  state_->directory->close();
-  for (const auto& connection : accepted) {
-    if (const auto alive = connection.lock()) {
-      alive->close(Error(ErrorCode::connection_error, "the node is shut down"));
-    }
-  }
-  state_->core->stop();
+  state_->begin_end();
+  if (!state_->is_own_thread()) state_->finish_end();
 }
 
 }  // namespace rr

@@ -51,6 +51,18 @@ TEST(Objects, IndexesTravelWhateverTheirBytes) {
   EXPECT_EQ(counter->get_by_name("a b.c/_Z1")->rr_path(), "counter.by_name[a%20b%2ec%2f%5fZ1]");
 }
 
+TEST(Objects, ANumberIsOneIndexHoweverItIsSpelled) {
+  Pair pair;
+  auto counter = pair.connect();
+  EXPECT_EQ(counter.find_object_type("counter.by_number[7]"), "test.counter.Counter");
+  EXPECT_EQ(counter.find_object_type("counter.by_number[007]"), "test.counter.Counter");
+  pair.service->release_path("counter.by_number[7]");
+  EXPECT_EQ(error_of([&] { pair.service->release_path("counter.by_number[007]"); }).code(),
+            ErrorCode::service_error);
+  EXPECT_EQ(counter.find_object_type("counter.by_name[007]"), "test.counter.Counter");
+  pair.service->release_path("counter.by_name[007]");
+}
+
 TEST(Objects, WhatTheServiceThrowsAtAnObjrefArrives) {
   Pair pair;
   auto counter = pair.connect();
@@ -212,6 +224,23 @@ TEST(Events, AHandlerMayCallAndDisconnectItself) {
   });
   counter->fire(3);
   EXPECT_EQ(result.get_future().get(), 3);
+}
+
+TEST(Events, AreHandledOnAThreadOfTheNodeOutsideOfCalls) {
+  Pair pair;
+  auto counter = pair.connect();
+  std::mutex mutex;
+  std::vector<std::thread::id> threads;
+  auto subscription = counter->ticked().connect([&](std::int32_t, const std::string&) {
+    const std::lock_guard lock(mutex);
+    threads.push_back(std::this_thread::get_id());
+  });
+  for (int i = 0; i < 50; ++i) counter->fire(1);  // the calls read the events
+  EXPECT_TRUE(eventually([&] {
+    const std::lock_guard lock(mutex);
+    return threads.size() == 50;
+  }));
+  EXPECT_THAT(threads, ::testing::Each(::testing::Ne(std::this_thread::get_id())));
 }
 
 TEST(Events, ASlowHandlerDoesNotHoldUpCalls) {

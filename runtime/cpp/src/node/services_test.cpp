@@ -96,6 +96,17 @@ TEST(Services, AClientCanBeSentAway) {
   EXPECT_TRUE(pair.service->clients().empty());
 }
 
+TEST(Services, OneOfSeveralClientsCanBeSentAway) {
+  Pair pair;
+  auto first = pair.connect();
+  auto second = pair.connect();
+  auto third = pair.connect();
+  const std::uint32_t kept = pair.service->clients().back().endpoint;
+  pair.service->disconnect(pair.service->clients().front().endpoint);
+  ASSERT_EQ(pair.service->clients().size(), 2U);
+  EXPECT_EQ(pair.service->clients().back().endpoint, kept);
+}
+
 TEST(Services, TheEndOfASessionIsToldOnceWhoeverEndsIt) {
   Pair pair;
   std::atomic<int> count{0};

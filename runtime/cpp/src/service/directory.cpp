@@ -40,15 +40,26 @@ std::shared_ptr<ServiceHost> Directory::add(std::string name, std::shared_ptr<Sk
     }
     services_.push_back(host);
   }
-  host->start();
+  try {
+    host->start();
+  } catch (...) {
+    remove(*host);
+    throw;
+  }
   if (index_) index_->fire_changed();
   return host;
 }
 
 void Directory::remove(const ServiceHost& host) {
+  std::shared_ptr<ServiceHost> removed;  // goes when the lock has, with its objects
   {
     const std::lock_guard lock(mutex_);
-    std::erase_if(services_, [&](const auto& other) { return other.get() == &host; });
+    const auto found = std::find_if(services_.begin(), services_.end(),
+                                    [&](const auto& other) { return other.get() == &host; });
+    if (found != services_.end()) {
+      removed = std::move(*found);
+      services_.erase(found);
+    }
   }
   if (index_) index_->fire_changed();
 }
@@ -60,7 +71,7 @@ void Directory::close() {
 std::shared_ptr<ServiceHost> Directory::find(std::string_view name) const {
   const std::lock_guard lock(mutex_);
   for (const auto& host : services_) {
-    if (host->name() == name) return host;
+    if (host->name() == name && host->is_started()) return host;
   }
   return nullptr;
 }

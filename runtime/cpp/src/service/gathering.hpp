@@ -15,7 +15,7 @@ class ServerEndpoint;
 /// Answers to the requests of one message, which leave in one message too, when the last is there.
 class Gathering {
  public:
-  Gathering(std::shared_ptr<ServerEndpoint> endpoint, MessageVersion version, std::size_t count)
+  Gathering(std::weak_ptr<ServerEndpoint> endpoint, MessageVersion version, std::size_t count)
       : endpoint_(std::move(endpoint)), version_(version), entries_(count), missing_(count) {}
 
   [[nodiscard]] MessageVersion version() const { return version_; }
@@ -24,7 +24,7 @@ class Gathering {
   void put(std::size_t place, std::vector<std::byte> entry, bool is_late = false);
 
  private:
-  const std::shared_ptr<ServerEndpoint> endpoint_;
+  const std::weak_ptr<ServerEndpoint> endpoint_;  // not kept by answers that are owed
   const MessageVersion version_;
   std::mutex mutex_;
   std::vector<std::vector<std::byte>> entries_;

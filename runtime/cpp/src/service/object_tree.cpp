@@ -10,6 +10,11 @@
 namespace rr::service {
 namespace {
 
+bool read_number(std::string_view digits, std::int32_t& number) {
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  return error == std::errc() && end == digits.data() + digits.size();
+}
+
 // How an index is handed to the objref (07, section 14).
 ObjectIndex read_index(const Member& member, const std::optional<std::string>& text) {
   ObjectIndex index;
@@ -18,10 +23,7 @@ ObjectIndex read_index(const Member& member, const std::optional<std::string>& t
       if (text) throw Error(ErrorCode::service_error, "this objref has no index");
       break;
     case IndexForm::int32: {
-      const std::string_view digits = text ? std::string_view(*text) : std::string_view();
-      const auto [end, error] =
-          std::from_chars(digits.data(), digits.data() + digits.size(), index.number);
-      if (error != std::errc() || end != digits.data() + digits.size()) {
+      if (!read_number(text ? std::string_view(*text) : std::string_view(), index.number)) {
         throw Error(ErrorCode::invalid_argument, "the index of this objref is a number");
       }
       break;
@@ -31,6 +33,16 @@ ObjectIndex read_index(const Member& member, const std::optional<std::string>& t
       break;
   }
   return index;
+}
+
+// A number has one spelling in paths, or a client could have one object remembered at any number of
+// them.
+std::string spelled_index(const ServedObject& parent, const endpoint::PathSegment& segment) {
+  const auto place = parent.members->find(segment.name);
+  std::int32_t number = 0;
+  const bool is_number = place && parent.type->members[*place].index == IndexForm::int32 &&
+                         read_number(*segment.index, number);
+  return is_number ? std::to_string(number) : *segment.index;
 }
 
 }  // namespace
@@ -54,7 +66,9 @@ std::shared_ptr<const ServedObject> ObjectTree::find(std::string_view path) {
   for (std::size_t i = 1; i < segments->size(); ++i) {
     const endpoint::PathSegment& segment = (*segments)[i];
     std::string child_path = object->path + "." + segment.name;
-    if (segment.index) child_path += "[" + endpoint::escape_index(*segment.index) + "]";
+    if (segment.index) {
+      child_path += "[" + endpoint::escape_index(spelled_index(*object, segment)) + "]";
+    }
     bool must_look = false;
     auto child = find_known(child_path, must_look);
     if (must_look) child = look_up(*object, segment, child_path);

@@ -63,7 +63,7 @@ ReplyHandle Request::defer() {
   }
   const Entry& entry = source.question.entry;
   auto state = std::make_unique<ReplyHandle::State>(ReplyHandle::State{
-      source.endpoint.shared_from_this(),
+      source.endpoint.weak_from_this(),
       {entry.type, std::string(entry.service_path), std::string(entry.member), entry.request_id,
        &source.member, source.question.gathering, source.question.place}});
   source.state = Source::State::deferred;
@@ -80,20 +80,24 @@ ReplyHandle& ReplyHandle::operator=(ReplyHandle&& other) noexcept {
 
 ReplyHandle::~ReplyHandle() {
   if (!state_) return;
-  state_->endpoint->answer_late(
-      state_->answer, Error(ErrorCode::operation_aborted, "the request was dropped unanswered"));
+  if (const auto endpoint = state_->endpoint.lock()) {
+    endpoint->answer_late(
+        state_->answer, Error(ErrorCode::operation_aborted, "the request was dropped unanswered"));
+  }
 }
 
 void ReplyHandle::fail(std::exception_ptr error) {
   const auto state = std::exchange(state_, nullptr);
   if (!state) throw Error(ErrorCode::invalid_operation, "the request has been answered already");
-  state->endpoint->answer_late(state->answer, endpoint::describe(error));
+  if (const auto endpoint = state->endpoint.lock()) {
+    endpoint->answer_late(state->answer, endpoint::describe(error));
+  }
 }
 
 void ReplyHandle::succeed(const void* result) {
   const auto state = std::exchange(state_, nullptr);
   if (!state) throw Error(ErrorCode::invalid_operation, "the request has been answered already");
-  state->endpoint->answer_late(state->answer, result);
+  if (const auto endpoint = state->endpoint.lock()) endpoint->answer_late(state->answer, result);
 }
 
 }  // namespace rr

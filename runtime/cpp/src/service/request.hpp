@@ -27,9 +27,10 @@ struct Request::Source {
   void complete();
 };
 
-/// An answer that is owed.
+/// An answer that is owed. It does not keep the session: an object that never gives it would keep
+/// itself.
 struct ReplyHandle::State {
-  std::shared_ptr<service::ServerEndpoint> endpoint;
+  std::weak_ptr<service::ServerEndpoint> endpoint;
   service::ServerEndpoint::LateAnswer answer;
 };
 

@@ -66,8 +66,12 @@ void ServerEndpoint::send_packet(const EntryHeader& header, std::span<const Para
   writer.entry(header, static_cast<std::uint32_t>(parameters.size()), 0);
   try {
     send_answer(writer, 1, header.type, false);
-  } catch (const Error&) {
-    // The client is gone or does not listen; its connection ends and with it the session.
+  } catch (const Error& error) {
+    // When the client is gone or does not listen, its connection ends and with it the session.
+    if (connection_->is_closed() || error.code() == ErrorCode::connection_error) return;
+    directory_->core()->log(LogLevel::error, "`" + std::string(header.member) + "` of `" +
+                                                 std::string(header.service_path) +
+                                                 "` was not sent to a client: " + error.what());
   }
 }
 
@@ -226,9 +230,10 @@ void Gathering::put(std::size_t place, std::vector<std::byte> entry, bool is_lat
     ++count;
   }
   // Several entries have no type of their own; one that is left alone is a session's.
-  if (count == 0) return;
+  const auto endpoint = endpoint_.lock();
+  if (count == 0 || !endpoint) return;
   try {
-    endpoint_->send_answer(writer, count, EntryType::function_call_res, !is_late);
+    endpoint->send_answer(writer, count, EntryType::function_call_res, !is_late);
   } catch (const Error&) {
     // Too large together, or the client is gone: it runs into its time limit.
   }
@@ -251,6 +256,7 @@ void ServerEndpoint::lost(const Error& why, channel::Laters& laters) {
 void ServerEndpoint::closed() {
   if (is_member_.exchange(false)) host_->remove_client(*this);
   end_members();
+  if (std::exchange(is_announced_, false)) host_->announce_end(*this);
   last_object_.reset();
 }
 

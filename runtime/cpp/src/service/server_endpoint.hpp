@@ -62,7 +62,8 @@ class ServerEndpoint final : public channel::Receiver,
   /// Who is logged in; null for nobody.
   [[nodiscard]] std::shared_ptr<const User> user() const;
 
-  /// Sends something that is not answered. Failures are ignored.
+  /// Sends something that is not answered. Throws rr::Error for values that cannot be written; what
+  /// cannot be sent is reported to the node's log, unless the client is gone.
   void send_packet(const EntryHeader& header, std::span<const Parameter> parameters,
                    const void* const* values);
   /// Puts the header of a message before an entry of the service's own, and sends it. Throws
@@ -171,6 +172,7 @@ class ServerEndpoint final : public channel::Receiver,
   ServiceClient client_;
   std::uint32_t remote_endpoint_ = 0;
   std::atomic<bool> is_member_{false};  // of the host's clients
+  bool is_announced_ = false;           // the service was told of it; with the dispatch turn
   bool is_leaving_ = false;             // has said farewell; with the dispatch turn
 
   Callbacks callbacks_{*this};

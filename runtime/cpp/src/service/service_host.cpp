@@ -19,10 +19,13 @@ void Skeleton::Places::add(std::weak_ptr<service::ServiceHost> host, std::string
 }
 
 void Skeleton::Places::remove(const service::ServiceHost& host, const std::string& path) {
+  const std::weak_ptr<const service::ServiceHost> self = host.weak_from_this();
   const std::lock_guard lock(mutex_);
+  // Compared without taking hold of any: letting go of the last one would destroy it under the
+  // lock.
   std::erase_if(places_, [&](const auto& place) {
-    const auto other = place.first.lock();
-    return !other || (other.get() == &host && place.second == path);
+    const bool is_same = !place.first.owner_before(self) && !self.owner_before(place.first);
+    return place.first.expired() || (is_same && place.second == path);
   });
 }
 
@@ -83,6 +86,7 @@ void ServiceHost::start() {
     }
   }
   attach(*objects_.root());
+  is_started_ = true;
 }
 
 void ServiceHost::attach(const ServedObject& object) {
@@ -103,7 +107,7 @@ std::map<std::string, VarValue> ServiceHost::attributes() const {
 
 void ServiceHost::set_attributes(std::map<std::string, VarValue> attributes) {
   const std::lock_guard lock(mutex_);
-  options_.attributes = std::move(attributes);
+  options_.attributes.swap(attributes);  // the old ones go when the lock has
 }
 
 std::optional<std::string> ServiceHost::root_type_for(
@@ -122,20 +126,23 @@ bool ServiceHost::may_hear(const ServerEndpoint& client) const {
 
 std::vector<ServiceClient> ServiceHost::clients() const {
   std::vector<ServiceClient> result;
-  for (const auto& client : *connected()) {
+  const auto clients = connected();
+  for (const auto& client : *clients) {
     result.push_back(client->client());
     if (const auto user = client->user()) result.back().user = user->name;
   }
   return result;
 }
 
+// The old list goes when the lock has, here and below, with what only it has held.
 bool ServiceHost::add_client(const std::shared_ptr<ServerEndpoint>& client) {
+  std::shared_ptr<const Clients> old;
   {
     const std::lock_guard lock(mutex_);
     if (is_closed_) return false;
     auto clients = std::make_shared<Clients>(*clients_);
     clients->push_back(client);
-    clients_ = std::move(clients);
+    old = std::exchange(clients_, std::move(clients));
   }
   locks_.enter(client->client().endpoint);
   notify(options_.on_client_connected, client->client());
@@ -143,16 +150,18 @@ bool ServiceHost::add_client(const std::shared_ptr<ServerEndpoint>& client) {
 }
 
 void ServiceHost::remove_client(const ServerEndpoint& client) {
+  std::shared_ptr<const Clients> old;
   {
     const std::lock_guard lock(mutex_);
     auto clients = std::make_shared<Clients>(*clients_);
-    if (std::erase_if(*clients, [&](const auto& other) { return other.get() == &client; }) == 0) {
-      return;
-    }
-    clients_ = std::move(clients);
+    std::erase_if(*clients, [&](const auto& other) { return other.get() == &client; });
+    old = std::exchange(clients_, std::move(clients));
   }
   locks_.leave(client.client().endpoint);
   monitors_->leave(client.client().endpoint);
+}
+
+void ServiceHost::announce_end(const ServerEndpoint& client) const {
   notify(options_.on_client_disconnected, client.client());
 }
 
@@ -175,7 +184,8 @@ void ServiceHost::notify(const std::function<void(const ServiceClient&)>& functi
 }
 
 void ServiceHost::disconnect(std::uint32_t endpoint) {
-  for (const auto& client : *connected()) {
+  const auto clients = connected();
+  for (const auto& client : *clients) {
     if (client->client().endpoint == endpoint) client->leave();
   }
 }
@@ -190,7 +200,8 @@ void ServiceHost::release_path(const std::string& path) {
   if (!objects_.release(canonical)) {
     throw Error(ErrorCode::service_error, "Unknown service path");
   }
-  for (const auto& client : *connected()) {
+  const auto clients = connected();
+  for (const auto& client : *clients) {
     client->release_path(canonical);
     client->wires().release(canonical);
     if (!may_hear(*client)) continue;
@@ -203,12 +214,14 @@ void ServiceHost::fire(const std::string& path, const Member& member,
                        const void* const* arguments) {
   const EntryHeader header{
       .type = EntryType::event_req, .service_path = path, .member = member.name};
-  for (const auto& client : *connected()) {
+  const auto clients = connected();
+  for (const auto& client : *clients) {
     if (may_hear(*client)) client->send_packet(header, member.parameters, arguments);
   }
 }
 
 void ServiceHost::close() {
+  const auto self = shared_from_this();  // the directory's reference may be the last
   {
     const std::lock_guard lock(mutex_);
     if (std::exchange(is_closed_, true)) return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -26,8 +27,10 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
  public:
   ServiceHost(std::shared_ptr<endpoint::Core> core, std::weak_ptr<Directory> directory,
               std::string name, std::shared_ptr<Skeleton> root, ServiceOptions options);
-  /// Attaches the root object.
+  /// Attaches the root object. Throws what that throws.
   void start();
+  /// False until then: clients may not connect yet.
+  [[nodiscard]] bool is_started() const { return is_started_; }
 
   [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] const Skeleton& root() const override { return *objects_.root()->skeleton; }
@@ -62,6 +65,8 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   void remove_client(const ServerEndpoint& client);
   /// The client of this number; null when there is none.
   [[nodiscard]] std::shared_ptr<ServerEndpoint> find_client(std::uint32_t endpoint) const;
+  /// Tells that a client has gone: on a thread of the node, behind its last request.
+  void announce_end(const ServerEndpoint& client) const;
   /// Sends an event to all clients.
   void fire(const std::string& path, const Member& member, const void* const* arguments);
 
@@ -86,6 +91,7 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   Locks locks_;
   const std::shared_ptr<Monitors> monitors_;
 
+  std::atomic<bool> is_started_{false};
   mutable std::mutex mutex_;
   std::shared_ptr<const Clients> clients_;  // replaced, never changed
   bool is_closed_ = false;

@@ -31,7 +31,8 @@ std::vector<Recorded> recorded(MessageVersion version) {
   std::vector<Recorded> result;
   for (const json& value : values) {
     if (value.contains("refused")) continue;
-    const auto same = [&](const captures::Value& one) { return one.name == value.at("name"); };
+    const std::string name = value.at("name");
+    const auto same = [&](const captures::Value& one) { return one.name == name; };
     const auto found = std::find_if(bytes.begin(), bytes.end(), same);
     if (found == bytes.end()) throw std::runtime_error("no bytes for " + value.dump());
     result.push_back({value, found->bytes});

@@ -71,13 +71,15 @@ class CounterStub : public virtual NamedStub {
   std::shared_ptr<CounterStub> get_by_name(const std::string& index);
   std::shared_ptr<Stub> get_anything();
 
-  // The asynchronous forms.
+  // The asynchronous forms, in async_counter.hpp.
   template <class Token>
   auto async_get_value(Token&& token);
   template <class Token>
   auto async_set_value(double value, Token&& token);
   template <class Token>
   auto async_add(double a, double b, Token&& token);
+  template <class Token>
+  auto async_echo(const std::string& text, Token&& token);
   template <class Token>
   auto async_slow(std::int32_t milliseconds, Token&& token);
   template <class Token>

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/channel/late_work.hpp"
+
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <utility>
+
+namespace rr::channel {
+
+struct LateWork::Queue {
+  std::mutex mutex;
+  std::condition_variable ended;
+  std::deque<std::function<void()>> work;
+  bool has_thread = false;
+  std::thread::id runner;  // the thread, once it runs
+
+  void run() {
+    std::unique_lock lock(mutex);
+    runner = std::this_thread::get_id();
+    while (!work.empty()) {
+      std::function<void()> next = std::move(work.front());
+      work.pop_front();
+      lock.unlock();
+      next();
+      next = nullptr;
+      lock.lock();
+    }
+    has_thread = false;
+    runner = {};
+    ended.notify_all();
+  }
+};
+
+LateWork::LateWork() : queue_(std::make_shared<Queue>()) {}
+
+LateWork::~LateWork() { wait(); }
+
+void LateWork::add(std::function<void()> work) {
+  const std::lock_guard lock(queue_->mutex);
+  queue_->work.push_back(std::move(work));
+  if (std::exchange(queue_->has_thread, true)) return;
+  try {
+    std::thread([queue = queue_] { queue->run(); }).detach();
+  } catch (...) {
+    queue_->has_thread = false;
+    throw;
+  }
+}
+
+void LateWork::wait() {
+  std::unique_lock lock(queue_->mutex);
+  if (queue_->runner == std::this_thread::get_id()) return;
+  queue_->ended.wait(lock, [&] { return !queue_->has_thread; });
+}
+
+bool LateWork::is_own_thread() const {
+  const std::lock_guard lock(queue_->mutex);
+  return queue_->runner == std::this_thread::get_id();
+}
+
+}  // namespace rr::channel

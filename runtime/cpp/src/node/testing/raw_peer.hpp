@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "rr/reader.hpp"
+#include "rr/writer.hpp"
+
+namespace rr::testing {
+
+/// The other end of a node's connection: bytes that no client of ours would send.
+class RawPeer {
+ public:
+  /// Connects to a port of this machine.
+  explicit RawPeer(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  }
+  /// One end of a pair of sockets; `other` becomes the other one.
+  struct Paired {
+    int& other;
+  };
+  explicit RawPeer(Paired paired) {
+    std::array<int, 2> ends{-1, -1};
+    ::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data());
+    socket_ = ends[0];
+    paired.other = ends[1];
+  }
+  ~RawPeer() { ::close(socket_); }
+  RawPeer(const RawPeer&) = delete;
+  RawPeer& operator=(const RawPeer&) = delete;
+
+  /// A question that every node answers, with `size` bytes that mean nothing.
+  void ask_for_node_info(std::size_t size = 0) {
+    Writer writer;
+    writer.reset(MessageVersion::v2);
+    const std::size_t end = writer.position();
+    const std::vector<char> filling(size, 'x');
+    if (size != 0) writer.string_element("filling", {filling.data(), filling.size()});
+    writer.entry({.type = EntryType::get_node_info}, size == 0 ? 0 : 1, end);
+    writer.message({}, 1);
+    const std::vector<std::byte> bytes = writer.copy();
+    for (std::size_t sent = 0; sent < bytes.size();) {
+      const ssize_t now = ::send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+      if (now <= 0) return;
+      sent += static_cast<std::size_t>(now);
+    }
+  }
+
+  /// The type of the first entry of the next message; null when none comes within some seconds, or
+  /// the connection ends.
+  EntryType next_type() {
+    std::array<std::byte, 10> header{};
+    if (!receive(header.data(), header.size())) return EntryType::null;
+    std::vector<std::byte> bytes(header.begin(), header.end());
+    bytes.resize(message_size(bytes, {}));
+    if (bytes.size() <= header.size() ||
+        !receive(bytes.data() + header.size(), bytes.size() - header.size())) {
+      return EntryType::null;
+    }
+    const auto message = std::make_unique<Message>();
+    Entry entry;
+    if (!read_message(bytes, {}, false, *message, nullptr) || !EntryReader(*message).next(entry)) {
+      return EntryType::null;
+    }
+    return entry.type;
+  }
+
+  /// Waits for the end of the connection, some seconds at most, and drops what comes before it.
+  bool is_closed() {
+    std::array<std::byte, 4096> bytes;
+    while (is_readable()) {
+      if (::recv(socket_, bytes.data(), bytes.size(), 0) <= 0) return true;
+    }
+    return false;
+  }
+
+ private:
+  bool is_readable() const {
+    pollfd wanted{socket_, POLLIN, 0};
+    return ::poll(&wanted, 1, 20'000) > 0;
+  }
+  bool receive(std::byte* bytes, std::size_t size) {
+    while (size != 0) {
+      if (!is_readable()) return false;
+      const ssize_t received = ::recv(socket_, bytes, size, 0);
+      if (received <= 0) return false;
+      bytes += received;
+      size -= static_cast<std::size_t>(received);
+    }
+    return true;
+  }
+
+  int socket_ = -1;
+};
+
+}  // namespace rr::testing
