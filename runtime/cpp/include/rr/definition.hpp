@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "rr/error.hpp"
+#include "rr/holding.hpp"
 #include "rr/type.hpp"
 
 /// What generated code says about its definition: constant tables, one of each per definition,
@@ -68,6 +69,8 @@ struct Member {
   const Type* generator_parameter = nullptr;
   /// objref: qualified type, empty for varobject.
   std::string_view object_type{};
+  /// pipe: how received packets are kept.
+  const Holding* holding = nullptr;
 };
 
 template <class T>
@@ -97,7 +100,11 @@ consteval Member generator(std::string_view name, std::span<const Parameter> par
 }
 template <class T>
 consteval Member pipe(std::string_view name, std::uint8_t access = plain) {
-  return {.kind = MemberKind::pipe, .access = access, .name = name, .type = &type_of<T>};
+  return {.kind = MemberKind::pipe,
+          .access = access,
+          .name = name,
+          .type = &type_of<T>,
+          .holding = &holding_of<T>};
 }
 template <class R>
 consteval Member callback(std::string_view name, std::span<const Parameter> parameters = {},

@@ -22,6 +22,8 @@ class Outbox {
   /// borrows, and keeps what has an owner.
   void add(Writer& message, std::size_t sent);
   void add(std::span<const std::byte> bytes);
+  /// Takes over the first `size` bytes of a piece of memory.
+  void add(Allocation memory, std::size_t size);
 
   /// Sends on a socket: what waits, then `more`, without blocking, in as few calls as possible.
   /// What is sent of the outbox is dropped from it. Returns the bytes of `more` that were sent, or

@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "runtime/cpp/src/channel/flusher.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 
 struct epoll_event;
@@ -85,6 +86,9 @@ class Reactor {
   /// Returns false when the threads have been stopped: then nothing is done.
   bool post(std::function<void()> work);
 
+  /// Sends what streams leave behind; see Flusher. Stops when this does.
+  [[nodiscard]] Flusher& flusher() { return flusher_; }
+
   /// Makes a timer due at `when`, unless its owner has gone by then; replaces an earlier `when`.
   void schedule(Timer& timer, std::weak_ptr<void> owner, Time when);
   void cancel(Timer& timer);
@@ -118,6 +122,7 @@ class Reactor {
   void take_out(Timer& timer);
 
   const unsigned max_threads_;
+  Flusher flusher_;
   int epoll_ = -1;
   int wake_ = -1;
 

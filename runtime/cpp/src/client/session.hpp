@@ -25,6 +25,7 @@
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/client/call_terms.hpp"
 #include "runtime/cpp/src/client/definition_text.hpp"
+#include "runtime/cpp/src/client/pipes.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
 #include "runtime/cpp/src/endpoint/pending.hpp"
 
@@ -97,6 +98,16 @@ class Session final : public channel::Receiver,
   std::string ask_object_type(const std::string& path, Milliseconds timeout);
   std::map<std::string, VarValue> ask_attributes();
 
+  [[nodiscard]] const std::shared_ptr<endpoint::Core>& core() const { return core_; }
+  [[nodiscard]] const TypeRegistry& types() const { return *types_; }
+  [[nodiscard]] channel::Connection& connection() const { return *connection_; }
+  [[nodiscard]] client::Pipes& pipes() { return pipes_; }
+  /// Sends a message of one entry, whose elements are in the writer, that is not answered: one of a
+  /// stream, or a reply to what is handled. Throws rr::Error.
+  void stream_packet(Writer& writer, const EntryHeader& header, std::string_view metadata);
+  void reply_packet(Writer& writer, const EntryHeader& header, std::uint32_t element_count,
+                    std::string_view metadata);
+
   void add_handler(const std::shared_ptr<Subscription::Handler>& handler);
   /// A stub goes away, and with it its handlers.
   void forget(const Stub& stub);
@@ -130,6 +141,8 @@ class Session final : public channel::Receiver,
   void send_numbered(const Outgoing& request, Writer& writer, const Numbers& numbers,
                      channel::Time now);
   void send(const Outgoing& request, bool has_number);
+  void write_packet_message(Writer& writer, const EntryHeader& header, std::uint32_t element_count,
+                            std::string_view metadata);
   bool take(endpoint::Pending& call);
   void fail_all(const Error& why, channel::Laters& laters);
 
@@ -182,6 +195,7 @@ class Session final : public channel::Receiver,
   std::vector<std::shared_ptr<Subscription::Handler>> handlers_;
   std::map<std::string, std::string> texts_;
   std::map<std::string, client::DefinitionOutline> outlines_;
+  client::Pipes pipes_{*this};
   std::uint16_t seen_message_id_ = 0;  // at quiet_since_
   channel::Time quiet_since_;
 };

@@ -332,6 +332,7 @@ void Session::lost(const Error& why, channel::Laters& laters) {
 }
 
 void Session::closed() {
+  pipes_.end();
   std::optional<Error> why;
   std::function<void(const Error&)> on_closed;
   {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -12,8 +14,9 @@
 namespace rr {
 
 namespace service {
+class PipePlace;
 class ServiceHost;
-}
+}  // namespace service
 
 /// Where an object can be reached: its events go to the clients of each service.
 struct Skeleton::Places {
@@ -22,10 +25,13 @@ struct Skeleton::Places {
   void add(std::weak_ptr<service::ServiceHost> host, std::string path);
   void remove(const service::ServiceHost& host, const std::string& path);
   [[nodiscard]] std::vector<std::pair<std::shared_ptr<service::ServiceHost>, std::string>> all();
+  /// What all clients' endpoints of a pipe have in common.
+  std::shared_ptr<service::PipePlace> pipe(std::string_view name);
 
  private:
   std::mutex mutex_;
   std::vector<std::pair<std::weak_ptr<service::ServiceHost>, std::string>> places_;
+  std::map<std::string, std::shared_ptr<service::PipePlace>, std::less<>> pipes_;
 };
 
 }  // namespace rr

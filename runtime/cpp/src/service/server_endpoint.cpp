@@ -32,7 +32,7 @@ ServerEndpoint::~ServerEndpoint() {
 
 // Ends a message of answers, or of one packet, with its header, and sends it.
 void ServerEndpoint::send_answer(Writer& writer, std::uint32_t entry_count, EntryType single_type,
-                                 bool is_reply) {
+                                 Way way, std::string_view metadata) {
   const endpoint::Core& core = *directory_->core();
   const auto type = static_cast<std::uint16_t>(single_type);
   const bool is_single = entry_count == 1;
@@ -41,6 +41,7 @@ void ServerEndpoint::send_answer(Writer& writer, std::uint32_t entry_count, Entr
       .receiver_node = client_.node,
       .sender_endpoint = client_.endpoint,
       .receiver_endpoint = remote_endpoint_,
+      .metadata = metadata,
       // The reference answers the question for a type twice; the number of the second
       // answer is left out here, so that all others are as it would count them.
       .message_id = draw_message_id(single_type == EntryType::object_type_name_ret ? 2 : 1),
@@ -50,11 +51,23 @@ void ServerEndpoint::send_answer(Writer& writer, std::uint32_t entry_count, Entr
     header.sender_name = core.options().name;
   }
   writer.message(header, entry_count);
-  if (is_reply) {
-    connection_->reply(writer);
-  } else {
-    connection_->send(writer);
+  switch (way) {
+    case Way::reply:
+      connection_->reply(writer);
+      break;
+    case Way::send:
+      connection_->send(writer);
+      break;
+    case Way::stream:
+      connection_->stream(writer);
+      break;
   }
+}
+
+void ServerEndpoint::stream_packet(Writer& writer, const EntryHeader& header,
+                                   std::string_view metadata) {
+  writer.entry(header, 1, 0);
+  send_answer(writer, 1, header.type, Way::stream, metadata);
 }
 
 void ServerEndpoint::send_packet(const EntryHeader& header, std::span<const Parameter> parameters,
@@ -65,18 +78,18 @@ void ServerEndpoint::send_packet(const EntryHeader& header, std::span<const Para
   if (writer.failed()) throw endpoint::latched(writer);
   writer.entry(header, static_cast<std::uint32_t>(parameters.size()), 0);
   try {
-    send_answer(writer, 1, header.type, false);
+    send_answer(writer, 1, header.type, Way::send);
   } catch (const Error&) {
     // The client is gone or does not listen; its connection ends and with it the session.
   }
 }
 
 // Sends a finished answer, or puts it where those of the same message gather.
-void ServerEndpoint::finish(const Question& question, Writer& writer) {
+void ServerEndpoint::finish(const Question& question, Writer& writer, std::string_view metadata) {
   if (question.gathering) {
     question.gathering->put(question.place, writer.copy());
   } else {
-    send_answer(writer, 1, endpoint::answer_header(question.entry).type, true);
+    send_answer(writer, 1, endpoint::answer_header(question.entry).type, Way::reply, metadata);
   }
 }
 
@@ -95,6 +108,22 @@ void ServerEndpoint::answer_empty(const Question& question) {
   writer.reset(question.gathering ? question.gathering->version() : connection_->version());
   endpoint::write_empty_answer(writer, question.entry);
   finish(question, writer);
+}
+
+Writer& ServerEndpoint::answer_writer(const Question& question) const {
+  Writer& writer = channel::thread_writer();
+  writer.reset(question.gathering ? question.gathering->version() : connection_->version());
+  return writer;
+}
+
+void ServerEndpoint::answer_elements(const Question& question, Writer& writer,
+                                     std::uint32_t element_count, std::string_view metadata) {
+  writer.entry(endpoint::answer_header(question.entry), element_count, 0);
+  finish(question, writer, metadata);
+}
+
+void ServerEndpoint::answer_nothing(const Question& question) {
+  if (question.gathering) question.gathering->put(question.place, {});
 }
 
 void ServerEndpoint::answer_error(const Question& question, const Error& error) {
@@ -152,7 +181,7 @@ void ServerEndpoint::finish_late(const LateAnswer& late, Writer& writer) {
     return;
   }
   try {
-    send_answer(writer, 1, endpoint::answer_header(question_of(late)).type, false);
+    send_answer(writer, 1, endpoint::answer_header(question_of(late)).type, Way::send);
   } catch (const Error& error) {
     if (connection_->is_closed() || error.code() == ErrorCode::connection_error) return;
     answer_late(late, error);  // the answer was too large
@@ -176,13 +205,15 @@ void Gathering::put(std::size_t place, std::vector<std::byte> entry, bool is_lat
   // Several entries have no type of their own; one that is left alone is a session's.
   if (count == 0) return;
   try {
-    endpoint_->send_answer(writer, count, EntryType::function_call_res, !is_late);
+    endpoint_->send_answer(writer, count, EntryType::function_call_res,
+                           is_late ? ServerEndpoint::Way::send : ServerEndpoint::Way::reply);
   } catch (const Error&) {
     // Too large together, or the client is gone: it runs into its time limit.
   }
 }
 
 void ServerEndpoint::leave() {
+  pipes_.end();
   if (is_member_.exchange(false)) host_->remove_client(*this);
   connection_->close_after(close_delay);
 }
@@ -190,6 +221,7 @@ void ServerEndpoint::leave() {
 void ServerEndpoint::lost(const Error& /*why*/, channel::Laters& /*laters*/) {}
 
 void ServerEndpoint::closed() {
+  pipes_.end();
   if (is_member_.exchange(false)) host_->remove_client(*this);
   last_object_.reset();
 }

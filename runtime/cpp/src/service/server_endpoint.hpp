@@ -19,6 +19,7 @@
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
 #include "runtime/cpp/src/service/object_tree.hpp"
+#include "runtime/cpp/src/service/pipes.hpp"
 
 namespace rr::service {
 
@@ -54,6 +55,11 @@ class ServerEndpoint final : public channel::Receiver,
   /// Sends something that is not answered. Failures are ignored.
   void send_packet(const EntryHeader& header, std::span<const Parameter> parameters,
                    const void* const* values);
+  /// Sends a message of one entry, whose elements are in the writer, that is not answered: one of a
+  /// stream. Throws rr::Error.
+  void stream_packet(Writer& writer, const EntryHeader& header, std::string_view metadata);
+  /// The object at a path is released.
+  void release(std::string_view path) { pipes_.release(path); }
   /// Ends the session, and soon the connection.
   void leave();
 
@@ -61,6 +67,13 @@ class ServerEndpoint final : public channel::Receiver,
   void answer_value(const Question& question, std::string_view name, const Type& type,
                     const void* value);
   void answer_empty(const Question& question);
+  /// An answer whose elements are in the writer.
+  void answer_elements(const Question& question, Writer& writer, std::uint32_t element_count,
+                       std::string_view metadata = {});
+  /// Nothing, for what is not answered.
+  void answer_nothing(const Question& question);
+  /// The thread's writer, ready for the elements of an answer.
+  [[nodiscard]] Writer& answer_writer(const Question& question) const;
   void answer_error(const Question& question, const Error& error);
   /// The same for an answer given later, by what is left of its question then.
   struct LateAnswer;
@@ -76,6 +89,7 @@ class ServerEndpoint final : public channel::Receiver,
 
  private:
   friend class Gathering;
+  friend class Pipes;
 
   // Special requests (special_requests.cpp)
   void handle_special(const Message& message);
@@ -101,9 +115,11 @@ class ServerEndpoint final : public channel::Receiver,
   std::shared_ptr<const ServedObject> find_object(std::string_view path);
   const Member& find_member(const ServedObject& object, std::string_view name, MemberKind kind);
 
-  void finish(const Question& question, Writer& writer);
+  void finish(const Question& question, Writer& writer, std::string_view metadata = {});
   void finish_late(const LateAnswer& late, Writer& writer);
-  void send_answer(Writer& writer, std::uint32_t entry_count, EntryType single_type, bool is_reply);
+  enum class Way : std::uint8_t { reply, send, stream };
+  void send_answer(Writer& writer, std::uint32_t entry_count, EntryType single_type, Way way,
+                   std::string_view metadata = {});
   [[nodiscard]] bool is_in_session(const Message& message) const;
   std::uint16_t draw_message_id(std::uint16_t count = 1) {
     return next_message_id_.fetch_add(count, std::memory_order_relaxed);
@@ -121,6 +137,8 @@ class ServerEndpoint final : public channel::Receiver,
 
   std::atomic<std::uint16_t> next_message_id_{0};
   std::atomic<channel::Time> last_heard_;
+
+  Pipes pipes_{*this};
 
   // The object and the member that were asked last, with the dispatch turn.
   std::string last_path_;

@@ -155,6 +155,7 @@ void ServiceHost::release_path(const std::string& path) {
     throw Error(ErrorCode::service_error, "Unknown service path");
   }
   for (const auto& client : *connected()) {
+    client->release(canonical);
     client->send_packet({.type = EntryType::service_path_released_req, .service_path = canonical},
                         {}, nullptr);
   }

@@ -84,6 +84,7 @@ void ServerEndpoint::handle_question(const Question& question) {
       is_odd(entry.type) && static_cast<ErrorCode>(entry.error) != ErrorCode::invalid_endpoint;
   if (!is_answered) {
     if (is_odd(entry.type)) leave();  // the client does not know of the session any more
+    if (entry.type == EntryType::pipe_packet_ret) pipes_.take_acknowledgements(question);
     if (question.gathering) question.gathering->put(question.place, {});
     return;
   }
@@ -110,6 +111,15 @@ void ServerEndpoint::answer_question(const Question& question) {
       break;
     case EntryType::function_call_req:
       answer_member(question, MemberKind::function);
+      break;
+    case EntryType::pipe_packet:
+      pipes_.take_packets(question);
+      break;
+    case EntryType::pipe_connect_req:
+      pipes_.connect(question);
+      break;
+    case EntryType::pipe_disconnect_req:
+      pipes_.disconnect(question);
       break;
     case EntryType::object_type_name:
       if (question.gathering) {
@@ -220,9 +230,6 @@ void ServerEndpoint::answer_member(const Question& question, MemberKind kind) {
 // Members of the kinds that are not served are as if they were not there.
 void ServerEndpoint::answer_unserved(const Question& question) {
   switch (question.entry.type) {
-    case EntryType::pipe_packet:
-    case EntryType::pipe_connect_req:
-    case EntryType::pipe_disconnect_req:
     case EntryType::wire_packet:
     case EntryType::wire_connect_req:
     case EntryType::wire_disconnect_req:

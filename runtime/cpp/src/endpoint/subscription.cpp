@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/cpp/src/client/subscription.hpp"
+#include "runtime/cpp/src/endpoint/subscription.hpp"
 
 #include <utility>
 
@@ -8,6 +8,10 @@
 namespace rr {
 
 void Subscription::Handler::call(const Arguments& arguments) {
+  run([&] { function_->call(arguments); });
+}
+
+void Subscription::Handler::run(const std::function<void()>& what) {
   {
     const std::lock_guard lock(mutex_);
     if (!is_connected_) return;
@@ -24,7 +28,7 @@ void Subscription::Handler::call(const Arguments& arguments) {
       handler.ended_.notify_all();
     }
   } const end{*this};
-  function_->call(arguments);
+  what();
 }
 
 void Subscription::Handler::disconnect() {
