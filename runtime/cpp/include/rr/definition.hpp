@@ -69,7 +69,7 @@ struct Member {
   const Type* generator_parameter = nullptr;
   /// objref: qualified type, empty for varobject.
   std::string_view object_type{};
-  /// pipe: how received packets are kept.
+  /// pipe: how received packets are kept; never null there.
   const Holding* holding = nullptr;
 };
 
