@@ -9,15 +9,14 @@ namespace rr::channel {
 
 Flusher::~Flusher() { stop(); }
 
-bool Flusher::add(std::shared_ptr<Flushable> flushable) {
+void Flusher::add(std::shared_ptr<Flushable> flushable) {
   {
     const std::lock_guard lock(mutex_);
-    if (is_stopping_) return false;
+    if (is_stopping_) return;
     due_.push_back(std::move(flushable));
     if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
   }
   wake_.notify_one();
-  return true;
 }
 
 void Flusher::stop() {

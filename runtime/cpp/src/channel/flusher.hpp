@@ -30,8 +30,8 @@ class Flusher {
   Flusher(const Flusher&) = delete;
   Flusher& operator=(const Flusher&) = delete;
 
-  /// False when it has been stopped: then nothing happens.
-  bool add(std::shared_ptr<Flushable> flushable);
+  /// Nothing happens when it has been stopped.
+  void add(std::shared_ptr<Flushable> flushable);
   /// What was added before is flushed.
   void stop();
 

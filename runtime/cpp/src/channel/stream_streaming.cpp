@@ -94,7 +94,7 @@ void StreamConnection::stream_or_queue(Writer& message) {
   }
   bool is_first = false;
   if (add_to_stream(message, is_first)) {
-    if (is_first && !reactor_->flusher().add(shared_from_this())) flush();
+    if (is_first) reactor_->flusher().add(shared_from_this());
     return;
   }
   const std::size_t size = message.size();
