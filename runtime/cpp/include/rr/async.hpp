@@ -21,6 +21,7 @@
 #include "rr/generators.hpp"
 #include "rr/memories.hpp"
 #include "rr/node.hpp"
+#include "rr/pipes.hpp"
 #include "rr/skeleton.hpp"
 #include "rr/stub.hpp"
 #include "rr/wires.hpp"
@@ -413,6 +414,60 @@ auto Wire<T>::async_poke_out(const T& value, Token&& token) {
                                      std::forward<decltype(handler)>(handler)));
       },
       token, value);
+}
+
+/// Of a packet that is waited for.
+template <class Handler, class T>
+class PacketCompletion final : public HandlerCompletion<Handler> {
+ public:
+  using HandlerCompletion<Handler>::HandlerCompletion;
+  void* result() override { return &packet_; }
+  void succeed() override {
+    this->finish(std::exception_ptr(), std::move(*static_cast<T*>(packet_.get())));
+  }
+  void fail(std::exception_ptr error) override { this->finish(std::move(error), T{}); }
+
+ private:
+  std::shared_ptr<void> packet_;
+};
+
+template <class T>
+template <class Token>
+auto PipeEndpoint<T>::async_receive(Token&& token) {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr, T)>(
+      [end = *this](auto&& handler) mutable {
+        using Handler = std::decay_t<decltype(handler)>;
+        end.start_receive(std::make_unique<PacketCompletion<Handler, T>>(
+            std::forward<decltype(handler)>(handler)));
+      },
+      token);
+}
+
+/// Of an endpoint of a pipe.
+template <class Handler, class T>
+class PipeCompletion final : public HandlerCompletion<Handler> {
+ public:
+  using HandlerCompletion<Handler>::HandlerCompletion;
+  void* result() override { return &end_; }
+  void succeed() override { this->finish(std::exception_ptr(), PipeEndpoint<T>(std::move(end_))); }
+  void fail(std::exception_ptr error) override {
+    this->finish(std::move(error), PipeEndpoint<T>());
+  }
+
+ private:
+  PipeEnd end_;
+};
+
+template <class T>
+template <class Token>
+auto Pipe<T>::async_connect(Token&& token, const PipeOptions& options) {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr, PipeEndpoint<T>)>(
+      [pipe = *this](auto&& handler, const PipeOptions& wishes) mutable {
+        using Handler = std::decay_t<decltype(handler)>;
+        pipe.start_connect(wishes, std::make_unique<PipeCompletion<Handler, T>>(
+                                       std::forward<decltype(handler)>(handler)));
+      },
+      token, options);
 }
 
 /// Connects as Node::connect does, on a thread of its own. Signature: void(std::exception_ptr,

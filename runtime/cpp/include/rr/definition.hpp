@@ -69,7 +69,7 @@ struct Member {
   const Type* generator_parameter = nullptr;
   /// objref: qualified type, empty for varobject.
   std::string_view object_type{};
-  /// wire: how its values are kept.
+  /// pipe, wire: how values that arrive are kept; never null there.
   const Holding* holding = nullptr;
 };
 
@@ -100,7 +100,11 @@ consteval Member generator(std::string_view name, std::span<const Parameter> par
 }
 template <class T>
 consteval Member pipe(std::string_view name, std::uint8_t access = plain) {
-  return {.kind = MemberKind::pipe, .access = access, .name = name, .type = &type_of<T>};
+  return {.kind = MemberKind::pipe,
+          .access = access,
+          .name = name,
+          .type = &type_of<T>,
+          .holding = &holding_of<T>};
 }
 template <class R>
 consteval Member callback(std::string_view name, std::span<const Parameter> parameters = {},

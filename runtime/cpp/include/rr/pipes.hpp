@@ -29,7 +29,7 @@ enum class WhenFull : std::uint8_t {
 
 /// One end of a pipe endpoint, whatever its packets are. Copies are handles of the same end, which
 /// stays connected until it is closed, its session ends or its object is released. Any thread may
-/// use it.
+/// use it. Packets that have arrived before can be received from a closed end too.
 class PipeEnd {
  public:
   PipeEnd() = default;
@@ -41,14 +41,17 @@ class PipeEnd {
   [[nodiscard]] bool is_unreliable() const;
   /// On the service's side: number of the client's endpoint in this node. 0 on the client's side.
   [[nodiscard]] std::uint32_t client() const;
-  /// Called once when the end is closed, whoever closed it, on a thread of the node.
+  /// Called once when the end is closed, whoever closed it, on a thread of the node, behind the
+  /// packets that a function gets.
   void on_closed(std::function<void()> function);
   /// Packets that wait to be received.
   [[nodiscard]] std::size_t available() const;
   /// Waits until a packet is there. False when the time was over, or the end closed, before.
   [[nodiscard]] bool wait(std::chrono::milliseconds limit) const;
-  /// At most so many packets wait to be received (65,536, close).
-  void set_queue_limit(std::size_t packets, WhenFull when_full = WhenFull::close);
+  /// At most so many packets wait to be received, and so many bytes of them as they have travelled,
+  /// but always one (65,536, 64 MiB, close).
+  void set_queue_limit(std::size_t packets, WhenFull when_full = WhenFull::close,
+                       std::size_t bytes = std::size_t{64} * 1024 * 1024);
   /// Packets that were lost because the queue was full.
   [[nodiscard]] std::size_t lost_count() const;
   /// Whether packets are acknowledged; then on_acknowledged gets their numbers, and
@@ -56,6 +59,11 @@ class PipeEnd {
   void ask_for_acknowledgements(bool on = true);
   void on_acknowledged(std::function<void(std::uint32_t)> function);
   [[nodiscard]] std::size_t unacknowledged() const;
+  /// Waits until at most so many bytes of the connection wait to be sent: what who sends more than
+  /// the other side takes does before each packet. False when the time was over, or the end closed,
+  /// before.
+  [[nodiscard]] bool wait_sent(std::chrono::milliseconds limit,
+                               std::size_t bytes = std::size_t{256} * 1024) const;
 
   struct State;  // internal
   explicit PipeEnd(std::shared_ptr<State> state) : state_(std::move(state)) {}
@@ -70,8 +78,10 @@ class PipeEnd {
   /// is full; data_type_error for what may not travel).
   std::uint32_t send(const void* value);
   /// While there is a function, packets go to it, in order, on a thread of the node, and none
-  /// waits.
+  /// waits. The newest one counts.
   Subscription on_received(std::function<void(std::shared_ptr<void>)> function);
+  /// The completion gets the next packet; its result is a shared_ptr<void>.
+  void start_receive(std::unique_ptr<Completion> completion);
   [[noreturn]] static void throw_no_packet();  // invalid_operation
 
   std::shared_ptr<State> state_;
@@ -107,10 +117,14 @@ class PipeEndpoint : public PipeEnd {
     if (!packet) return std::nullopt;
     return *static_cast<const T*>(packet.get());
   }
+  /// Completes with the next packet, or fails with invalid_operation when the end is closed before
+  /// one comes: void(std::exception_ptr, T). Defined in rr/async.hpp.
+  template <class Token>
+  auto async_receive(Token&& token);
   /// Calls `function(T)` for packets, those that wait first, instead of keeping them.
   template <class Function>
   Subscription on_packet(Function function) {
-    return on_received([function = std::move(function)](std::shared_ptr<void> packet) {
+    return on_received([function = std::move(function)](std::shared_ptr<void> packet) mutable {
       function(std::move(*static_cast<T*>(packet.get())));
     });
   }
@@ -118,7 +132,7 @@ class PipeEndpoint : public PipeEnd {
 
 struct PipeOptions {
   std::int32_t index = -1;  ///< wanted; the service decides, and -1 leaves it to it
-  bool unreliable = false;  ///< asked for; the pipe must be declared so
+  bool unreliable = true;   ///< asked for if the pipe is declared so
 };
 
 /// A pipe of an object on another node, without its type.
@@ -127,6 +141,8 @@ class PipeMember {
   PipeMember(Stub& stub, const Member& member, const Holding& holding)
       : stub_(&stub), member_(&member), holding_(&holding) {}
   PipeEnd connect_end(const PipeOptions& options);
+  /// The completion's result is a PipeEnd.
+  void start_connect(const PipeOptions& options, std::unique_ptr<Completion> completion);
 
   Stub* stub_;
   const Member* member_;
@@ -143,12 +159,19 @@ class Pipe : public PipeMember {
   PipeEndpoint<T> connect(const PipeOptions& options = {}) {
     return PipeEndpoint<T>(connect_end(options));
   }
+  /// void(std::exception_ptr, PipeEndpoint<T>). Defined in rr/async.hpp.
+  template <class Token>
+  auto async_connect(Token&& token, const PipeOptions& options = {});
 };
 
 /// A pipe that an object offers, without its type. What is set up here is kept by the object.
 class PipeServerBase {
  public:
   [[nodiscard]] std::size_t endpoint_count() const;
+  /// PipeEnd::wait_sent for all endpoints, in the same time together. True when none keeps it
+  /// waiting, closed ones included.
+  [[nodiscard]] bool wait_sent(std::chrono::milliseconds limit,
+                               std::size_t bytes = std::size_t{256} * 1024) const;
   /// For send_all: endpoints with more unacknowledged packets are passed over. 0: packets are not
   /// acknowledged and nobody is passed over (the default); see PipeEnd for single endpoints.
   void set_backlog_limit(std::size_t packets) const;

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -98,6 +99,14 @@ class Connection {
   virtual void send_newest(Writer& message, const Newest& newest, Time now) = 0;
   /// A number for a stream of such messages.
   std::uint64_t new_stream() { return next_stream_.fetch_add(1, std::memory_order_relaxed); }
+  /// The same for one of a stream of messages. It leaves at once, unless this thread has sent
+  /// others a moment ago: then together with those that follow, not much later. Never closes the
+  /// connection before it returns, so that it may be called under a lock. Throws rr::Error:
+  /// buffer_limit_violation when so much waits to be sent that nothing was done; as above.
+  virtual void stream(Writer& message) = 0;
+  /// Waits until at most so many bytes wait to be sent. False when that was not so in time, or the
+  /// connection is gone.
+  virtual bool wait_sent(std::size_t bytes, Time deadline) = 0;
   /// The same for an answer, from Receiver::handle(): it leaves together with other answers to what
   /// one receive has brought. Throws only when it is too large.
   virtual void reply(Writer& message) = 0;

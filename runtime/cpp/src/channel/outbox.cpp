@@ -13,7 +13,9 @@
 namespace rr::channel {
 namespace {
 
+// New segments are as large as what waits already, within these bounds.
 constexpr std::size_t smallest_segment = 4096;
+constexpr std::size_t largest_segment = 64 * 1024;
 constexpr std::size_t pieces_at_once = 64;
 
 iovec as_iovec(const std::byte* data, std::size_t size) {
@@ -37,7 +39,7 @@ std::ptrdiff_t send_pieces(int socket, std::span<iovec> pieces) {
 
 void Outbox::add(std::span<const std::byte> bytes) {
   if (bytes.empty()) return;
-  size_ += bytes.size();
+  const std::size_t waiting = std::exchange(size_, size_ + bytes.size());
   if (!empty() && !segments_.back().is_alone && segments_.back().room >= bytes.size()) {
     Segment& last = segments_.back();
     std::memcpy(const_cast<std::byte*>(last.data) + last.size, bytes.data(), bytes.size());
@@ -45,11 +47,17 @@ void Outbox::add(std::span<const std::byte> bytes) {
     last.room -= bytes.size();
     return;
   }
-  const std::size_t capacity = std::max(smallest_segment, bytes.size());
+  const std::size_t capacity =
+      std::max(std::clamp(waiting, smallest_segment, largest_segment), bytes.size());
   Allocation memory = allocate(capacity);
   std::memcpy(memory.bytes, bytes.data(), bytes.size());
   segments_.push_back(
       {std::move(memory.owner), memory.bytes, bytes.size(), capacity - bytes.size()});
+}
+
+void Outbox::add(Allocation memory, std::size_t size) {
+  segments_.push_back({std::move(memory.owner), memory.bytes, size, 0});
+  size_ += size;
 }
 
 void Outbox::add(Writer& message, std::size_t sent) {

@@ -26,6 +26,8 @@ class Outbox {
   /// Takes a whole message in place of one of the same stream that waits, unless it is the older of
   /// the two: then it is dropped.
   void add_newest(Writer& message, std::uint64_t stream, std::int64_t time);
+  /// Takes over the first `size` bytes of a piece of memory.
+  void add(Allocation memory, std::size_t size);
 
   /// Sends on a socket: what waits, then `more`, without blocking, in as few calls as possible.
   /// What is sent of the outbox is dropped from it. Returns the bytes of `more` that were sent, or

@@ -67,6 +67,7 @@ void Reactor::start() {
 }
 
 void Reactor::stop() {
+  flusher_.stop();
   std::list<std::thread> threads;
   {
     const std::lock_guard lock(mutex_);

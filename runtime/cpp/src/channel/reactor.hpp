@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "runtime/cpp/src/channel/flusher.hpp"
 #include "runtime/cpp/src/channel/late_work.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 
@@ -93,6 +94,9 @@ class Reactor {
   /// Waits until there is none. Not from a thread of the reactor.
   void wait_for_connections();
 
+  /// Sends what streams leave behind; see Flusher. Stops when this does.
+  [[nodiscard]] Flusher& flusher() { return flusher_; }
+
   /// Makes a timer due at `when`, unless its owner has gone by then; replaces an earlier `when`.
   void schedule(Timer& timer, std::weak_ptr<void> owner, Time when);
   void cancel(Timer& timer);
@@ -126,6 +130,7 @@ class Reactor {
   void take_out(Timer& timer);
 
   const unsigned max_threads_;
+  Flusher flusher_;
   int epoll_ = -1;
   int wake_ = -1;
 

@@ -12,6 +12,7 @@
 #include "rr/options.hpp"
 #include "runtime/cpp/src/channel/capabilities.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
+#include "runtime/cpp/src/channel/flusher.hpp"
 #include "runtime/cpp/src/channel/inbox.hpp"
 #include "runtime/cpp/src/channel/outbox.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
@@ -34,6 +35,7 @@ namespace rr::channel {
 /// millisecond puts it back under watch when calls have ceased.
 class StreamConnection final : public Connection,
                                public Pollable,
+                               public Flushable,
                                public std::enable_shared_from_this<StreamConnection> {
  public:
   enum class Role : std::uint8_t { client, server };
@@ -57,6 +59,8 @@ class StreamConnection final : public Connection,
   using Connection::send;
   void send(Writer& message, Time now) override;
   void send_newest(Writer& message, const Newest& newest, Time now) override;
+  void stream(Writer& message) override;
+  bool wait_sent(std::size_t bytes, Time deadline) override;
   void reply(Writer& message) override;
   void claim(Waiter& waiter) override;
   void wait(Waiter& waiter, Time deadline, Time now) override;
@@ -74,6 +78,7 @@ class StreamConnection final : public Connection,
 
   void on_ready(std::uint32_t events) override;
   void on_stuck() override { flush(); }
+  void flush_streamed() override { flush(); }
 
  private:
   enum class Received { some, nothing, end };
@@ -99,11 +104,18 @@ class StreamConnection final : public Connection,
     StreamConnection& connection_;
   };
 
-  // Sending (stream_sending.cpp)
+  // Sending (stream_sending.cpp, stream_streaming.cpp)
   void check_size(const Writer& message) const;
   void send(Writer& message, Time now, const Newest* newest);
   void send_or_queue(Writer& message, Time now, const Newest* newest);
-  void send_with_strings(Writer& message, Time now, const Newest* newest);
+  [[nodiscard]] bool has_strings() const;
+  [[nodiscard]] std::vector<std::byte> with_strings(Writer& message) const;
+  bool send_under_lock(Writer& message, Time now, const Newest* newest, bool& has_rest);
+  bool add_to_stream(Writer& message, bool& is_first);
+  void stream_or_queue(Writer& message);
+  void take_streamed();
+  void note_waiting();
+  [[nodiscard]] std::size_t waiting_bytes() const;
   [[noreturn]] void fail_sending();
   void flush();
   void watch_for_room();
@@ -202,6 +214,13 @@ class StreamConnection final : public Connection,
   std::mutex sending_;
   Outbox outbox_;                        // under sending_
   std::atomic<bool> has_unsent_{false};  // the socket took not all
+  std::atomic<std::size_t> outbox_bytes_{0};
+
+  std::mutex streaming_;  // after sending_
+  Allocation streamed_;   // messages that follow the outbox; under streaming_, as the next two
+  std::size_t streamed_size_ = 0;
+  Time last_streamed_{};
+  std::atomic<std::size_t> streamed_bytes_{0};  // the same as streamed_size_
 
   std::atomic<Time> last_sent_;
   std::atomic<Time> last_received_;

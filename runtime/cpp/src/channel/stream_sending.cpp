@@ -30,10 +30,11 @@ void StreamConnection::send_newest(Writer& message, const Newest& newest, Time n
 
 void StreamConnection::send(Writer& message, Time now, const Newest* newest) {
   check_size(message);
-  if (message.version() == MessageVersion::v4 &&
-      (has_local_strings_.load(std::memory_order_relaxed) ||
-       has_standard_strings_.load(std::memory_order_relaxed))) {
-    send_with_strings(message, now, newest);
+  if (message.version() == MessageVersion::v4 && has_strings()) {
+    const std::vector<std::byte> coded = with_strings(message);
+    Writer writer;
+    writer.prepend_bytes(coded.data(), coded.size());
+    send_or_queue(writer, now, newest);
   } else {
     send_or_queue(message, now, newest);
   }
@@ -45,28 +46,13 @@ void StreamConnection::send_or_queue(Writer& message, Time now, const Newest* ne
     throw Error(ErrorCode::connection_error, "the connection is closed");
   }
   const std::size_t size = message.size();
-  std::ptrdiff_t sent = 0;
   bool has_rest = false;
   bool had_rest = false;
   bool is_broken = false;
   {
     const std::lock_guard lock(sending_);
     had_rest = has_unsent_.load(std::memory_order_relaxed);
-    if (!had_rest) {
-      sent = outbox_.send(socket_.get(), message.pieces());
-    }
-    last_sent_.store(now, std::memory_order_relaxed);
-    is_broken = sent < 0;
-    has_rest = !is_broken && sent != static_cast<std::ptrdiff_t>(size);
-    if (has_rest) {
-      if (newest != nullptr && sent == 0) {
-        outbox_.add_newest(message, newest->stream, newest->time);
-      } else {
-        outbox_.add(message, static_cast<std::size_t>(sent));
-      }
-      is_broken = outbox_.size() > options_->send_queue_limit;
-      has_unsent_ = true;
-    }
+    is_broken = !send_under_lock(message, now, newest, has_rest);
   }
   // A large array is not to be kept until this thread sends again.
   if (size >= Writer::attach_threshold) message.reset(message.version());
@@ -78,28 +64,53 @@ void StreamConnection::send_or_queue(Writer& message, Time now, const Newest* ne
   }
 }
 
+// Under sending_. False when the connection is broken or far too much waits.
+bool StreamConnection::send_under_lock(Writer& message, Time now, const Newest* newest,
+                                       bool& has_rest) {
+  take_streamed();
+  std::ptrdiff_t sent = 0;
+  if (!has_unsent_.load(std::memory_order_relaxed)) {
+    sent = outbox_.send(socket_.get(), message.pieces());
+  }
+  last_sent_.store(now, std::memory_order_relaxed);
+  bool is_broken = sent < 0;
+  has_rest = !is_broken && sent != static_cast<std::ptrdiff_t>(message.size());
+  if (has_rest) {
+    if (newest != nullptr && sent == 0) {
+      outbox_.add_newest(message, newest->stream, newest->time);
+    } else {
+      outbox_.add(message, static_cast<std::size_t>(sent));
+    }
+    is_broken = outbox_.size() > options_->send_queue_limit;
+    has_unsent_ = true;
+  }
+  note_waiting();
+  return !is_broken;
+}
+
 void StreamConnection::fail_sending() {
   const Error why(ErrorCode::connection_error, "the other side does not take what is sent to it");
   close(why);
   throw Error(why);
 }
 
-void StreamConnection::send_with_strings(Writer& message, Time now, const Newest* newest) {
-  const std::vector<std::byte> plain = message.copy();
-  const std::vector<std::byte> coded =
-      apply_string_table(plain, has_local_strings_, has_standard_strings_);
-  Writer writer;
-  writer.prepend_bytes(coded.data(), coded.size());
-  send_or_queue(writer, now, newest);
+bool StreamConnection::has_strings() const {
+  return has_local_strings_.load(std::memory_order_relaxed) ||
+         has_standard_strings_.load(std::memory_order_relaxed);
+}
+
+std::vector<std::byte> StreamConnection::with_strings(Writer& message) const {
+  return apply_string_table(message.copy(), has_local_strings_, has_standard_strings_);
 }
 
 void StreamConnection::reply(Writer& message) {
   try {
-    if (holds_back_answers_ && message.size() < Writer::attach_threshold && !has_local_strings_ &&
-        !has_standard_strings_) {
+    if (holds_back_answers_ && message.size() < Writer::attach_threshold && !has_strings()) {
       check_size(message);
       const std::lock_guard lock(sending_);
+      take_streamed();
       outbox_.add(message, 0);
+      note_waiting();
     } else {
       // The request came a moment ago.
       send(message, last_received_.load(std::memory_order_relaxed));
@@ -124,10 +135,12 @@ void StreamConnection::flush() {
   bool has_rest = false;
   {
     const std::lock_guard lock(sending_);
+    take_streamed();
     if (outbox_.empty() || is_closing_) return;
     is_broken = outbox_.send(socket_.get(), {}) < 0;
     has_rest = !outbox_.empty();
     has_unsent_ = has_rest;
+    note_waiting();
     last_sent_.store(coarse_now(), std::memory_order_relaxed);
   }
   if (is_broken) {

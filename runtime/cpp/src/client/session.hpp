@@ -26,6 +26,7 @@
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/client/callbacks.hpp"
 #include "runtime/cpp/src/client/definition_text.hpp"
+#include "runtime/cpp/src/client/pipes.hpp"
 #include "runtime/cpp/src/client/subscription.hpp"
 #include "runtime/cpp/src/endpoint/call_terms.hpp"
 #include "runtime/cpp/src/endpoint/calls.hpp"
@@ -123,6 +124,13 @@ class Session final : public channel::Receiver,
 
   void add_handler(const std::shared_ptr<client::EventSubscription>& handler);
   [[nodiscard]] client::Callbacks& callbacks() { return callbacks_; }
+  [[nodiscard]] client::Pipes& pipes() { return pipes_; }
+  /// Sends a message of one entry, whose elements are in the writer, that is not answered: one of a
+  /// stream, or a reply to what is handled. Throws rr::Error.
+  void stream_packet(Writer& writer, const EntryHeader& header, std::string_view metadata);
+  void reply_packet(Writer& writer, const EntryHeader& header, std::uint32_t element_count,
+                    std::string_view metadata);
+
   /// A stub goes away, and with it its handlers and the functions of its callbacks.
   void forget(const Stub& stub);
 
@@ -152,6 +160,8 @@ class Session final : public channel::Receiver,
   Numbers draw(endpoint::Pending* call, bool has_number);
   void send_numbered(const Outgoing& request, Writer& writer, const Numbers& numbers,
                      channel::Time now);
+  void write_packet_message(Writer& writer, const EntryHeader& header, std::uint32_t element_count,
+                            std::string_view metadata);
   void fail_all(const Error& why, channel::Laters& laters);
 
   // Connecting (session_connect.cpp)
@@ -208,6 +218,7 @@ class Session final : public channel::Receiver,
   client::Callbacks callbacks_;  // with a lock of its own
   std::map<std::string, std::string> texts_;
   std::map<std::string, client::DefinitionOutline> outlines_;
+  client::Pipes pipes_{*this};
   std::uint16_t seen_message_id_ = 0;  // at quiet_since_
   channel::Time quiet_since_;
 

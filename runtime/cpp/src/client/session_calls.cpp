@@ -144,6 +144,31 @@ void Session::send_newest(Writer& writer, const EntryHeader& header, std::uint32
   connection_->send_newest(writer, newest, channel::coarse_now());
 }
 
+void Session::write_packet_message(Writer& writer, const EntryHeader& header,
+                                   std::uint32_t element_count, std::string_view metadata) {
+  const Numbers numbers = draw(nullptr, false);
+  writer.entry(header, element_count, 0);
+  writer.message({.sender_node = core_->options().id,
+                  .receiver_node = remote_node_,
+                  .sender_endpoint = endpoint_,
+                  .receiver_endpoint = remote_endpoint_,
+                  .metadata = metadata,
+                  .message_id = numbers.message,
+                  .routing = false},
+                 1);
+}
+
+void Session::stream_packet(Writer& writer, const EntryHeader& header, std::string_view metadata) {
+  write_packet_message(writer, header, 1, metadata);
+  connection_->stream(writer);
+}
+
+void Session::reply_packet(Writer& writer, const EntryHeader& header, std::uint32_t element_count,
+                           std::string_view metadata) {
+  write_packet_message(writer, header, element_count, metadata);
+  connection_->reply(writer);
+}
+
 bool Session::take(endpoint::Pending& call) {
   const std::lock_guard lock(mutex_);
   return pending_.take(call);

@@ -355,6 +355,7 @@ void Session::lost(const Error& why, channel::Laters& laters) {
 }
 
 void Session::closed() {
+  pipes_.end();
   std::optional<Error> why;
   std::function<void(const Error&)> on_closed;
   // What the program has given goes when the lock has: it may own stubs, which forget themselves.

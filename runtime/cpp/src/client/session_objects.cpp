@@ -8,12 +8,12 @@
 #include "rr/type.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
 #include "runtime/cpp/src/client/session.hpp"
-#include "runtime/cpp/src/client/subscription.hpp"
 #include "runtime/cpp/src/endpoint/arguments.hpp"
 #include "runtime/cpp/src/endpoint/client_version.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
 #include "runtime/cpp/src/endpoint/requests.hpp"
 #include "runtime/cpp/src/endpoint/service_path.hpp"
+#include "runtime/cpp/src/endpoint/subscription.hpp"
 
 namespace rr {
 namespace {
@@ -113,6 +113,7 @@ void Session::release_path(std::string_view path) {
   channel::Laters laters;
   for (const auto& end : wires_.take_below(path)) end->finish(laters);
   post(std::move(laters));
+  pipes_.release(path);
   if (notify) notify(std::string(path));
 }
 
@@ -192,6 +193,15 @@ void Session::handle_entry(const Message& message, const Entry& entry, const Mem
       post(std::move(laters));
       break;
     }
+    case EntryType::pipe_packet:
+      pipes_.take_packets(message, entry, owner);
+      break;
+    case EntryType::pipe_packet_ret:
+      pipes_.take_acknowledgements(message, entry);
+      break;
+    case EntryType::pipe_closed:
+      pipes_.take_closed(message, entry);
+      break;
     default:
       if (static_cast<std::uint16_t>(entry.type) % 2 != 0) answer_request(message, entry);
       break;

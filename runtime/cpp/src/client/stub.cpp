@@ -6,8 +6,8 @@
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/client/session.hpp"
-#include "runtime/cpp/src/client/subscription.hpp"
 #include "runtime/cpp/src/endpoint/service_path.hpp"
+#include "runtime/cpp/src/endpoint/subscription.hpp"
 
 namespace rr {
 namespace {

@@ -147,7 +147,7 @@ void ServerEndpoint::answer_generator_step(const Question& question) {
       step_generator(question, decoder, generator);
     } else {
       end_generator(static_cast<ErrorCode>(entry.error), generator);
-      answer_nothing(question);
+      answer_void(question);
     }
   } catch (...) {
     generator.end();
@@ -177,7 +177,7 @@ void ServerEndpoint::step_generator(const Question& question, Decoder& decoder,
   if (result) {
     answer_value(question, "return", *generator->member->type, result.get());
   } else {
-    answer_nothing(question);
+    answer_void(question);
   }
 }
 
@@ -194,7 +194,7 @@ void ServerEndpoint::end_generator(ErrorCode wish, Generators::Use& generator) {
   }
 }
 
-void ServerEndpoint::answer_nothing(const Question& question) {
+void ServerEndpoint::answer_void(const Question& question) {
   const std::int32_t nothing = 0;  // what void looks like
   answer_value(question, "return", type_of<std::int32_t>, &nothing);
 }

@@ -15,6 +15,7 @@ namespace rr {
 
 namespace service {
 class OfferedWire;
+class PipePlace;
 class ServiceHost;
 }  // namespace service
 
@@ -25,6 +26,8 @@ struct Skeleton::Places {
   void add(std::weak_ptr<service::ServiceHost> host, std::string path);
   void remove(const service::ServiceHost& host, const std::string& path);
   [[nodiscard]] std::vector<std::pair<std::shared_ptr<service::ServiceHost>, std::string>> all();
+  /// What all clients' endpoints of a pipe have in common.
+  std::shared_ptr<service::PipePlace> pipe(std::string_view name);
 
   /// One of the object's wires, by its name.
   std::shared_ptr<service::OfferedWire> wire(const Member& member);
@@ -33,6 +36,7 @@ struct Skeleton::Places {
   std::mutex mutex_;
   std::vector<std::pair<std::weak_ptr<service::ServiceHost>, std::string>> places_;
   std::map<std::string_view, std::shared_ptr<service::OfferedWire>> wires_;
+  std::map<std::string, std::shared_ptr<service::PipePlace>, std::less<>> pipes_;
 };
 
 }  // namespace rr

@@ -32,7 +32,7 @@ ServerEndpoint::~ServerEndpoint() {
 
 // Ends a message of answers, or of one packet, with its header, and sends it.
 void ServerEndpoint::send_answer(Writer& writer, std::uint32_t entry_count, EntryType single_type,
-                                 bool is_reply) {
+                                 Way way, std::string_view metadata) {
   const endpoint::Core& core = *directory_->core();
   const auto type = static_cast<std::uint16_t>(single_type);
   const bool is_single = entry_count == 1;
@@ -41,6 +41,7 @@ void ServerEndpoint::send_answer(Writer& writer, std::uint32_t entry_count, Entr
       .receiver_node = client_.node,
       .sender_endpoint = client_.endpoint,
       .receiver_endpoint = remote_endpoint_,
+      .metadata = metadata,
       // The reference answers the question for a type twice; the number of the second
       // answer is left out here, so that all others are as it would count them.
       .message_id = draw_message_id(single_type == EntryType::object_type_name_ret ? 2 : 1),
@@ -50,11 +51,23 @@ void ServerEndpoint::send_answer(Writer& writer, std::uint32_t entry_count, Entr
     header.sender_name = core.options().name;
   }
   writer.message(header, entry_count);
-  if (is_reply) {
-    connection_->reply(writer);
-  } else {
-    connection_->send(writer);
+  switch (way) {
+    case Way::reply:
+      connection_->reply(writer);
+      break;
+    case Way::send:
+      connection_->send(writer);
+      break;
+    case Way::stream:
+      connection_->stream(writer);
+      break;
   }
+}
+
+void ServerEndpoint::stream_packet(Writer& writer, const EntryHeader& header,
+                                   std::string_view metadata) {
+  writer.entry(header, 1, 0);
+  send_answer(writer, 1, header.type, Way::stream, metadata);
 }
 
 void ServerEndpoint::send_packet(const EntryHeader& header, std::span<const Parameter> parameters,
@@ -65,7 +78,7 @@ void ServerEndpoint::send_packet(const EntryHeader& header, std::span<const Para
   if (writer.failed()) throw endpoint::latched(writer);
   writer.entry(header, static_cast<std::uint32_t>(parameters.size()), 0);
   try {
-    send_answer(writer, 1, header.type, false);
+    send_answer(writer, 1, header.type, Way::send);
   } catch (const Error& error) {
     // When the client is gone or does not listen, its connection ends and with it the session.
     if (connection_->is_closed() || error.code() == ErrorCode::connection_error) return;
@@ -76,7 +89,7 @@ void ServerEndpoint::send_packet(const EntryHeader& header, std::span<const Para
 }
 
 void ServerEndpoint::send_request(Writer& entry, EntryType type) {
-  send_answer(entry, 1, type, false);
+  send_answer(entry, 1, type, Way::send);
 }
 
 void ServerEndpoint::send_marked(Writer& writer, std::string_view metadata,
@@ -107,11 +120,11 @@ Writer& ServerEndpoint::begin_answer(const Question& question) const {
 }
 
 // Sends a finished answer, or puts it where those of the same message gather.
-void ServerEndpoint::finish(const Question& question, Writer& writer) {
+void ServerEndpoint::finish(const Question& question, Writer& writer, std::string_view metadata) {
   if (question.gathering) {
     question.gathering->put(question.place, writer.copy());
   } else {
-    send_answer(writer, 1, endpoint::answer_header(question.entry).type, true);
+    send_answer(writer, 1, endpoint::answer_header(question.entry).type, Way::reply, metadata);
   }
 }
 
@@ -143,6 +156,16 @@ void ServerEndpoint::answer_empty(const Question& question) {
   writer.reset(question.gathering ? question.gathering->version() : connection_->version());
   endpoint::write_empty_answer(writer, question.entry);
   finish(question, writer);
+}
+
+void ServerEndpoint::answer_elements(const Question& question, Writer& writer,
+                                     std::uint32_t element_count, std::string_view metadata) {
+  writer.entry(endpoint::answer_header(question.entry), element_count, 0);
+  finish(question, writer, metadata);
+}
+
+void ServerEndpoint::answer_nothing(const Question& question) {
+  if (question.gathering) question.gathering->put(question.place, {});
 }
 
 void ServerEndpoint::answer_error(const Question& question, const Error& error) {
@@ -208,7 +231,7 @@ void ServerEndpoint::finish_late(const LateAnswer& late, Writer& writer) {
     return;
   }
   try {
-    send_answer(writer, 1, endpoint::answer_header(question_of(late)).type, false);
+    send_answer(writer, 1, endpoint::answer_header(question_of(late)).type, Way::send);
   } catch (const Error& error) {
     if (connection_->is_closed() || error.code() == ErrorCode::connection_error) return;
     answer_late(late, error);  // the answer was too large
@@ -233,16 +256,14 @@ void Gathering::put(std::size_t place, std::vector<std::byte> entry, bool is_lat
   const auto endpoint = endpoint_.lock();
   if (count == 0 || !endpoint) return;
   try {
-    endpoint->send_answer(writer, count, EntryType::function_call_res, !is_late);
+    endpoint->send_answer(writer, count, EntryType::function_call_res,
+                          is_late ? ServerEndpoint::Way::send : ServerEndpoint::Way::reply);
   } catch (const Error&) {
     // Too large together, or the client is gone: it runs into its time limit.
   }
 }
 
 void ServerEndpoint::leave() {
-  channel::Laters laters;
-  wires_.end_all(laters);
-  for (const std::function<void()>& later : laters) later();
   if (is_member_.exchange(false)) host_->remove_client(*this);
   end_members();
   connection_->close_after(close_delay);
@@ -264,11 +285,17 @@ void ServerEndpoint::closed() {
 void ServerEndpoint::end_members() {
   channel::Laters laters;
   callbacks_.end("the client has left", laters);
+  wires_.end_all(laters);
   callbacks_.post(std::move(laters));
+  pipes_.end();
   generators_.end();
 }
 
-void ServerEndpoint::release_path(std::string_view path) { generators_.release_path(path); }
+void ServerEndpoint::release_path(std::string_view path) {
+  wires_.release(path);
+  pipes_.release(path);
+  generators_.release_path(path);
+}
 
 void ServerEndpoint::attend(channel::Time now) {
   const channel::Milliseconds limit = directory_->core()->options().client_timeout;

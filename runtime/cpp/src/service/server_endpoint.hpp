@@ -22,6 +22,7 @@
 #include "runtime/cpp/src/service/callbacks.hpp"
 #include "runtime/cpp/src/service/generators.hpp"
 #include "runtime/cpp/src/service/object_tree.hpp"
+#include "runtime/cpp/src/service/pipes.hpp"
 #include "runtime/cpp/src/service/wires.hpp"
 
 namespace rr::service {
@@ -74,6 +75,9 @@ class ServerEndpoint final : public channel::Receiver,
   /// Sends an entry that is not answered, with metadata in the message header; of which only the
   /// newest counts, unless `newest` is null. Throws rr::Error.
   void send_marked(Writer& writer, std::string_view metadata, const channel::Newest* newest);
+  /// Sends a message of one entry, whose elements are in the writer, that is not answered: one of a
+  /// stream. Throws rr::Error.
+  void stream_packet(Writer& writer, const EntryHeader& header, std::string_view metadata);
   /// Ends the session, and soon the connection.
   void leave();
 
@@ -87,7 +91,7 @@ class ServerEndpoint final : public channel::Receiver,
   [[nodiscard]] bool is_in_session(const Message& message) const;
   /// A writer for the elements and the entry of an answer, which finish() sends.
   Writer& begin_answer(const Question& question) const;
-  void finish(const Question& question, Writer& writer);
+  void finish(const Question& question, Writer& writer, std::string_view metadata = {});
 
   // Answers of session requests. What cannot be written throws rr::Error, and nothing is sent.
   void answer_value(const Question& question, std::string_view name, const Type& type,
@@ -95,6 +99,11 @@ class ServerEndpoint final : public channel::Receiver,
   void answer_values(const Question& question, EntryType type,
                      std::span<const Parameter> parameters, const void* const* values);
   void answer_empty(const Question& question);
+  /// An answer whose elements are in the writer.
+  void answer_elements(const Question& question, Writer& writer, std::uint32_t element_count,
+                       std::string_view metadata = {});
+  /// Nothing, for what is not answered.
+  void answer_nothing(const Question& question);
   void answer_error(const Question& question, const Error& error);
   /// The same for an answer given later, by what is left of its question then.
   struct LateAnswer;
@@ -113,6 +122,7 @@ class ServerEndpoint final : public channel::Receiver,
 
  private:
   friend class Gathering;
+  friend class Pipes;
 
   // Special requests (special_requests.cpp)
   void handle_special(const Message& message);
@@ -138,8 +148,7 @@ class ServerEndpoint final : public channel::Receiver,
   void answer_generator_step(const Question& question);
   void step_generator(const Question& question, Decoder& decoder, Generators::Use& generator);
   static void end_generator(ErrorCode wish, Generators::Use& generator);
-  void answer_nothing(const Question& question);
-  void answer_unserved(const Question& question);
+  void answer_void(const Question& question);
   // Who may do what (access.cpp)
   void check_access(const Question& question);
   void log_in(std::string_view name, const std::map<std::string, VarValue>& credentials);
@@ -159,7 +168,9 @@ class ServerEndpoint final : public channel::Receiver,
 
   void end_members();
   void finish_late(const LateAnswer& late, Writer& writer);
-  void send_answer(Writer& writer, std::uint32_t entry_count, EntryType single_type, bool is_reply);
+  enum class Way : std::uint8_t { reply, send, stream };
+  void send_answer(Writer& writer, std::uint32_t entry_count, EntryType single_type, Way way,
+                   std::string_view metadata = {});
   std::uint16_t draw_message_id(std::uint16_t count = 1) {
     return next_message_id_.fetch_add(count, std::memory_order_relaxed);
   }
@@ -182,6 +193,8 @@ class ServerEndpoint final : public channel::Receiver,
 
   std::atomic<std::uint16_t> next_message_id_{0};
   std::atomic<channel::Time> last_heard_;
+
+  Pipes pipes_{*this};
 
   // The object and the member that were asked last, with the dispatch turn.
   std::string last_path_;

@@ -203,7 +203,6 @@ void ServiceHost::release_path(const std::string& path) {
   const auto clients = connected();
   for (const auto& client : *clients) {
     client->release_path(canonical);
-    client->wires().release(canonical);
     if (!may_hear(*client)) continue;
     client->send_packet({.type = EntryType::service_path_released_req, .service_path = canonical},
                         {}, nullptr);

@@ -97,6 +97,7 @@ void ServerEndpoint::handle_question(const Question& question) {
       is_odd(entry.type) && static_cast<ErrorCode>(entry.error) != ErrorCode::invalid_endpoint;
   if (!is_answered) {
     if (is_odd(entry.type)) leave();  // the client does not know of the session any more
+    if (entry.type == EntryType::pipe_packet_ret) pipes_.take_acknowledgements(question);
     if (question.gathering) question.gathering->put(question.place, {});
     return;
   }
@@ -133,6 +134,15 @@ void ServerEndpoint::answer_question(const Question& question) {
     case EntryType::memory_get_param:
       answer_memory(question);
       break;
+    case EntryType::pipe_packet:
+      pipes_.take_packets(question);
+      break;
+    case EntryType::pipe_connect_req:
+      pipes_.connect(question);
+      break;
+    case EntryType::pipe_disconnect_req:
+      pipes_.disconnect(question);
+      break;
     case EntryType::object_type_name:
       if (question.gathering) {
         throw Error(ErrorCode::protocol_error, "Unknown request type");
@@ -160,8 +170,7 @@ void ServerEndpoint::answer_question(const Question& question) {
       wires_.answer(question);
       break;
     default:
-      answer_unserved(question);
-      break;
+      throw Error(ErrorCode::protocol_error, "Unknown request type");
   }
 }
 
@@ -226,19 +235,6 @@ void ServerEndpoint::answer_member(const Question& question, MemberKind kind) {
         "`" + std::string(member.name) + "` has thrown after it had answered: " + error.what());
   }
   source.complete();
-}
-
-// Members of the kinds that are not served are as if they were not there.
-void ServerEndpoint::answer_unserved(const Question& question) {
-  switch (question.entry.type) {
-    case EntryType::pipe_packet:
-    case EntryType::pipe_connect_req:
-    case EntryType::pipe_disconnect_req:
-      find_object(question.entry.service_path);
-      throw Error(ErrorCode::member_not_found, "Member not found");
-    default:
-      throw Error(ErrorCode::protocol_error, "Unknown request type");
-  }
 }
 
 }  // namespace rr::service

@@ -269,6 +269,7 @@ std::uint32_t ServerEndpoint::join(const std::shared_ptr<ServiceHost>& host,
 // Undoes join(): the connection stays, and another attempt may follow.
 void ServerEndpoint::quit() {
   if (is_member_.exchange(false)) host_->remove_client(*this);
+  end_members();
   if (std::exchange(is_announced_, false)) host_->announce_end(*this);
   host_.reset();
   directory_->core()->release_endpoint(client_.endpoint);

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/channel/flusher.hpp"
+
+#include <sched.h>
+
+#include <utility>
+
+namespace rr::channel {
+
+Flusher::~Flusher() { stop(); }
+
+void Flusher::add(std::shared_ptr<Flushable> flushable) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_stopping_) return;
+    due_.push_back(std::move(flushable));
+    if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+  }
+  wake_.notify_one();
+}
+
+void Flusher::stop() {
+  std::thread thread;
+  {
+    const std::lock_guard lock(mutex_);
+    is_stopping_ = true;
+    thread = std::move(thread_);
+  }
+  wake_.notify_one();
+  if (thread.joinable()) thread.join();
+}
+
+void Flusher::run() {
+  // Woken on the producer's own processor it would send one message at a time; it may wait there
+  // until the producer pauses, or has gathered enough to send itself.
+  const sched_param none{};
+  sched_setscheduler(0, SCHED_BATCH, &none);
+  std::vector<std::shared_ptr<Flushable>> due;
+  std::unique_lock lock(mutex_);
+  while (true) {
+    if (due_.empty()) {
+      if (is_stopping_) return;
+      wake_.wait(lock);
+      continue;
+    }
+    due.swap(due_);
+    lock.unlock();
+    for (const std::shared_ptr<Flushable>& flushable : due) flushable->flush_streamed();
+    due.clear();
+    lock.lock();
+  }
+}
+
+}  // namespace rr::channel

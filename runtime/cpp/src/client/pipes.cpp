@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/client/pipes.hpp"
+
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "rr/error.hpp"
+#include "rr/type.hpp"
+#include "runtime/cpp/src/channel/scratch.hpp"
+#include "runtime/cpp/src/client/call_terms.hpp"
+#include "runtime/cpp/src/client/session.hpp"
+#include "runtime/cpp/src/endpoint/values.hpp"
+
+namespace rr::client {
+namespace {
+
+constexpr std::chrono::milliseconds close_limit{500};  // 07, section 7
+// Packets that come before their endpoint is known.
+constexpr std::size_t early_packets = 1024;
+constexpr std::size_t early_bytes = std::size_t{16} * 1024 * 1024;
+
+constexpr Parameter index_parameter = parameter<std::int32_t>("index");
+
+// The elements of a request to connect.
+class ConnectRequest {
+ public:
+  explicit ConnectRequest(const Pipes::Wish& wish)
+      : index_(wish.options.index),
+        count_(wish.options.unreliable && (wish.member->access & unreliable) != 0 ? 2 : 1),
+        request_{EntryType::pipe_connect_req, wish.path, wish.member->name,
+                 std::span(parameters, count_), values_} {}
+  ConnectRequest(const ConnectRequest&) = delete;
+  ConnectRequest& operator=(const ConnectRequest&) = delete;
+  operator const Outgoing&() const { return request_; }  // NOLINT
+
+ private:
+  static constexpr Parameter parameters[] = {parameter<std::int32_t>("index"),
+                                             parameter<std::int32_t>("unreliable")};
+  const std::int32_t index_;
+  const std::int32_t is_unreliable_ = 1;
+  const std::size_t count_;
+  const void* const values_[2] = {&index_, &is_unreliable_};
+  const Outgoing request_;
+};
+
+// Of an answer that nobody cares about.
+class Ignored final : public Completion {
+ public:
+  void* result() override { return nullptr; }
+  void succeed() override {}
+  void fail(std::exception_ptr /*error*/) override {}
+};
+
+}  // namespace
+
+// A request to connect that is open: packets that come meanwhile are kept.
+class Pipes::Connecting {
+ public:
+  Connecting(Pipes& pipes, Wish what) : pipes_(pipes), wish(std::move(what)) { pipes_.begin(wish); }
+  ~Connecting() { pipes_.finish(wish); }
+  Connecting(const Connecting&) = delete;
+  Connecting& operator=(const Connecting&) = delete;
+
+  void read(Decoder& decoder, const Entry& entry) { end = pipes_.open(wish, decoder, entry); }
+
+ private:
+  Pipes& pipes_;
+
+ public:
+  const Wish wish;
+  End end;
+};
+
+// The same, with who waits for it.
+class Pipes::Opened final : public Completion {
+ public:
+  Opened(std::shared_ptr<Connecting> connecting, std::unique_ptr<Completion> completion)
+      : connecting_(std::move(connecting)), completion_(std::move(completion)) {}
+  void* result() override { return nullptr; }
+  void succeed() override {
+    *static_cast<PipeEnd*>(completion_->result()) = PipeEnd(connecting_->end);
+    completion_->succeed();
+  }
+  void fail(std::exception_ptr error) override { completion_->fail(std::move(error)); }
+
+ private:
+  const std::shared_ptr<Connecting> connecting_;
+  const std::unique_ptr<Completion> completion_;
+};
+
+PipeEnd Pipes::connect(Wish wish, std::chrono::milliseconds timeout) {
+  Connecting connecting(*this, std::move(wish));
+  session_.call(
+      ConnectRequest(connecting.wish),
+      [&](Decoder& decoder, const Message&, const Entry& entry) {
+        connecting.read(decoder, entry);
+      },
+      timeout);
+  return PipeEnd(connecting.end);
+}
+
+void Pipes::start_connect(Wish wish, std::chrono::milliseconds timeout,
+                          std::unique_ptr<Completion> completion) {
+  const auto connecting = std::make_shared<Connecting>(*this, std::move(wish));
+  session_.start(
+      ConnectRequest(connecting->wish),
+      [connecting](Decoder& decoder, const Message&, const Entry& entry) {
+        connecting->read(decoder, entry);
+      },
+      timeout, std::make_shared<Opened>(connecting, std::move(completion)));
+}
+
+void Pipes::begin(const Wish& wish) {
+  const std::lock_guard lock(mutex_);
+  Early& early = early_[Key(wish.path, wish.member->name)];
+  early.member = wish.member;
+  early.holding = wish.holding;
+  ++early.connecting;
+}
+
+void Pipes::finish(const Wish& wish) {
+  std::deque<Early::Packet> unclaimed;
+  const std::lock_guard lock(mutex_);
+  const auto early = early_.find(Key(wish.path, wish.member->name));
+  if (--early->second.connecting != 0) return;
+  unclaimed.swap(early->second.packets);
+  early_.erase(early);
+}
+
+// From the answer, on whichever thread has read it.
+Pipes::End Pipes::open(const Wish& wish, Decoder& decoder, const Entry& entry) {
+  std::int32_t index = 0;
+  endpoint::read_value(decoder, entry, "index", type_of<std::int32_t>, &index);
+  Element element;
+  const bool is_unreliable =
+      wish.options.unreliable && (wish.member->access & unreliable) != 0 &&
+      find_element(decoder, entry.elements, entry.element_count, "unreliable", element);
+  const auto end = std::make_shared<PipeEnd::State>(
+      session_.core(), std::shared_ptr<endpoint::PipeSide>(session_.shared_from_this(), this),
+      PipeEnd::State::Identity{wish.path, wish.member, wish.holding, index, is_unreliable, true});
+  bool has_room = true;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!ends_.add(end)) {
+      throw Error(ErrorCode::protocol_error, "the service has given an index of a pipe twice");
+    }
+    Early& early = early_[Key(wish.path, wish.member->name)];
+    std::erase_if(early.packets, [&](Early::Packet& packet) {
+      if (packet.index != index) return false;
+      early.bytes -= packet.size;
+      has_room = end->accept(packet.number, std::move(packet.value), packet.size) && has_room;
+      return true;
+    });
+  }
+  if (!has_room) {
+    channel::Laters later;
+    later.emplace_back([end] {
+      if (const auto side = end->side()) side->close(*end, false);
+    });
+    session_.post(std::move(later));
+  }
+  return end;
+}
+
+// Under the lock.
+bool Pipes::keep_early(const Entry& entry, const endpoint::PipePacket& packet, Decoder& decoder) {
+  const auto found = early_.find(Key(entry.service_path, entry.member));
+  if (found == early_.end()) return false;
+  Early& early = found->second;
+  if (early.packets.size() >= early_packets || early.bytes + packet.size > early_bytes) {
+    return false;
+  }
+  Early::Packet kept{packet.index, packet.number, early.holding->make(), packet.size};
+  Decoder reader(decoder.version(), decoder.strings(), decoder.owner(), decoder.types());
+  if (!early.member->type->read(reader, packet.value, kept.value.get())) return false;
+  early.bytes += packet.size;
+  early.packets.push_back(std::move(kept));
+  return true;
+}
+
+void Pipes::take_packets(const Message& message, const Entry& entry, const MemoryRef& owner) {
+  endpoint::PipeArrival arrival(message, entry, owner, *session_.types());
+  arrival.take(
+      [&](const endpoint::PipePacket& packet, Decoder& decoder) -> endpoint::PipeArrival::Taken {
+        const std::lock_guard lock(mutex_);
+        if (auto end = ends_.find(entry.service_path, entry.member, packet.index)) {
+          return {std::move(end), true};
+        }
+        return {nullptr, keep_early(entry, packet, decoder)};
+      });
+  if (arrival.has_acknowledgements()) {
+    Writer& writer = channel::thread_writer();
+    writer.reset(connection().version());
+    const std::uint32_t count = arrival.write_acknowledgements(writer);
+    session_.reply_packet(writer,
+                          {.type = EntryType::pipe_packet_ret,
+                           .service_path = entry.service_path,
+                           .member = entry.member},
+                          count, arrival.metadata());
+  }
+  arrival.deliver();
+}
+
+void Pipes::take_acknowledgements(const Message& message, const Entry& entry) {
+  if (entry.error != 0) return;  // a packet to what is not there
+  endpoint::for_each_acknowledgement(message, entry, [&](std::int32_t index, std::uint32_t number) {
+    End end;
+    {
+      const std::lock_guard lock(mutex_);
+      end = ends_.find(entry.service_path, entry.member, index);
+    }
+    if (end) end->take_acknowledgement(number);
+  });
+}
+
+void Pipes::take_closed(const Message& message, const Entry& entry) {
+  Decoder decoder(message.version, &message.strings);
+  std::int32_t index = 0;
+  endpoint::read_value(decoder, entry, "index", type_of<std::int32_t>, &index);
+  End end;
+  {
+    const std::lock_guard lock(mutex_);
+    end = ends_.find(entry.service_path, entry.member, index);
+    if (end) ends_.remove(*end);
+  }
+  if (end) end->finish();
+}
+
+void Pipes::release(std::string_view path) {
+  std::vector<End> ended;
+  {
+    const std::lock_guard lock(mutex_);
+    ended = ends_.take_below(path);
+  }
+  for (const End& end : ended) end->finish();
+}
+
+void Pipes::end() {
+  std::vector<End> ended;
+  {
+    const std::lock_guard lock(mutex_);
+    ended = ends_.take_all();
+  }
+  for (const End& end : ended) end->finish();
+}
+
+channel::Connection& Pipes::connection() const { return session_.connection(); }
+
+void Pipes::stream(Writer& writer, const EntryHeader& header, std::string_view metadata) {
+  session_.stream_packet(writer, header, metadata);
+}
+
+void Pipes::close(PipeEnd::State& end, bool may_wait) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!ends_.remove(end)) return;
+  }
+  const auto keep = session_.shared_from_this();
+  end.finish();
+  const std::int32_t index = end.identity.index;
+  const void* const values[] = {&index};
+  const Outgoing request{EntryType::pipe_disconnect_req,
+                         end.identity.path,
+                         end.identity.member->name,
+                         {&index_parameter, 1},
+                         values};
+  if (!may_wait) {
+    session_.start(request, Incoming{}, close_limit, std::make_shared<Ignored>());
+    return;
+  }
+  try {
+    session_.call(request, Incoming{}, close_limit);
+  } catch (const Error&) {
+    // Whatever the service says, it is closed here.
+  }
+}
+
+}  // namespace rr::client
+
+namespace rr {
+namespace {
+
+Session& need(const Stub& stub) {
+  if (!stub.rr_session()) {
+    throw Error(ErrorCode::invalid_operation, "the stub is not attached to a session");
+  }
+  return *stub.rr_session();
+}
+
+}  // namespace
+
+PipeEnd PipeMember::connect_end(const PipeOptions& options) {
+  return need(*stub_).pipes().connect({stub_->rr_path(), member_, holding_, options},
+                                      stub_->rr_timeout());
+}
+
+void PipeMember::start_connect(const PipeOptions& options, std::unique_ptr<Completion> completion) {
+  need(*stub_).pipes().start_connect({stub_->rr_path(), member_, holding_, options},
+                                     stub_->rr_timeout(), std::move(completion));
+}
+
+}  // namespace rr

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "rr/pipes.hpp"
+#include "rr/reader.hpp"
+#include "runtime/cpp/src/endpoint/pipe_arrival.hpp"
+#include "runtime/cpp/src/endpoint/pipe_packets.hpp"
+#include "runtime/cpp/src/endpoint/pipe_state.hpp"
+#include "runtime/cpp/src/endpoint/pipe_table.hpp"
+
+namespace rr {
+class Session;
+}
+
+namespace rr::client {
+
+/// The pipe endpoints of a client's session.
+class Pipes final : public endpoint::PipeSide {
+ public:
+  explicit Pipes(Session& session) : session_(session) {}
+
+  /// What is asked for when a pipe is connected.
+  struct Wish {
+    std::string path;
+    const Member* member = nullptr;
+    const Holding* holding = nullptr;
+    PipeOptions options;
+  };
+  PipeEnd connect(Wish wish, std::chrono::milliseconds timeout);
+  void start_connect(Wish wish, std::chrono::milliseconds timeout,
+                     std::unique_ptr<Completion> completion);
+
+  // What the service sends.
+  void take_packets(const Message& message, const Entry& entry, const MemoryRef& owner);
+  void take_acknowledgements(const Message& message, const Entry& entry);
+  void take_closed(const Message& message, const Entry& entry);
+
+  /// The object at a path has been released, and those below it.
+  void release(std::string_view path);
+  /// The session is over.
+  void end();
+
+  // From the ends
+  [[nodiscard]] channel::Connection& connection() const override;
+  void stream(Writer& writer, const EntryHeader& header, std::string_view metadata) override;
+  void close(PipeEnd::State& end, bool may_wait) override;
+
+ private:
+  class Connecting;
+  class Opened;
+  using End = std::shared_ptr<PipeEnd::State>;
+  using Key = std::pair<std::string, std::string>;
+
+  // Packets that have come before the answer that says of which endpoint they are.
+  struct Early {
+    struct Packet {
+      std::int32_t index = 0;
+      std::uint32_t number = 0;
+      std::shared_ptr<void> value;
+      std::size_t size = 0;
+    };
+    const Member* member = nullptr;
+    const Holding* holding = nullptr;
+    std::size_t connecting = 0;
+    std::deque<Packet> packets;
+    std::size_t bytes = 0;
+  };
+
+  void begin(const Wish& wish);
+  void finish(const Wish& wish);
+  End open(const Wish& wish, Decoder& decoder, const Entry& entry);
+  bool keep_early(const Entry& entry, const endpoint::PipePacket& packet, Decoder& decoder);
+
+  Session& session_;
+  std::mutex mutex_;
+  endpoint::PipeTable ends_;
+  std::map<Key, Early> early_;
+};
+
+}  // namespace rr::client

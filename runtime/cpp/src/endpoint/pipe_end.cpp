@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// What leaves one end of a pipe; and the handles of ends.
+#include <utility>
+
+#include "rr/error.hpp"
+#include "rr/type.hpp"
+#include "runtime/cpp/src/channel/scratch.hpp"
+#include "runtime/cpp/src/endpoint/errors.hpp"
+#include "runtime/cpp/src/endpoint/pipe_packets.hpp"
+#include "runtime/cpp/src/endpoint/pipe_state.hpp"
+
+namespace rr {
+namespace {
+
+[[noreturn]] void throw_closed() {
+  throw Error(ErrorCode::invalid_operation, "the pipe endpoint is closed");
+}
+
+}  // namespace
+
+// Numbers are drawn and packets sent under one lock: they leave in their order, and what cannot be
+// sent takes no number that the other side would wait for.
+template <class Write>
+std::uint32_t PipeEnd::State::send_packet(const Write& write_value) {
+  if (identity.is_client && (identity.member->access & readonly) != 0) {
+    throw Error(ErrorCode::read_only_member, "Read only pipe");
+  }
+  if (!identity.is_client && (identity.member->access & writeonly) != 0) {
+    throw Error(ErrorCode::write_only_member, "Write only pipe");
+  }
+  const bool asks = asks_.load(std::memory_order_relaxed);
+  Writer& writer = channel::thread_writer();
+  const std::lock_guard lock(sending_);
+  if (!side_) throw_closed();
+  writer.reset(side_->connection().version());
+  endpoint::write_packet(writer, index_text_, next_number_, asks, [&] { write_value(writer); });
+  if (writer.failed()) throw endpoint::latched(writer);
+  const std::string_view metadata =
+      identity.is_unreliable ? endpoint::unreliable_metadata : std::string_view();
+  if (asks) asked_.fetch_add(1, std::memory_order_relaxed);
+  try {
+    side_->stream(writer,
+                  {.type = EntryType::pipe_packet,
+                   .service_path = identity.path,
+                   .member = identity.member->name,
+                   .metadata = metadata},
+                  metadata);
+  } catch (...) {
+    if (asks) asked_.fetch_sub(1, std::memory_order_relaxed);
+    throw;
+  }
+  return next_number_++;
+}
+
+std::uint32_t PipeEnd::State::send(const void* value) {
+  return send_packet(
+      [&](Writer& writer) { identity.member->type->write(writer, "packet", value); });
+}
+
+std::uint32_t PipeEnd::State::send_written(std::span<const std::byte> element,
+                                           const MemoryRef& owner) {
+  return send_packet([&](Writer& writer) { writer.prepend_array(element, owner); });
+}
+
+MessageVersion PipeEnd::State::version() const {
+  const auto open = side();
+  if (!open) throw_closed();
+  return open->connection().version();
+}
+
+// Which one it is the function may care about; for the count they are alike, and a side that
+// acknowledges too much gains nothing.
+void PipeEnd::State::take_acknowledgement(std::uint32_t number) {
+  if (acknowledged_.load() < asked_.load()) acknowledged_.fetch_add(1);
+  std::shared_ptr<const std::function<void(std::uint32_t)>> function;
+  {
+    const std::lock_guard lock(mutex_);
+    function = acknowledged_function_;
+  }
+  if (function && *function) call([&] { (*function)(number); });
+}
+
+std::size_t PipeEnd::State::unacknowledged() const {
+  const std::uint64_t acknowledged = acknowledged_.load();
+  const std::uint64_t asked = asked_.load();
+  return asked > acknowledged ? asked - acknowledged : 0;
+}
+
+void PipeEnd::State::on_acknowledged(std::function<void(std::uint32_t)> function) {
+  std::shared_ptr<const std::function<void(std::uint32_t)>> shared =
+      std::make_shared<std::function<void(std::uint32_t)>>(std::move(function));
+  const std::lock_guard lock(mutex_);
+  acknowledged_function_.swap(shared);  // what was there before ends behind the lock
+}
+
+bool PipeEnd::State::wait_sent(std::chrono::milliseconds limit, std::size_t bytes) const {
+  const auto open = side();
+  return open && open->connection().wait_sent(bytes, channel::after(channel::Clock::now(), limit));
+}
+
+// The handles
+
+namespace {
+
+PipeEnd::State& need(const std::shared_ptr<PipeEnd::State>& state) {
+  if (!state) throw Error(ErrorCode::invalid_operation, "the pipe endpoint was never connected");
+  return *state;
+}
+
+}  // namespace
+
+void PipeEnd::close() {
+  if (!state_) return;
+  if (const auto side = state_->side()) side->close(*state_, true);
+}
+
+bool PipeEnd::is_open() const { return state_ && state_->is_open(); }
+std::int32_t PipeEnd::index() const { return need(state_).identity.index; }
+bool PipeEnd::is_unreliable() const { return need(state_).identity.is_unreliable; }
+std::uint32_t PipeEnd::client() const { return need(state_).identity.client; }
+void PipeEnd::on_closed(std::function<void()> function) {
+  need(state_).on_closed(std::move(function));
+}
+std::size_t PipeEnd::available() const { return need(state_).available(); }
+bool PipeEnd::wait(std::chrono::milliseconds limit) const { return need(state_).wait(limit); }
+void PipeEnd::set_queue_limit(std::size_t packets, WhenFull when_full, std::size_t bytes) {
+  need(state_).set_queue_limit(packets, when_full, bytes);
+}
+std::size_t PipeEnd::lost_count() const { return need(state_).lost_count(); }
+void PipeEnd::ask_for_acknowledgements(bool on) { need(state_).ask_for_acknowledgements(on); }
+void PipeEnd::on_acknowledged(std::function<void(std::uint32_t)> function) {
+  need(state_).on_acknowledged(std::move(function));
+}
+std::size_t PipeEnd::unacknowledged() const { return need(state_).unacknowledged(); }
+bool PipeEnd::wait_sent(std::chrono::milliseconds limit, std::size_t bytes) const {
+  return need(state_).wait_sent(limit, bytes);
+}
+std::shared_ptr<void> PipeEnd::take() { return need(state_).take(); }
+std::shared_ptr<const void> PipeEnd::peek() const { return need(state_).peek(); }
+std::uint32_t PipeEnd::send(const void* value) { return need(state_).send(value); }
+Subscription PipeEnd::on_received(std::function<void(std::shared_ptr<void>)> function) {
+  return need(state_).on_received(std::move(function));
+}
+void PipeEnd::start_receive(std::unique_ptr<Completion> completion) {
+  need(state_).start_receive(std::move(completion));
+}
+void PipeEnd::throw_no_packet() {
+  throw Error(ErrorCode::invalid_operation, "no packet waits to be received");
+}
+
+}  // namespace rr

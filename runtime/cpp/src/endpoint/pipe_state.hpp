@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "rr/pipes.hpp"
+#include "rr/writer.hpp"
+#include "runtime/cpp/src/channel/connection.hpp"
+#include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/endpoint/subscription.hpp"
+
+namespace rr {
+
+namespace endpoint {
+
+/// The side of a session that a pipe endpoint belongs to, client or service.
+class PipeSide {
+ public:
+  virtual ~PipeSide() = default;
+  [[nodiscard]] virtual channel::Connection& connection() const = 0;
+  /// Sends a message of one entry, whose elements are in the writer, by Connection::stream().
+  /// Throws rr::Error, then nothing was sent. May be called under a lock.
+  virtual void stream(Writer& writer, const EntryHeader& header, std::string_view metadata) = 0;
+  /// Ends an endpoint and tells the other side; waits for its answer if there is one and
+  /// `may_wait`.
+  virtual void close(PipeEnd::State& end, bool may_wait) = 0;
+};
+
+}  // namespace endpoint
+
+/// What the handles of one end share.
+struct PipeEnd::State : std::enable_shared_from_this<State> {
+ public:
+  /// What does not change.
+  struct Identity {
+    std::string path;
+    const Member* member = nullptr;
+    const Holding* holding = nullptr;
+    std::int32_t index = 0;
+    bool is_unreliable = false;
+    bool is_client = false;
+    std::uint32_t client = 0;  // on the service's side
+  };
+  State(std::shared_ptr<const endpoint::Core> core, std::shared_ptr<endpoint::PipeSide> side,
+        Identity identity);
+  virtual ~State() = default;
+
+  static const std::shared_ptr<State>& of(const PipeEnd& end) { return end.state_; }
+
+  const Identity identity;
+  /// Whether the other side may send packets; if not, they are only acknowledged.
+  [[nodiscard]] bool may_receive() const;
+
+  // Sending (pipe_end.cpp)
+  std::uint32_t send(const void* value);
+  /// The same for an element `packet` that is written already, in the connection's format.
+  std::uint32_t send_written(std::span<const std::byte> element, const MemoryRef& owner);
+  [[nodiscard]] MessageVersion version() const;
+  void take_acknowledgement(std::uint32_t number);
+  [[nodiscard]] std::size_t unacknowledged() const;
+  bool wait_sent(std::chrono::milliseconds limit, std::size_t bytes) const;
+  void ask_for_acknowledgements(bool on) { asks_.store(on, std::memory_order_relaxed); }
+  void on_acknowledged(std::function<void(std::uint32_t)> function);
+
+  // Receiving (pipe_state.cpp)
+  /// Takes a packet that has arrived. Runs no user code: deliver() does. False when the end must be
+  /// closed, because a queue is full.
+  [[nodiscard]] bool accept(std::uint32_t number, std::shared_ptr<void> value, std::size_t size);
+  /// Hands packets to who waits for them, in order. On a thread of the node.
+  void deliver();
+  void deliver_soon();
+  std::shared_ptr<void> take();
+  std::shared_ptr<const void> peek() const;
+  bool wait(std::chrono::milliseconds limit);
+  [[nodiscard]] std::size_t available() const;
+  [[nodiscard]] std::size_t lost_count() const;
+  void set_queue_limit(std::size_t packets, WhenFull when_full, std::size_t bytes);
+  Subscription on_received(std::function<void(std::shared_ptr<void>)> function);
+  void start_receive(std::unique_ptr<Completion> completion);
+
+  // The end
+  [[nodiscard]] bool is_open() const { return !is_closed_.load(std::memory_order_acquire); }
+  void on_closed(std::function<void()> function);
+  /// Ends it on this side only. False when it has ended already.
+  bool finish();
+  /// The side, while it is open.
+  [[nodiscard]] std::shared_ptr<endpoint::PipeSide> side() const;
+
+ private:
+  struct Packet {
+    std::shared_ptr<void> value;
+    std::size_t size = 0;
+  };
+  class Receiver;
+
+  template <class Write>
+  std::uint32_t send_packet(const Write& write_value);
+  [[nodiscard]] bool hold_back(std::uint32_t number, Packet packet);
+  [[nodiscard]] bool push(Packet packet);
+  Packet pop();
+  bool deliver_one(std::unique_lock<std::mutex>& lock);
+  void call(const std::function<void()>& function) const;
+
+  const std::shared_ptr<const endpoint::Core> core_;
+  const std::string index_text_;
+  std::atomic<bool> is_closed_{false};  // written under both locks
+
+  std::mutex sending_;                        // before mutex_
+  std::shared_ptr<endpoint::PipeSide> side_;  // null when closed; written under both locks
+  std::uint32_t next_number_ = 1;
+  std::atomic<bool> asks_{false};
+  std::atomic<std::uint64_t> asked_{0};
+  std::atomic<std::uint64_t> acknowledged_{0};
+
+  mutable std::mutex mutex_;
+  mutable std::condition_variable arrived_;
+  std::uint32_t expected_ = 1;
+  std::map<std::uint32_t, Packet> held_;
+  std::size_t held_bytes_ = 0;
+  std::deque<Packet> queue_;
+  std::size_t queue_bytes_ = 0;
+  std::size_t limit_;
+  std::size_t byte_limit_;
+  WhenFull when_full_ = WhenFull::close;
+  std::size_t lost_ = 0;
+  bool is_delivering_ = false;
+  std::shared_ptr<Receiver> receiver_;
+  std::deque<std::unique_ptr<Completion>> completions_;
+  std::function<void()> closed_function_;
+  std::shared_ptr<const std::function<void(std::uint32_t)>> acknowledged_function_;
+};
+
+}  // namespace rr

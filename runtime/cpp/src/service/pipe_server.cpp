@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// A pipe as the object that offers it sees it.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "rr/error.hpp"
+#include "rr/skeleton.hpp"
+#include "rr/type.hpp"
+#include "runtime/cpp/src/channel/time.hpp"
+#include "runtime/cpp/src/endpoint/errors.hpp"
+#include "runtime/cpp/src/service/pipes.hpp"
+#include "runtime/cpp/src/service/places.hpp"
+
+namespace rr {
+namespace {
+
+// A value that is written once for each message format, for all who get it.
+class Encoded {
+ public:
+  Encoded(const Member& member, const void* value) : member_(member), value_(value) {}
+
+  std::uint32_t send(PipeEnd::State& end) {
+    const MessageVersion version = end.version();
+    auto& form = forms_[version == MessageVersion::v2 ? 0 : 1];
+    if (!form) form = encode(version);
+    return end.send_written(form->bytes, form->owner);
+  }
+
+ private:
+  struct Form {
+    std::span<const std::byte> bytes;
+    MemoryRef owner;
+  };
+
+  // Short ones stay in a writer of the thread: nothing else is written there before they are sent.
+  Form encode(MessageVersion version) const {
+    thread_local std::array<Writer, 2> writers;
+    Writer& writer = writers[version == MessageVersion::v2 ? 0 : 1];
+    writer.reset(version);
+    member_.type->write(writer, "packet", value_);
+    if (writer.failed()) throw endpoint::latched(writer);
+    const auto pieces = writer.pieces();
+    if (pieces.size() == 1 && pieces[0].size < Writer::attach_threshold) {
+      return {{pieces[0].data, pieces[0].size}, {}};
+    }
+    Allocation memory = allocate(writer.size());
+    std::size_t at = 0;
+    for (const Piece& piece : pieces) {
+      std::copy(piece.data, piece.data + piece.size, memory.bytes + at);
+      at += piece.size;
+    }
+    writer.reset(version);
+    return {{memory.bytes, at}, std::move(memory.owner)};
+  }
+
+  const Member& member_;
+  const void* const value_;
+  std::array<std::optional<Form>, 2> forms_;
+};
+
+std::shared_ptr<service::PipePlace> place_of(const Skeleton& skeleton, const Member& member) {
+  return Skeleton::Places::of(skeleton).pipe(member.name);
+}
+
+}  // namespace
+
+PipeServerBase::PipeServerBase(const Skeleton& skeleton, const Member& member,
+                               const Holding& holding)
+    : skeleton_(&skeleton), member_(&member), holding_(&holding) {}
+
+std::size_t PipeServerBase::endpoint_count() const {
+  return place_of(*skeleton_, *member_)->ends()->size();
+}
+
+void PipeServerBase::set_backlog_limit(std::size_t packets) const {
+  place_of(*skeleton_, *member_)->set_backlog_limit(packets);
+}
+
+bool PipeServerBase::wait_sent(std::chrono::milliseconds limit, std::size_t bytes) const {
+  const auto ends = place_of(*skeleton_, *member_)->ends();
+  const channel::Time deadline = channel::after(channel::Clock::now(), limit);
+  bool is_sent = true;
+  for (const auto& end : *ends) {
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(deadline - channel::Clock::now());
+    const auto wait = std::max(left, std::chrono::milliseconds(0));
+    is_sent = (end->wait_sent(wait, bytes) || !end->is_open()) && is_sent;
+  }
+  return is_sent;
+}
+
+void PipeServerBase::send_all(const void* value) const {
+  if ((member_->access & writeonly) != 0) {
+    throw Error(ErrorCode::write_only_member, "Write only pipe");
+  }
+  const auto place = place_of(*skeleton_, *member_);
+  const auto ends = place->ends();
+  const std::size_t limit = place->backlog_limit();
+  Encoded packet(*member_, value);
+  for (const auto& end : *ends) {
+    if (limit != 0) {
+      end->ask_for_acknowledgements(true);
+      if (end->unacknowledged() > limit) continue;
+    }
+    try {
+      packet.send(*end);
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::buffer_limit_violation) {
+        PipeEnd(end).close();
+      } else if (end->is_open() && error.code() != ErrorCode::connection_error &&
+                 error.code() != ErrorCode::invalid_operation) {
+        throw;  // the value may not travel
+      }
+    }
+  }
+}
+
+std::vector<PipeEnd> PipeServerBase::ends() const {
+  const auto ends = place_of(*skeleton_, *member_)->ends();
+  std::vector<PipeEnd> result;
+  for (const auto& end : *ends) result.emplace_back(end);
+  return result;
+}
+
+void PipeServerBase::set_connected(std::function<void(PipeEnd)> function) const {
+  place_of(*skeleton_, *member_)->set_connected(std::move(function));
+}
+
+}  // namespace rr

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/service/pipes.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "rr/error.hpp"
+#include "rr/type.hpp"
+#include "runtime/cpp/src/endpoint/pipe_arrival.hpp"
+#include "runtime/cpp/src/endpoint/values.hpp"
+#include "runtime/cpp/src/service/directory.hpp"
+#include "runtime/cpp/src/service/places.hpp"
+#include "runtime/cpp/src/service/server_endpoint.hpp"
+
+namespace rr::service {
+namespace {
+
+constexpr std::size_t ends_of_a_client = 4096;
+constexpr Parameter index_parameter = parameter<std::int32_t>("index");
+
+}  // namespace
+
+void PipePlace::set_connected(std::function<void(PipeEnd)> function) {
+  std::shared_ptr<const std::function<void(PipeEnd)>> shared =
+      std::make_shared<std::function<void(PipeEnd)>>(std::move(function));
+  const std::lock_guard lock(mutex_);
+  connected_.swap(shared);  // what was there before ends behind the lock
+}
+
+std::shared_ptr<const std::function<void(PipeEnd)>> PipePlace::connected() const {
+  const std::lock_guard lock(mutex_);
+  return connected_;
+}
+
+void PipePlace::set_backlog_limit(std::size_t packets) {
+  const std::lock_guard lock(mutex_);
+  backlog_limit_ = packets;
+}
+
+std::size_t PipePlace::backlog_limit() const {
+  const std::lock_guard lock(mutex_);
+  return backlog_limit_;
+}
+
+void PipePlace::add(const End& end) {
+  const std::lock_guard lock(mutex_);
+  auto ends = std::make_shared<Ends>(*ends_);
+  ends->push_back(end);
+  ends_ = std::move(ends);
+}
+
+void PipePlace::remove(const PipeEnd::State& end) {
+  std::shared_ptr<const Ends> before;  // ends behind the lock
+  const std::lock_guard lock(mutex_);
+  auto ends = std::make_shared<Ends>(*ends_);
+  std::erase_if(*ends, [&](const End& other) { return other.get() == &end; });
+  before = std::exchange(ends_, std::move(ends));
+}
+
+std::shared_ptr<const PipePlace::Ends> PipePlace::ends() const {
+  const std::lock_guard lock(mutex_);
+  return ends_;
+}
+
+struct Pipes::Served final : PipeEnd::State {
+  Served(std::shared_ptr<const endpoint::Core> core, std::shared_ptr<endpoint::PipeSide> side,
+         Identity what, std::shared_ptr<PipePlace> where)
+      : State(std::move(core), std::move(side), std::move(what)), place(std::move(where)) {}
+
+  const std::shared_ptr<PipePlace> place;
+  // Guarded by the mutex of Pipes.
+  bool is_announced = false;           // the client knows of it
+  bool is_closed_unannounced = false;  // and must be told that it is gone already
+};
+
+Pipes::End Pipes::open(const Question& question, const ServedObject& object, const Member& member) {
+  const Entry& entry = question.entry;
+  Decoder decoder(question.message.version, &question.message.strings);
+  std::int32_t wanted = 0;
+  endpoint::read_value(decoder, entry, "index", type_of<std::int32_t>, &wanted);
+  Element element;
+  const bool is_unreliable =
+      (member.access & unreliable) != 0 &&
+      find_element(decoder, entry.elements, entry.element_count, "unreliable", element);
+  const std::lock_guard lock(mutex_);
+  const auto index = ends_.choose(object.path, member.name, wanted);
+  if (!index || ends_.size() >= ends_of_a_client) {
+    throw Error(ErrorCode::out_of_system_resource, "too many pipe endpoints");
+  }
+  const auto end = std::make_shared<Served>(
+      endpoint_.directory_->core(),
+      std::shared_ptr<endpoint::PipeSide>(endpoint_.shared_from_this(), this),
+      PipeEnd::State::Identity{object.path, &member, member.holding, *index, is_unreliable, false,
+                               endpoint_.client().endpoint},
+      Skeleton::Places::of(*object.skeleton).pipe(member.name));
+  ends_.add(end);
+  end->place->add(end);
+  return end;
+}
+
+void Pipes::connect(const Question& question) {
+  const auto object = endpoint_.find_object(question.entry.service_path);
+  const Member& member = endpoint_.find_member(*object, question.entry.member, MemberKind::pipe);
+  const End end = open(question, *object, member);
+  try {
+    const auto connected = end->place->connected();
+    if (connected && *connected) (*connected)(PipeEnd(end));
+  } catch (...) {
+    close(*end, false);
+    throw;
+  }
+  if (!end->is_open()) {
+    throw Error(ErrorCode::invalid_operation, "the service has closed this endpoint");
+  }
+  Writer& writer = endpoint_.begin_answer(question);
+  if (end->identity.is_unreliable) {
+    const std::int32_t is_unreliable = 1;
+    type_of<std::int32_t>.write(writer, "unreliable", &is_unreliable);
+  }
+  type_of<std::int32_t>.write(writer, "index", &end->identity.index);
+  endpoint_.answer_elements(question, writer, end->identity.is_unreliable ? 2 : 1);
+  {
+    const std::lock_guard lock(mutex_);
+    end->is_announced = true;
+    if (!end->is_closed_unannounced) return;
+  }
+  send_closed(*end);
+}
+
+void Pipes::disconnect(const Question& question) {
+  const auto object = endpoint_.find_object(question.entry.service_path);
+  const Member& member = endpoint_.find_member(*object, question.entry.member, MemberKind::pipe);
+  Decoder decoder(question.message.version, &question.message.strings);
+  std::int32_t index = 0;
+  endpoint::read_value(decoder, question.entry, "index", type_of<std::int32_t>, &index);
+  endpoint::PipeTable::End end;
+  {
+    const std::lock_guard lock(mutex_);
+    end = ends_.find(object->path, member.name, index);
+    if (!end) throw Error(ErrorCode::invalid_argument, "Invalid pipe");
+    ends_.remove(*end);
+  }
+  finish(static_cast<Served&>(*end));
+  endpoint_.answer_empty(question);
+}
+
+void Pipes::take_packets(const Question& question) {
+  const auto object = endpoint_.find_object(question.entry.service_path);
+  const Member& member = endpoint_.find_member(*object, question.entry.member, MemberKind::pipe);
+  endpoint::PipeArrival arrival(question.message, question.entry, question.owner,
+                                *endpoint_.host_->types());
+  arrival.take([&](const endpoint::PipePacket& packet, Decoder&) -> endpoint::PipeArrival::Taken {
+    const std::lock_guard lock(mutex_);
+    auto end = ends_.find(object->path, member.name, packet.index);
+    const bool is_taken = end != nullptr;
+    return {std::move(end), is_taken};
+  });
+  if (arrival.has_acknowledgements()) {
+    Writer& writer = endpoint_.begin_answer(question);
+    const std::uint32_t count = arrival.write_acknowledgements(writer);
+    endpoint_.answer_elements(question, writer, count, arrival.metadata());
+  } else {
+    endpoint_.answer_nothing(question);
+  }
+  arrival.deliver();
+}
+
+void Pipes::take_acknowledgements(const Question& question) {
+  const Entry& entry = question.entry;
+  if (entry.error != 0) return;  // a packet to what is not there
+  endpoint::for_each_acknowledgement(question.message, entry,
+                                     [&](std::int32_t index, std::uint32_t number) {
+                                       endpoint::PipeTable::End end;
+                                       {
+                                         const std::lock_guard lock(mutex_);
+                                         end = ends_.find(entry.service_path, entry.member, index);
+                                       }
+                                       if (end) end->take_acknowledgement(number);
+                                     });
+}
+
+// Of an end that is not in the table any more.
+void Pipes::finish(Served& end) {
+  end.place->remove(end);
+  end.finish();
+}
+
+void Pipes::release(std::string_view path) {
+  std::vector<endpoint::PipeTable::End> ended;
+  {
+    const std::lock_guard lock(mutex_);
+    ended = ends_.take_below(path);
+  }
+  for (const auto& end : ended) finish(static_cast<Served&>(*end));
+}
+
+void Pipes::end() {
+  std::vector<endpoint::PipeTable::End> ended;
+  {
+    const std::lock_guard lock(mutex_);
+    ended = ends_.take_all();
+  }
+  for (const auto& end : ended) finish(static_cast<Served&>(*end));
+}
+
+channel::Connection& Pipes::connection() const { return endpoint_.connection(); }
+
+void Pipes::stream(Writer& writer, const EntryHeader& header, std::string_view metadata) {
+  endpoint_.stream_packet(writer, header, metadata);
+}
+
+void Pipes::close(PipeEnd::State& state, bool /*may_wait*/) {
+  auto& end = static_cast<Served&>(state);
+  const auto keep = end.shared_from_this();
+  bool is_announced = false;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!ends_.remove(end)) return;
+    is_announced = end.is_announced;
+    end.is_closed_unannounced = !is_announced;
+  }
+  finish(end);
+  if (is_announced) send_closed(end);
+}
+
+void Pipes::send_closed(const Served& end) {
+  const void* const values[] = {&end.identity.index};
+  endpoint_.send_packet({.type = EntryType::pipe_closed,
+                         .service_path = end.identity.path,
+                         .member = end.identity.member->name},
+                        {&index_parameter, 1}, values);
+}
+
+}  // namespace rr::service
+
+namespace rr {
+
+std::shared_ptr<service::PipePlace> Skeleton::Places::pipe(std::string_view name) {
+  const std::lock_guard lock(mutex_);
+  const auto found = pipes_.find(name);
+  if (found != pipes_.end()) return found->second;
+  return pipes_.emplace(std::string(name), std::make_shared<service::PipePlace>()).first->second;
+}
+
+}  // namespace rr

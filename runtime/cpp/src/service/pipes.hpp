@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string_view>
+#include <vector>
+
+#include "rr/pipes.hpp"
+#include "runtime/cpp/src/endpoint/pipe_state.hpp"
+#include "runtime/cpp/src/endpoint/pipe_table.hpp"
+
+namespace rr::service {
+
+struct Question;
+struct ServedObject;
+class ServerEndpoint;
+
+/// One pipe of an object: what is set up for it, and its endpoints of all clients.
+class PipePlace {
+ public:
+  using End = std::shared_ptr<PipeEnd::State>;
+  using Ends = std::vector<End>;
+
+  void set_connected(std::function<void(PipeEnd)> function);
+  [[nodiscard]] std::shared_ptr<const std::function<void(PipeEnd)>> connected() const;
+  void set_backlog_limit(std::size_t packets);
+  [[nodiscard]] std::size_t backlog_limit() const;
+
+  void add(const End& end);
+  void remove(const PipeEnd::State& end);
+  [[nodiscard]] std::shared_ptr<const Ends> ends() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::shared_ptr<const std::function<void(PipeEnd)>> connected_;
+  std::size_t backlog_limit_ = 0;
+  std::shared_ptr<const Ends> ends_ = std::make_shared<Ends>();  // replaced, never changed
+};
+
+/// The pipe endpoints of a client, on the service's side.
+class Pipes final : public endpoint::PipeSide {
+ public:
+  explicit Pipes(ServerEndpoint& endpoint) : endpoint_(endpoint) {}
+
+  // Requests and packets of the client. Throw rr::Error.
+  void connect(const Question& question);
+  void disconnect(const Question& question);
+  void take_packets(const Question& question);
+  void take_acknowledgements(const Question& question);
+
+  /// The object at a path is released, and those below it.
+  void release(std::string_view path);
+  /// The session is over.
+  void end();
+
+  // From the ends
+  [[nodiscard]] channel::Connection& connection() const override;
+  void stream(Writer& writer, const EntryHeader& header, std::string_view metadata) override;
+  void close(PipeEnd::State& end, bool may_wait) override;
+
+ private:
+  struct Served;
+  using End = std::shared_ptr<Served>;
+
+  End open(const Question& question, const ServedObject& object, const Member& member);
+  void finish(Served& end);
+  void send_closed(const Served& end);
+
+  ServerEndpoint& endpoint_;
+  std::mutex mutex_;
+  endpoint::PipeTable ends_;
+};
+
+}  // namespace rr::service
