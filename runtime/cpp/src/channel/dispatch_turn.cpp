@@ -93,7 +93,7 @@ void StreamConnection::end_absence() {
     if (absent_ != 0 || !is_closed_pending_ || is_dispatched_) return;
     loosen_turn();
   }
-  if (!reactor_->post([self = shared_from_this()] { self->drain_posted(); })) drain_posted();
+  reactor_->post([self = shared_from_this()] { self->drain_posted(); });
 }
 
 // After begin_absence().
@@ -105,7 +105,7 @@ void StreamConnection::handle_aside(const Frame& frame) {
     }
     self->end_absence();
   };
-  if (!reactor_->post(std::move(work))) end_absence();  // the node is going away
+  reactor_->post(std::move(work));
 }
 
 }  // namespace rr::channel

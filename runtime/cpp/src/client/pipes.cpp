@@ -9,7 +9,7 @@
 #include "rr/error.hpp"
 #include "rr/type.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
-#include "runtime/cpp/src/client/call_terms.hpp"
+#include "runtime/cpp/src/endpoint/call_terms.hpp"
 #include "runtime/cpp/src/client/session.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
 

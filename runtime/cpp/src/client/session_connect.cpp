@@ -360,7 +360,7 @@ void Session::closed() {
   std::function<void(const Error&)> on_closed;
   // What the program has given goes when the lock has: it may own stubs, which forget themselves.
   std::function<void(const std::string&)> on_path_released;
-  std::vector<std::shared_ptr<Subscription::Handler>> handlers;
+  std::vector<std::shared_ptr<client::EventSubscription>> handlers;
   {
     const std::lock_guard lock(mutex_);
     why = why_closed_;

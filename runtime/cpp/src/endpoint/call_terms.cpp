@@ -47,12 +47,12 @@ void Cancellation::State::add(std::shared_ptr<endpoint::Caller> caller, endpoint
 }
 
 void Cancellation::State::remove(const endpoint::Pending& call) {
-  std::shared_ptr<Session> session;  // goes when the lock has, with what the program gave it
+  std::shared_ptr<endpoint::Caller> caller;  // goes when the lock has, with what the program gave it
   const std::lock_guard lock(mutex_);
   const auto found = std::find_if(calls_.begin(), calls_.end(),
                                   [&](const Call& item) { return item.pending == &call; });
   if (found == calls_.end()) return;
-  session = std::move(found->session);
+  caller = std::move(found->caller);
   calls_.erase(found);
 }
 

@@ -159,8 +159,7 @@ void PipeEnd::State::call(const std::function<void()>& function) const {
 }
 
 void PipeEnd::State::deliver_soon() {
-  // When the node is going away this thread takes it along.
-  if (!core_->reactor().post([self = shared_from_this()] { self->deliver(); })) deliver();
+  core_->reactor().post([self = shared_from_this()] { self->deliver(); });
 }
 
 std::shared_ptr<void> PipeEnd::State::take() {

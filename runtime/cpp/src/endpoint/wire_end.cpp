@@ -60,7 +60,7 @@ void WireEnd::State::open() {
 }
 
 void WireEnd::State::take(const Message& message, const Entry& entry, const MemoryRef& owner,
-                          const TypeRegistry& types, channel::Laters& laters) {
+                          const TypeRegistry& types, channel::Laters& /*laters*/) {
   if (!may_receive_ || member_.holding == nullptr) return;
   std::shared_ptr<void> made;
   TimeSpec time;
@@ -83,7 +83,7 @@ void WireEnd::State::take(const Message& message, const Entry& entry, const Memo
     if (waiting_ != 0) arrived_.notify_all();
   }
   on_taken(value, time);
-  if (must_start) start_telling(laters);
+  if (must_start) start_telling();
 }
 
 std::shared_ptr<const void> WireEnd::State::received(TimeSpec& time) const {

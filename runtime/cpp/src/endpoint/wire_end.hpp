@@ -100,7 +100,7 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   // Telling the program (wire_end_calls.cpp). The first two under the lock.
   [[nodiscard]] bool must_start_telling();
   [[nodiscard]] bool has_to_tell() const;
-  void start_telling(channel::Laters& laters);
+  void start_telling();
   void tell_all();
   bool next_turn(std::shared_ptr<const void>& value, TimeSpec& time, bool& tells_side,
                  std::vector<std::function<void()>>& closed,

@@ -52,7 +52,7 @@ Subscription WireEnd::State::on_received(
     must_start = must_start_telling();
   }
   connection().expect();
-  if (must_start) start_telling(laters);
+  if (must_start) start_telling();
   for (const std::function<void()>& later : laters) later();
   return Subscription(std::move(listener));
 }
@@ -80,7 +80,7 @@ bool WireEnd::State::begin_close() {
   return true;
 }
 
-void WireEnd::State::finish(channel::Laters& laters) {
+void WireEnd::State::finish(channel::Laters& /*laters*/) {
   bool must_start = false;
   {
     const std::lock_guard lock(mutex_);
@@ -90,7 +90,7 @@ void WireEnd::State::finish(channel::Laters& laters) {
     arrived_.notify_all();
   }
   leave();
-  if (must_start) start_telling(laters);
+  if (must_start) start_telling();
 }
 
 void WireEnd::State::finish_now() {
@@ -107,7 +107,7 @@ bool WireEnd::State::has_to_tell() const {
 
 bool WireEnd::State::must_start_telling() { return !is_telling_ && (is_telling_ = has_to_tell()); }
 
-void WireEnd::State::start_telling(channel::Laters& laters) {
+void WireEnd::State::start_telling() {
   core_->reactor().post([self = shared_from_this()] { self->tell_all(); });
 }
 
