@@ -214,7 +214,7 @@ auto Wire<T>::async_poke_out(const T& value, Token&& token) {
       [wire = *this](auto&& handler, const T& wanted) mutable {
         using Handler = std::decay_t<decltype(handler)>;
         wire.start_poke(&wanted, std::make_unique<CallCompletion<Handler, void>>(
-                                std::forward<decltype(handler)>(handler)));
+                                     std::forward<decltype(handler)>(handler)));
       },
       token, value);
 }

@@ -39,9 +39,9 @@ class Outbox {
     MemoryRef owner;
     const std::byte* data = nullptr;
     std::size_t size = 0;
-    std::size_t room = 0;     ///< bytes behind the data that may be appended to
-    bool is_alone = false;    ///< a message that may be replaced: nothing is appended
-    bool is_begun = false;    ///< a part of it has been sent
+    std::size_t room = 0;   ///< bytes behind the data that may be appended to
+    bool is_alone = false;  ///< a message that may be replaced: nothing is appended
+    bool is_begun = false;  ///< a part of it has been sent
   };
 
   // A message that may be replaced, alone in its segment.

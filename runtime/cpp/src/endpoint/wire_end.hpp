@@ -119,8 +119,8 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   mutable std::mutex mutex_;
   mutable std::condition_variable arrived_;
   endpoint::NewestValue in_;
-  std::uint64_t sequence_ = 0;  // counts values that were taken
-  unsigned waiting_ = 0;        // threads in wait_received()
+  std::uint64_t sequence_ = 0;               // counts values that were taken
+  unsigned waiting_ = 0;                     // threads in wait_received()
   std::shared_ptr<void> own_sent_;           // copied into by send()
   std::shared_ptr<const void> common_sent_;  // what was sent to others too
   endpoint::SenderTime sent_time_ = 0;       // 0: nothing yet
@@ -128,9 +128,9 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
 
   std::vector<std::shared_ptr<Listener>> listeners_;
   std::vector<std::function<void()>> on_closed_;
-  std::uint64_t told_side_ = 0;  // the value that tell() was called for
-  bool is_telling_ = false;      // or will be, by posted work
-  bool is_over_ = false;         // all has been told
+  std::uint64_t told_side_ = 0;                  // the value that tell() was called for
+  bool is_telling_ = false;                      // or will be, by posted work
+  bool is_over_ = false;                         // all has been told
   std::vector<std::shared_ptr<Listener>> turn_;  // with the telling thread
 };
 

@@ -107,9 +107,7 @@ bool WireEnd::State::has_to_tell() const {
                      [&](const auto& listener) { return listener->seen != sequence_; });
 }
 
-bool WireEnd::State::must_start_telling() {
-  return !is_telling_ && (is_telling_ = has_to_tell());
-}
+bool WireEnd::State::must_start_telling() { return !is_telling_ && (is_telling_ = has_to_tell()); }
 
 void WireEnd::State::start_telling(channel::Laters& laters) {
   const auto work = [self = shared_from_this()] { self->tell_all(); };
@@ -135,8 +133,8 @@ void WireEnd::State::tell_all() {
 }
 
 // What is to be told next. False when there is nothing: then this thread is done.
-bool WireEnd::State::next_turn(std::shared_ptr<const void>& value, TimeSpec& time,
-                               bool& tells_side, std::vector<std::function<void()>>& closed,
+bool WireEnd::State::next_turn(std::shared_ptr<const void>& value, TimeSpec& time, bool& tells_side,
+                               std::vector<std::function<void()>>& closed,
                                std::vector<std::shared_ptr<Listener>>& gone) {
   std::shared_ptr<const void> before;
   {

@@ -18,7 +18,7 @@ WireTable::Added WireTable::add(const End& end) {
   const std::lock_guard lock(mutex_);
   if (is_ended_) return Added::ended;
   return ends_.try_emplace(Key{end->path(), end->member().name}, end).second ? Added::yes
-                                                                            : Added::exists;
+                                                                             : Added::exists;
 }
 
 void WireTable::remove(const WireEnd::State& end) {

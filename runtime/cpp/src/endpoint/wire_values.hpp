@@ -28,8 +28,7 @@ void write_wire_time(Writer& writer, const TimeSpec& time);
 /// Throws rr::Error (message_element_not_found, data_type_mismatch, ...).
 void read_wire(const Message& message, const Entry& entry, const MemoryRef& owner,
                const TypeRegistry& types, const Type& type, TimeSpec& time, void* value);
-void read_wire(Decoder& decoder, const Entry& entry, const Type& type, TimeSpec& time,
-               void* value);
+void read_wire(Decoder& decoder, const Entry& entry, const Type& type, TimeSpec& time, void* value);
 
 /// The request that sets a value, as if the two elements were its parameters.
 struct WireParameters {

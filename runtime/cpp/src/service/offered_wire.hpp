@@ -68,7 +68,7 @@ class OfferedWire {
 
   mutable std::mutex mutex_;
   std::shared_ptr<const Ends> ends_ = std::make_shared<const Ends>();  // replaced, never changed
-  std::shared_ptr<const void> in_;  // what was sent to all last
+  std::shared_ptr<const void> in_;                                     // what was sent to all last
   endpoint::NewestValue out_;
   Shared<Connected> connected_;
   Shared<Peek> peek_in_;

@@ -16,7 +16,7 @@ namespace rr {
 namespace service {
 class OfferedWire;
 class ServiceHost;
-}
+}  // namespace service
 
 /// Where an object can be reached: its events go to the clients of each service.
 struct Skeleton::Places {

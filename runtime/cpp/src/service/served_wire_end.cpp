@@ -62,8 +62,8 @@ void ServedWireEnd::close() {
   if (!begin_close()) return;
   Writer& writer = channel::thread_writer();
   writer.reset(version());
-  writer.entry(
-      {.type = EntryType::wire_closed, .service_path = path(), .member = member().name}, 0, 0);
+  writer.entry({.type = EntryType::wire_closed, .service_path = path(), .member = member().name}, 0,
+               0);
   try {
     endpoint_->send_marked(writer, endpoint::unreliable_mark, nullptr);
   } catch (const Error&) {

@@ -217,9 +217,7 @@ void ServerEndpoint::leave() {
   connection_->close_after(close_delay);
 }
 
-void ServerEndpoint::lost(const Error& /*why*/, channel::Laters& laters) {
-  wires_.end_all(laters);
-}
+void ServerEndpoint::lost(const Error& /*why*/, channel::Laters& laters) { wires_.end_all(laters); }
 
 void ServerEndpoint::closed() {
   if (is_member_.exchange(false)) host_->remove_client(*this);

@@ -108,7 +108,8 @@ std::shared_ptr<const ServiceHost::Clients> ServiceHost::connected() const {
 
 std::vector<ServiceClient> ServiceHost::clients() const {
   std::vector<ServiceClient> result;
-  for (const auto& client : *connected()) result.push_back(client->client());
+  const auto all = connected();  // a range is kept alive by its name only
+  for (const auto& client : *all) result.push_back(client->client());
   return result;
 }
 
@@ -147,7 +148,8 @@ void ServiceHost::notify(const std::function<void(const ServiceClient&)>& functi
 }
 
 void ServiceHost::disconnect(std::uint32_t endpoint) {
-  for (const auto& client : *connected()) {
+  const auto clients = connected();
+  for (const auto& client : *clients) {
     if (client->client().endpoint == endpoint) client->leave();
   }
 }
@@ -162,7 +164,8 @@ void ServiceHost::release_path(const std::string& path) {
   if (!objects_.release(canonical)) {
     throw Error(ErrorCode::service_error, "Unknown service path");
   }
-  for (const auto& client : *connected()) {
+  const auto clients = connected();
+  for (const auto& client : *clients) {
     client->wires().release(canonical);
     client->send_packet({.type = EntryType::service_path_released_req, .service_path = canonical},
                         {}, nullptr);
@@ -173,7 +176,8 @@ void ServiceHost::fire(const std::string& path, const Member& member,
                        const void* const* arguments) {
   const EntryHeader header{
       .type = EntryType::event_req, .service_path = path, .member = member.name};
-  for (const auto& client : *connected()) {
+  const auto clients = connected();
+  for (const auto& client : *clients) {
     client->send_packet(header, member.parameters, arguments);
   }
 }

@@ -63,8 +63,8 @@ bool ServerEndpoint::is_in_session(const Message& message) const {
          (!message.has_routing || message.receiver_node == directory_->core()->options().id);
 }
 
-bool ServerEndpoint::take_packet(const Message& message, const Entry& entry,
-                                 const MemoryRef& owner, channel::Laters& laters) {
+bool ServerEndpoint::take_packet(const Message& message, const Entry& entry, const MemoryRef& owner,
+                                 channel::Laters& laters) {
   last_heard_.store(channel::coarse_now(), std::memory_order_relaxed);
   return wires_.take(message, entry, owner, laters);
 }
