@@ -50,8 +50,9 @@ class WireEnd {
   /// before it, in order, on a thread of the node; a function that is slow misses values, never the
   /// newest.
   Subscription on_received(std::function<void(const void*, const TimeSpec&)> function);
-  /// Sends; throws rr::Error (invalid_operation when closed; read_only_member, write_only_member
-  /// for a direction that the wire does not have; data_type_error for what may not travel).
+  /// Sends; throws rr::Error (invalid_operation when closed, connection_error when the connection
+  /// breaks; read_only_member, write_only_member for a direction that the wire does not have;
+  /// data_type_error for what may not travel).
   void send(const void* value);
   /// What was sent last; null for nothing yet.
   std::shared_ptr<const void> sent(TimeSpec& time) const;
@@ -155,8 +156,7 @@ class WireMember {
   void poke_out(const void* value);
   // What the asynchronous templates stand on. The places are in the completion.
   void start_connect(WireEnd* end, std::unique_ptr<Completion> completion);
-  void start_peek(bool of_out, void* value, TimeSpec* time,
-                  std::unique_ptr<Completion> completion);
+  void start_peek(bool of_out, void* value, TimeSpec* time, std::unique_ptr<Completion> completion);
   void start_poke(const void* value, std::unique_ptr<Completion> completion);
 
   Stub* stub_;

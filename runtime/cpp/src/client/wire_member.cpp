@@ -104,8 +104,9 @@ void WireMember::start_connect(WireEnd* end, std::unique_ptr<Completion> complet
     made = begin_connecting(*stub_, *member_);
   } catch (const Error&) {
     // Not from inside the call that starts it.
-    session.post({[shared = std::shared_ptr<Completion>(std::move(completion)),
-                   error = std::current_exception()] { shared->fail(error); }});
+    session.post(
+        {[shared = std::shared_ptr<Completion>(std::move(completion)),
+          error = std::current_exception()]() mutable { shared->fail(std::move(error)); }});
     return;
   }
   auto connecting =
