@@ -56,6 +56,26 @@ consteval Parameter parameter(std::string_view name) {
   return {name, &type_of<T>};
 }
 
+/// The C++ type of the values that a description such as FixedLength stands for.
+template <class T>
+struct DescribedValue {
+  using type = T;
+};
+template <class T, std::uint32_t Length>
+struct DescribedValue<FixedLength<T, Length>> {
+  using type = Array<T>;
+};
+template <class T, std::uint32_t Length>
+struct DescribedValue<MaximumLength<T, Length>> {
+  using type = Array<T>;
+};
+template <class T, std::uint32_t... Dims>
+struct DescribedValue<FixedShape<T, Dims...>> {
+  using type = MultiArray<T>;
+};
+template <class T>
+using ValueOf = typename DescribedValue<T>::type;
+
 /// One member of an object. Made with the functions below.
 struct Member {
   MemberKind kind;
@@ -104,7 +124,7 @@ consteval Member pipe(std::string_view name, std::uint8_t access = plain) {
           .access = access,
           .name = name,
           .type = &type_of<T>,
-          .holding = &holding_of<T>};
+          .holding = &holding_of<ValueOf<T>>};
 }
 template <class R>
 consteval Member callback(std::string_view name, std::span<const Parameter> parameters = {},
@@ -119,7 +139,7 @@ consteval Member wire(std::string_view name, std::uint8_t access = plain) {
           .access = access,
           .name = name,
           .type = &type_of<T>,
-          .holding = &holding_of<T>};
+          .holding = &holding_of<ValueOf<T>>};
 }
 /// `T` is an Array or a MultiArray.
 template <class T>
