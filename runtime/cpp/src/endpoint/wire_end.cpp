@@ -79,10 +79,10 @@ void WireEnd::State::take(const Message& message, const Entry& entry, const Memo
     if (sequence_ != 0 && !endpoint::is_later(time, in_.time())) return;
     before = in_.put(value, time);
     ++sequence_;
+    on_taken(value, time);  // before anybody knows of it
     must_start = must_start_telling();
     if (waiting_ != 0) arrived_.notify_all();
   }
-  on_taken(value, time);
   if (must_start) start_telling();
 }
 

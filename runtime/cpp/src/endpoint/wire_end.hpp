@@ -79,7 +79,7 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   virtual endpoint::SenderTime draw_time() = 0;
   /// Sends a packet whose elements the writer holds. Throws rr::Error.
   virtual void transmit(Writer& writer, const channel::Newest& newest) = 0;
-  /// A value has been taken.
+  /// A value has been taken. Under the lock.
   virtual void on_taken(const std::shared_ptr<const void>& /*value*/, const TimeSpec& /*time*/) {}
   /// Whether tell() is to be called.
   [[nodiscard]] virtual bool has_listener() const { return false; }
