@@ -114,7 +114,8 @@ bool ServiceHost::may_hear(const ServerEndpoint& client) const {
 
 std::vector<ServiceClient> ServiceHost::clients() const {
   std::vector<ServiceClient> result;
-  for (const auto& client : *connected()) {
+  const auto all = connected();  // kept through the loop
+  for (const auto& client : *all) {
     result.push_back(client->client());
     if (const auto user = client->user()) result.back().user = user->name;
   }
@@ -159,7 +160,8 @@ void ServiceHost::notify(const std::function<void(const ServiceClient&)>& functi
 }
 
 void ServiceHost::disconnect(std::uint32_t endpoint) {
-  for (const auto& client : *connected()) {
+  const auto all = connected();  // kept through the loop
+  for (const auto& client : *all) {
     if (client->client().endpoint == endpoint) client->leave();
   }
 }
@@ -174,7 +176,8 @@ void ServiceHost::release_path(const std::string& path) {
   if (!objects_.release(canonical)) {
     throw Error(ErrorCode::service_error, "Unknown service path");
   }
-  for (const auto& client : *connected()) {
+  const auto all = connected();  // kept through the loop
+  for (const auto& client : *all) {
     if (!may_hear(*client)) continue;
     client->send_packet({.type = EntryType::service_path_released_req, .service_path = canonical},
                         {}, nullptr);
@@ -185,7 +188,8 @@ void ServiceHost::fire(const std::string& path, const Member& member,
                        const void* const* arguments) {
   const EntryHeader header{
       .type = EntryType::event_req, .service_path = path, .member = member.name};
-  for (const auto& client : *connected()) {
+  const auto all = connected();  // kept through the loop
+  for (const auto& client : *all) {
     if (may_hear(*client)) client->send_packet(header, member.parameters, arguments);
   }
 }
