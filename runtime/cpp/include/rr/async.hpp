@@ -168,9 +168,9 @@ auto Stub::rr_async_find(const Member& member, Token&& token, const Index&... in
   return boost::asio::async_initiate<Token, void(std::exception_ptr, std::shared_ptr<S>)>(
       [this, objref = &member](auto&& handler, const auto&... wanted) {
         using Handler = std::decay_t<decltype(handler)>;
-        rr_start_find(*objref, wanted...,
-                      std::make_unique<FindCompletion<Handler, S>>(
-                          std::forward<decltype(handler)>(handler), *objref));
+        this->rr_start_find(*objref, wanted...,
+                            std::make_unique<FindCompletion<Handler, S>>(
+                                std::forward<decltype(handler)>(handler), *objref));
       },
       token, index...);
 }
