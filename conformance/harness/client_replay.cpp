@@ -59,6 +59,7 @@ class ClientReplay::Play {
 
  private:
   using Line = ClientReplay::Line;
+  static constexpr std::string_view raises = "raises ";
 
   void play(const Step& step) {
     step_ = &step;
@@ -70,19 +71,26 @@ class ClientReplay::Play {
     if (!told_to_wait) replay_.client_.start(told(step, scenario_, replay_.listener_.port()));
     if (told_to_wait && holds_farewell(step)) replay_.client_.start(nullptr);
     const bool awaits_outcome = !told_to_wait || holds_farewell(step);
+    const ListEntry* const refused = listed_refusal(step);
     if (told_to_wait && scenario_.heartbeat_ms.is_object()) {
       answer_connection_tests(step, begun + pause);
     } else {
       for (int i = 0; i < step.frame_count; ++i) {
         const Frame& frame = scenario_.frames[static_cast<std::size_t>(step.first_frame + i)];
-        if (frame.from_client) {
+        if (frame.from_client && refused != nullptr) {
+          line_of(frame).played.take_next_message_id = true;
+        } else if (frame.from_client) {
           expect(frame);
         } else {
           send(frame);
         }
       }
     }
-    if (awaits_outcome) judge_outcome(step);
+    if (refused != nullptr) {
+      judge_refusal(*refused);
+    } else if (awaits_outcome) {
+      judge_outcome(step);
+    }
     for (std::size_t i = 0; i < lines_.size(); ++i) check_end(step, i);
   }
 
@@ -204,6 +212,23 @@ class ClientReplay::Play {
       ++count;
     }
     if (count == 0) fault("did not test its connection");
+  }
+
+  // A step that ours is listed to refuse by itself, without a word to the service.
+  [[nodiscard]] const ListEntry* listed_refusal(const Step& step) const {
+    const ListEntry* const listed = replay_.deviations_.find(result_.run, step_place(step.index));
+    const bool refuses = listed != nullptr && listed->instead().starts_with(raises);
+    return refuses && replay_.client_.tells_outcomes() ? listed : nullptr;
+  }
+
+  void judge_refusal(const ListEntry& listed) {
+    if (!outcome_) outcome_ = replay_.client_.outcome(replay_.client_.patience());
+    if (!outcome_) return fault("the step did not end");
+    const std::string code = outcome_->value("raised", Json()).value("code", Json()).dump();
+    if (code != listed.instead().substr(raises.size())) {
+      return fault("raised " + code + ", not what is listed");
+    }
+    result_.deviations.push_back(&listed);
   }
 
   void judge_outcome(const Step& step) {

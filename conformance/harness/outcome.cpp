@@ -10,18 +10,20 @@ std::string said(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 300);
 }
 
-// The value of the last set of the property that this step gets.
+// The value of the last set of the property that this step gets; what others have got from it if
+// no set was accepted.
 Json value_set_before(const std::vector<Step>& steps, const Step& step) {
-  Json value;
+  Json got;
+  Json set;
   for (const Step& earlier : steps) {
     if (earlier.index >= step.index) break;
     const Json& plan = earlier.plan;
-    if (plan.at("op") == "set" && plan.at("obj") == step.plan.at("obj") &&
-        plan.at("member") == step.plan.at("member")) {
-      value = plan.at("value");
-    }
+    const bool is_accepted = !plan.contains("raised");
+    if (!is_accepted || plan.value("member", Json()) != step.plan.at("member")) continue;
+    if (plan.at("op") == "set" && plan.at("obj") == step.plan.at("obj")) set = plan.at("value");
+    if (plan.at("op") == "get" && plan.contains("result")) got = plan.at("result");
   }
-  return value;
+  return set.is_null() ? got : set;
 }
 
 std::optional<std::string> fault_of_error(const Comparison& comparison, const Step& step,

@@ -5,7 +5,7 @@ namespace rr::testing {
 namespace {
 
 constexpr std::string_view definition_text =
-    "service test.board\n"
+    "service test.pipes\n"
     "stdver 0.10\n"
     "import test.counter\n"
     "object PipeBoard\n"
@@ -32,15 +32,15 @@ constinit const Member board_members[] = {
     pipe<std::string>("in", writeonly),
     pipe<std::int32_t>("lossy", unreliable),
     function<void>("sync"),
-    objref("child", "test.board.PipeBoard"),
+    objref("child", "test.pipes.PipeBoard"),
 };
 
 constinit const ObjectType rr_PipeBoard{
-    "test.board.PipeBoard", rr_board_definition, {}, board_members, []() -> std::shared_ptr<Stub> {
+    "test.pipes.PipeBoard", rr_pipe_board_definition, {}, board_members, []() -> std::shared_ptr<Stub> {
       return std::make_shared<PipeBoardStub>();
     }};
-constinit const Definition rr_board_definition{
-    "test.board", definition_text, {0, 10, 0, 0}, imports, {}, {}, objects};
+constinit const Definition rr_pipe_board_definition{
+    "test.pipes", definition_text, {0, 10, 0, 0}, imports, {}, {}, objects};
 
 const ObjectType& PipeBoardStub::rr_object_type() const { return rr_PipeBoard; }
 const ObjectType& PipeBoard::rr_object_type() const { return rr_PipeBoard; }

@@ -16,7 +16,7 @@
 /// An object with pipes of each kind, as the compiler would generate it.
 namespace rr::testing {
 
-extern const Definition rr_board_definition;
+extern const Definition rr_pipe_board_definition;
 extern const ObjectType rr_PipeBoard;
 extern const Member board_members[];
 
