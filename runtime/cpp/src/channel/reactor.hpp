@@ -110,9 +110,7 @@ class Reactor {
   bool begin_stay();
   void end_stay();
   /// True when threads that stay are to come back soon.
-  [[nodiscard]] bool is_stay_over() const {
-    return is_stay_over_.load(std::memory_order_relaxed);
-  }
+  [[nodiscard]] bool is_stay_over() const { return is_stay_over_.load(std::memory_order_relaxed); }
   /// How many threads stay. For tests.
   [[nodiscard]] unsigned stays() const;
 

@@ -30,9 +30,9 @@ namespace rr::channel {
 /// Calls in a tight loop find the socket unwatched ("parked") and leave it so; a timer of a
 /// millisecond puts it back under watch when calls have ceased.
 ///
-/// In the same way a thread of the reactor stays with a connection that brings one request after the
-/// other, and waits for the next one in a receive that blocks. A timer puts the socket back under
-/// watch when a handler takes long.
+/// In the same way a thread of the reactor stays with a connection that brings one request after
+/// the other, and waits for the next one in a receive that blocks. A timer puts the socket back
+/// under watch when a handler takes long.
 class StreamConnection final : public Connection,
                                public Pollable,
                                public std::enable_shared_from_this<StreamConnection> {
