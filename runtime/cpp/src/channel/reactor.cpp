@@ -38,6 +38,7 @@ thread_local const Reactor* Reactor::current_reactor = nullptr;
 
 Reactor::Reactor(unsigned max_threads)
     : max_threads_(std::max(max_threads, 2U)),
+      max_stays_(std::min(std::max(std::thread::hardware_concurrency(), 1U), max_threads_ / 4)),
       events_(std::make_unique<epoll_event[]>(events_at_once)) {
   epoll_ = epoll_create1(EPOLL_CLOEXEC);
   if (epoll_ < 0) fail("epoll_create1");
@@ -72,6 +73,7 @@ void Reactor::stop() {
   {
     const std::lock_guard lock(mutex_);
     is_stopping_ = true;
+    is_stay_over_ = true;
     threads.swap(threads_);
     ended_.clear();
     for (std::function<void()>& work : posted_) late_.add(std::move(work));
@@ -176,7 +178,16 @@ void Reactor::need_thread() {
     idle_.notify_one();
   } else if (live_threads_ < max_threads_) {
     add_thread();
+  } else {
+    is_stay_over_ = stays_ != 0;
   }
+}
+
+// Whether there is, or can be, one for another duty. If not, those that stay are called back.
+bool Reactor::has_spare_thread() {
+  if (idle_threads_ > wanted_threads_ || live_threads_ < max_threads_) return true;
+  if (stays_ != 0) is_stay_over_ = true;
+  return false;
 }
 
 // Joins threads that have ended.
@@ -300,17 +311,42 @@ void Reactor::about_to_wait() {
   Pollable* handling = nullptr;
   {
     const std::lock_guard lock(reactor.mutex_);
-    if (reactor.is_stopping_ || (reactor.idle_threads_ <= reactor.wanted_threads_ &&
-                                 reactor.live_threads_ >= reactor.max_threads_)) {
-      return;
-    }
-    std::uint64_t expected = polling->turn * 2 + 1;
-    if (!reactor.turn_.compare_exchange_strong(expected, (polling->turn + 1) * 2)) return;
+    if (!reactor.hand_over(*polling)) return;
     handling = reactor.handling_;  // nobody else's yet
-    reactor.is_polled_ = false;
     reactor.need_thread();
   }
   if (handling != nullptr) handling->on_stuck();
+}
+
+// Gives up the turn to poll, for the next thread that is free.
+bool Reactor::hand_over(const Polling& polling) {
+  if (is_stopping_ || !has_spare_thread()) return false;
+  std::uint64_t expected = polling.turn * 2 + 1;
+  if (!turn_.compare_exchange_strong(expected, (polling.turn + 1) * 2)) return false;
+  is_polled_ = false;
+  return true;
+}
+
+bool Reactor::begin_stay() {
+  const Polling* const polling = current_polling;
+  if (polling == nullptr || polling->reactor != this) return false;
+  const std::lock_guard lock(mutex_);
+  if (stays_ >= max_stays_ || is_stay_over_) return false;
+  if (turn_.load() != polling->turn * 2 + 1 || event_count_ > 1) return false;
+  if (!hand_over(*polling)) return false;
+  ++stays_;
+  need_thread();
+  return true;
+}
+
+void Reactor::end_stay() {
+  const std::lock_guard lock(mutex_);
+  if (--stays_ == 0) is_stay_over_ = is_stopping_.load();
+}
+
+unsigned Reactor::stays() const {
+  const std::lock_guard lock(mutex_);
+  return stays_;
 }
 
 // Watching
@@ -350,7 +386,7 @@ bool Reactor::watch(std::unique_lock<std::mutex>& lock) {
 }
 
 bool Reactor::take_over(std::uint64_t turn) {
-  if (idle_threads_ <= wanted_threads_ && live_threads_ >= max_threads_) return false;
+  if (!has_spare_thread()) return false;
   return turn_.compare_exchange_strong(turn, (turn / 2 + 1) * 2);
 }
 

@@ -33,6 +33,10 @@ namespace rr::channel {
 /// While a caller reads, the reactor does not watch the socket: it would be woken by every answer.
 /// Calls in a tight loop find the socket unwatched ("parked") and leave it so; a timer of a
 /// millisecond puts it back under watch when calls have ceased.
+///
+/// In the same way a thread of the reactor stays with a connection that brings one request after
+/// the other, and waits for the next one in a receive that blocks. A timer puts the socket back
+/// under watch when a handler takes long.
 class StreamConnection final : public Connection,
                                public Pollable,
                                public Flushable,
@@ -150,6 +154,7 @@ class StreamConnection final : public Connection,
   bool follow(Waiter& waiter, Time deadline);
   void lead(Waiter& waiter, Time deadline, Time now);
   bool may_block_until(Time deadline);
+  void limit_receive_time();
   void leave_to_reactor(Scratch& scratch);
   void begin_lead(Waiter& waiter);
   void park_or_watch();
@@ -157,6 +162,12 @@ class StreamConnection final : public Connection,
   void set_watch(Watch watch);
   void watch_again();
   void unpark();
+  [[nodiscard]] Milliseconds park_time() const;
+  bool is_busy(Time last_received);
+  void stay(Scratch& scratch);
+  bool begin_staying();
+  bool go_on_staying(Received received);
+  void read_to_stay();
 
   // Stream operations and heartbeats (stream_operations.cpp)
   bool take_own(const Message& message, const Entry& entry);
@@ -198,7 +209,8 @@ class StreamConnection final : public Connection,
   Watch watch_ = Watch::off;
   bool is_watched_ = false;  // by the reactor, for anything
   bool is_park_timed_ = false;
-  std::uint32_t leads_ = 0;  // claims that succeeded
+  bool is_stayed_with_ = false;  // by a thread of the reactor
+  std::uint32_t leads_ = 0;      // claims that succeeded, and receives while stayed with
   std::uint32_t leads_seen_ = 0;
   Time last_lead_{};
   Waiter* followers_ = nullptr;
@@ -209,6 +221,7 @@ class StreamConnection final : public Connection,
   Inbox inbox_;                       // with the read turn
   bool had_message_ = false;          // with the read turn
   bool has_receive_timeout_ = false;  // with the read turn
+  unsigned busy_receives_ = 0;        // with the read turn
   bool holds_back_answers_ = false;   // with the dispatch turn
 
   std::mutex sending_;

@@ -68,10 +68,15 @@ void StreamConnection::read_as_reactor(bool until_end) {
   const ScratchLease scratch;
   for (int left = receives_at_once; left != 0; --left) {
     bool is_full = false;
+    const Time last_received = last_received_.load(std::memory_order_relaxed);
     const Received received = receive(*scratch, false, is_full);
     const bool has_more = received == Received::some && (is_full || until_end);
+    const bool may_stay = role_ == Role::server && is_busy(last_received);
     const bool is_again = leave_read_turn(*scratch, true);
-    if (!is_again && !has_more) return;
+    if (!is_again && !has_more) {
+      if (may_stay) stay(*scratch);
+      return;
+    }
     if (left == 1) break;
     if (!take_read_turn()) return;
   }
@@ -188,6 +193,7 @@ bool StreamConnection::leave_read_turn(Scratch& scratch, bool may_dispatch) {
     } else {
       is_read_ = false;
       is_again = !is_stalled_ && std::exchange(read_again_, false);
+      if (!is_park_timed_) watch_again();
     }
   }
   if (is_end) finish_close();

@@ -12,11 +12,9 @@
 namespace rr::channel {
 namespace {
 
-// A receive returns after this time to look at the deadline; set once per socket, which is cheaper
-// than waiting with poll() each time.
-constexpr std::chrono::seconds receive_pause{1};
-// For how long without a call a parked socket stays so.
-constexpr Milliseconds park_time{1};
+// A receive returns after this time to look at the deadline, or to give the thread back to the
+// reactor; set once per socket, which is cheaper than waiting with poll() each time.
+constexpr Milliseconds receive_pause{100};
 
 }  // namespace
 
@@ -68,9 +66,12 @@ void StreamConnection::park_or_watch() {
     watch_again();
   } else if (!std::exchange(is_park_timed_, true)) {
     leads_seen_ = leads_;
-    reactor_->schedule(park_timer_, weak_from_this(), Clock::now() + park_time);
+    reactor_->schedule(park_timer_, weak_from_this(), Clock::now() + park_time());
   }
 }
+
+// Under turns_. For how long without a call, or in the same handler, a parked socket stays so.
+Milliseconds StreamConnection::park_time() const { return Milliseconds(is_stayed_with_ ? 5 : 1); }
 
 // Returns true when the waiter is to read itself, false when it is done or out of time.
 bool StreamConnection::follow(Waiter& waiter, Time deadline) {
@@ -107,11 +108,7 @@ void StreamConnection::promote_next() {
 
 void StreamConnection::lead(Waiter& waiter, Time deadline, Time now) {
   Reactor::about_to_wait();
-  if (!std::exchange(has_receive_timeout_, true)) {
-    timeval pause{};
-    pause.tv_sec = receive_pause.count();
-    setsockopt(socket_.get(), SOL_SOCKET, SO_RCVTIMEO, &pause, sizeof pause);
-  }
+  limit_receive_time();
   // Nearly always the first receive brings the answer.
   bool may_block = deadline - now > 2 * receive_pause;
   {
@@ -128,6 +125,14 @@ void StreamConnection::lead(Waiter& waiter, Time deadline, Time now) {
     }
   }
   resign(waiter);
+}
+
+// With the read turn.
+void StreamConnection::limit_receive_time() {
+  if (std::exchange(has_receive_timeout_, true)) return;
+  timeval pause{};
+  pause.tv_usec = std::chrono::microseconds(receive_pause).count();
+  setsockopt(socket_.get(), SOL_SOCKET, SO_RCVTIMEO, &pause, sizeof pause);
 }
 
 // What a caller has read that is not for callers.
@@ -194,15 +199,80 @@ void StreamConnection::watch_again() {
 
 // On the watching thread.
 void StreamConnection::unpark() {
+  Milliseconds next{};
+  bool is_stuck = false;
   {
     const std::lock_guard lock(turns_);
-    if (std::exchange(leads_seen_, leads_) == leads_) {
+    const bool is_quiet = std::exchange(leads_seen_, leads_) == leads_;
+    if (is_quiet && !(is_stayed_with_ && is_read_)) {
       is_park_timed_ = false;
       if (!is_read_) watch_again();
-      return;
+      is_stuck = is_stayed_with_;
     }
+    next = park_time();
+    if (!is_park_timed_ && !is_stuck) return;
   }
-  reactor_->schedule(park_timer_, weak_from_this(), Clock::now() + park_time);
+  if (is_stuck) {
+    on_stuck();
+  } else {
+    reactor_->schedule(park_timer_, weak_from_this(), Clock::now() + next);
+  }
+}
+
+// Staying
+
+// With the read turn, after a receive: whether requests have come close after each other for a
+// while. Asked again, only after another while.
+bool StreamConnection::is_busy(Time last_received) {
+  constexpr Milliseconds close{8};  // the clock has steps of 4 ms
+  constexpr unsigned while_of_receives = 64;
+  const bool is_close = last_received_.load(std::memory_order_relaxed) - last_received < close;
+  busy_receives_ = is_close ? busy_receives_ + 1 : 0;
+  if (busy_receives_ < while_of_receives) return false;
+  busy_receives_ = 0;
+  return true;
+}
+
+void StreamConnection::stay(Scratch& scratch) {
+  if (!reactor_->begin_stay()) return;
+  for (bool goes_on = begin_staying(); goes_on;) {
+    limit_receive_time();
+    bool is_full = false;
+    const Received received = receive(scratch, true, is_full);
+    leave_read_turn(scratch, true);
+    goes_on = go_on_staying(received);
+  }
+  reactor_->end_stay();
+}
+
+bool StreamConnection::begin_staying() {
+  const std::lock_guard lock(turns_);
+  if (is_closing_ || is_read_ || is_stalled_ || watch_ != Watch::full) return false;
+  is_stayed_with_ = true;
+  set_watch(Watch::parked);
+  read_to_stay();
+  return true;
+}
+
+bool StreamConnection::go_on_staying(Received received) {
+  const std::lock_guard lock(turns_);
+  if (received == Received::some && !is_closing_ && !is_read_ && !is_stalled_ &&
+      watch_ == Watch::parked && !reactor_->is_stay_over()) {
+    read_to_stay();
+    return true;
+  }
+  is_stayed_with_ = false;
+  if (!is_read_) watch_again();
+  return false;
+}
+
+// Under turns_.
+void StreamConnection::read_to_stay() {
+  is_read_ = true;
+  ++leads_;
+  if (std::exchange(is_park_timed_, true)) return;
+  leads_seen_ = leads_;
+  reactor_->schedule(park_timer_, weak_from_this(), Clock::now() + park_time());
 }
 
 }  // namespace rr::channel

@@ -46,13 +46,15 @@ class RawPeer {
   RawPeer& operator=(const RawPeer&) = delete;
 
   /// A question that every node answers, with `size` bytes that mean nothing.
-  void ask_for_node_info(std::size_t size = 0) {
+  void ask_for_node_info(std::size_t size = 0) { ask(EntryType::get_node_info, size); }
+  /// A message of one entry, with `size` bytes in an element.
+  void ask(EntryType type, std::size_t size = 0) {
     Writer writer;
     writer.reset(MessageVersion::v2);
     const std::size_t end = writer.position();
     const std::vector<char> filling(size, 'x');
     if (size != 0) writer.string_element("filling", {filling.data(), filling.size()});
-    writer.entry({.type = EntryType::get_node_info}, size == 0 ? 0 : 1, end);
+    writer.entry({.type = type}, size == 0 ? 0 : 1, end);
     writer.message({}, 1);
     const std::vector<std::byte> bytes = writer.copy();
     for (std::size_t sent = 0; sent < bytes.size();) {

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+// Threads of the reactor that stay with a busy connection.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <functional>
+#include <future>
+#include <memory>
+#include <thread>
+
+#include "rr/options.hpp"
+#include "runtime/cpp/src/channel/stream_connection.hpp"
+#include "runtime/cpp/src/node/testing/gate.hpp"
+#include "runtime/cpp/src/node/testing/pair.hpp"
+#include "runtime/cpp/src/node/testing/raw_peer.hpp"
+
+namespace rr::testing {
+namespace {
+
+using namespace std::chrono_literals;
+
+// Answers each request with an empty entry, after what the test gives it to do.
+class Answering final : public channel::Receiver {
+ public:
+  std::function<void()> work;
+  channel::Connection* connection = nullptr;
+  std::atomic<bool> is_closed{false};
+
+  void take_answer(const Message& /*message*/, const Entry& /*entry*/, const MemoryRef& /*owner*/,
+                   channel::Laters& /*laters*/) override {}
+  void handle(const Message& /*message*/, const Entry& /*first*/,
+              const MemoryRef& /*owner*/) override {
+    if (work) work();
+    Writer writer;
+    writer.reset(MessageVersion::v2);
+    writer.entry({.type = EntryType::get_node_info_ret}, 0, writer.position());
+    writer.message({}, 1);
+    connection->reply(writer);
+  }
+  void lost(const Error& /*why*/, channel::Laters& /*laters*/) override {}
+  void closed() override { is_closed = true; }
+};
+
+class Staying : public ::testing::Test {
+ protected:
+  struct Link {
+    std::unique_ptr<RawPeer> peer;
+    std::shared_ptr<Answering> receiver = std::make_shared<Answering>();
+    std::shared_ptr<channel::StreamConnection> connection;
+
+    void call() {
+      peer->ask_for_node_info();
+      ASSERT_EQ(peer->next_type(), EntryType::get_node_info_ret);
+    }
+  };
+
+  Staying() { reactor_->start(); }
+  ~Staying() override {
+    for (const auto& link : links_) {
+      link->connection->close(Error(ErrorCode::connection_error, "the test is over"));
+    }
+    reactor_->wait_for_connections();
+    reactor_->stop();
+  }
+
+  Link& connect() {
+    auto link = std::make_unique<Link>();
+    int other = -1;
+    link->peer = std::make_unique<RawPeer>(RawPeer::Paired{other});
+    link->connection = std::make_shared<channel::StreamConnection>(
+        channel::StreamConnection::Role::server, channel::Descriptor(other), reactor_, options_);
+    link->receiver->connection = link->connection.get();
+    link->connection->start(link->receiver);
+    links_.push_back(std::move(link));
+    return *links_.back();
+  }
+  // Until a thread stays with the connection, which is alone.
+  void keep_busy(Link& link) {
+    ASSERT_TRUE(eventually([&] {
+      link.call();
+      return reactor_->stays() == 1;
+    }));
+  }
+
+  std::shared_ptr<const NodeOptions> options_ = std::make_shared<NodeOptions>();
+  // Four threads: one may stay.
+  std::shared_ptr<channel::Reactor> reactor_ = std::make_shared<channel::Reactor>(4);
+  std::vector<std::unique_ptr<Link>> links_;
+};
+
+TEST_F(Staying, LastsWhileTheConnectionIsBusy) {
+  Link& link = connect();
+  EXPECT_EQ(reactor_->stays(), 0U);
+  link.call();
+  EXPECT_EQ(reactor_->stays(), 0U);
+  keep_busy(link);
+  for (int i = 0; i < 1000; ++i) link.call();
+  EXPECT_TRUE(eventually([&] { return reactor_->stays() == 0; }));
+  link.call();
+  keep_busy(link);
+}
+
+TEST_F(Staying, IsForAsManyAsThereAreThreadsFor) {
+  Link& first = connect();
+  Link& second = connect();
+  keep_busy(first);
+  std::atomic<bool> is_over{false};
+  std::thread other([&] {
+    while (!is_over) first.call();
+  });
+  for (int i = 0; i < 1000; ++i) second.call();
+  EXPECT_EQ(reactor_->stays(), 1U);
+  is_over = true;
+  other.join();
+}
+
+TEST_F(Staying, DoesNotKeepASlowHandlersConnectionFromBeingRead) {
+  Link& link = connect();
+  Gate gate;
+  std::atomic<bool> is_slow{false};
+  link.receiver->work = [&] {
+    if (is_slow) gate.pass();
+  };
+  keep_busy(link);
+  is_slow = true;
+  link.peer->ask_for_node_info();
+  ASSERT_TRUE(gate.has_entered());
+  link.peer->ask_for_node_info();
+  link.peer->ask(EntryType::connection_test);
+  EXPECT_EQ(link.peer->next_type(), EntryType::connection_test_ret);
+  EXPECT_EQ(gate.entered(), 1);
+  is_slow = false;
+  gate.open();
+  EXPECT_EQ(link.peer->next_type(), EntryType::get_node_info_ret);
+  EXPECT_EQ(link.peer->next_type(), EntryType::get_node_info_ret);
+  link.call();
+}
+
+TEST_F(Staying, EndsWithTheConnection) {
+  Link& link = connect();
+  keep_busy(link);
+  link.peer.reset();
+  EXPECT_TRUE(eventually([&] { return link.receiver->is_closed.load(); }));
+  EXPECT_TRUE(eventually([&] { return reactor_->stays() == 0; }));
+}
+
+TEST_F(Staying, EndsWhenTheConnectionIsClosedHere) {
+  Link& link = connect();
+  keep_busy(link);
+  link.connection->close(Error(ErrorCode::connection_error, "no more"));
+  EXPECT_TRUE(link.peer->is_closed());
+  EXPECT_TRUE(eventually([&] { return link.receiver->is_closed.load(); }));
+}
+
+TEST_F(Staying, EndsWhenTheThreadIsNeeded) {
+  Link& link = connect();
+  keep_busy(link);
+  std::atomic<bool> is_over{false};
+  std::thread caller([&] {
+    while (!is_over) link.call();
+  });
+  Gate gate;  // one thread stays, one polls, one watches: two that wait leave nobody to poll
+  for (int i = 1; i <= 2; ++i) {
+    reactor_->post([&] { gate.pass(); });
+    ASSERT_TRUE(gate.has_entered(i));
+  }
+  std::promise<void> third;
+  reactor_->post([&] { third.set_value(); });
+  EXPECT_EQ(third.get_future().wait_for(20s), std::future_status::ready);
+  EXPECT_EQ(reactor_->stays(), 0U);
+  gate.open();
+  is_over = true;
+  caller.join();
+  keep_busy(link);
+}
+
+TEST(StayingNodes, CanBeShutDownWhileClientsCall) {
+  Pair pair;
+  std::vector<std::thread> callers;
+  std::atomic<int> calls{0};
+  for (int i = 0; i < 3; ++i) {
+    callers.emplace_back([&, counter = pair.connect()]() mutable {
+      const Error error = error_of([&] {
+        while (true) {
+          EXPECT_EQ(counter->add(1, 2), 3);
+          ++calls;
+        }
+      });
+      // One call may be under way; if none is, the next one finds the session ended.
+      EXPECT_TRUE(error.code() == ErrorCode::connection_error ||
+                  error.code() == ErrorCode::invalid_operation)
+          << error.what();
+    });
+  }
+  EXPECT_TRUE(eventually([&] { return calls > 3000; }));
+  pair.server.shutdown();
+  for (std::thread& caller : callers) caller.join();
+}
+
+}  // namespace
+}  // namespace rr::testing
