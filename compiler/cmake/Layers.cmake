@@ -13,6 +13,7 @@ set(robdef_layers
   "compiler/backends/cpp: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/words.hpp"
   # Uses generated code, which stands on the runtime.
   "compiler/backends/cpp/generated_test.cpp: compiler/model runtime/cpp/include/rr"
+  "compiler/backends/cpp/generated_members_test.cpp: runtime/cpp/include/rr"
   "compiler/driver: compiler/diagnostics compiler/syntax compiler/model compiler/output compiler/backends"
 
   "runtime/cpp/include/rr:"

@@ -132,8 +132,9 @@ TEST_F(GeneratedMembers, GeneratorsGiveAndTake) {
                                                 std::vector{Mode::idle, Mode::busy, Mode::idle})
                   .all(),
               ElementsAre(Vector3{.x = 1}, Vector3{.x = 2}, Vector3{.x = 3}));
-  EXPECT_THAT(generators->token(rr::VarValue(1.5), 2).all(),
-              ElementsAre(rr::VarValue(1.5), rr::VarValue(1.5)));
+  const auto tokens = generators->token(rr::VarValue(1.5), 2).all();
+  ASSERT_EQ(tokens.size(), 2U);
+  for (const rr::VarValue& token : tokens) EXPECT_EQ(token.number<double>(), 1.5);
   EXPECT_THROW((void)generators->accept(), rr::Error);
 }
 

@@ -4,13 +4,13 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "rr/definition.hpp"
+#include "rr/function.hpp"
 #include "rr/holding.hpp"
 #include "rr/stub.hpp"
 
@@ -43,7 +43,7 @@ class PipeEnd {
   [[nodiscard]] std::uint32_t client() const;
   /// Called once when the end is closed, whoever closed it, on a thread of the node, behind the
   /// packets that a function gets.
-  void on_closed(std::function<void()> function);
+  void on_closed(Function<void()> function);
   /// Packets that wait to be received.
   [[nodiscard]] std::size_t available() const;
   /// Waits until a packet is there. False when the time was over, or the end closed, before.
@@ -57,7 +57,7 @@ class PipeEnd {
   /// Whether packets are acknowledged; then on_acknowledged gets their numbers, and
   /// unacknowledged() says how many are still on their way. Off at first.
   void ask_for_acknowledgements(bool on = true);
-  void on_acknowledged(std::function<void(std::uint32_t)> function);
+  void on_acknowledged(Function<void(std::uint32_t)> function);
   [[nodiscard]] std::size_t unacknowledged() const;
   /// Waits until at most so many bytes of the connection wait to be sent: what who sends more than
   /// the other side takes does before each packet. False when the time was over, or the end closed,
@@ -79,7 +79,7 @@ class PipeEnd {
   std::uint32_t send(const void* value);
   /// While there is a function, packets go to it, in order, on a thread of the node, and none
   /// waits. The newest one counts.
-  Subscription on_received(std::function<void(std::shared_ptr<void>)> function);
+  Subscription on_received(Function<void(std::shared_ptr<void>)> function);
   /// The completion gets the next packet; its result is a shared_ptr<void>.
   void start_receive(std::unique_ptr<Completion> completion);
   [[noreturn]] static void throw_no_packet();  // invalid_operation
@@ -180,7 +180,7 @@ class PipeServerBase {
   PipeServerBase(const Skeleton& skeleton, const Member& member, const Holding& holding);
   void send_all(const void* value) const;
   [[nodiscard]] std::vector<PipeEnd> ends() const;
-  void set_connected(std::function<void(PipeEnd)> function) const;
+  void set_connected(Function<void(PipeEnd)> function) const;
 
   const Skeleton* skeleton_;
   const Member* member_;

@@ -3,13 +3,13 @@
 
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "rr/definition.hpp"
+#include "rr/function.hpp"
 #include "rr/holding.hpp"
 #include "rr/stub.hpp"
 #include "rr/timed.hpp"
@@ -32,7 +32,7 @@ class WireEnd {
   [[nodiscard]] bool is_open() const;
   /// Called once when the end is closed, whoever closed it, on a thread of the node; at once when
   /// it is closed already.
-  void on_closed(std::function<void()> function);
+  void on_closed(Function<void()> function);
   /// On the service's side: number of the client's endpoint in this node. 0 on the client's side.
   [[nodiscard]] std::uint32_t client() const;
 
@@ -49,7 +49,7 @@ class WireEnd {
   /// Calls `function` with the value that is there, and each that arrives and is newer than those
   /// before it, in order, on a thread of the node; a function that is slow misses values, never the
   /// newest.
-  Subscription on_received(std::function<void(const void*, const TimeSpec&)> function);
+  Subscription on_received(Function<void(const void*, const TimeSpec&)> function);
   /// Sends; throws rr::Error (invalid_operation when closed, connection_error when the connection
   /// breaks; read_only_member, write_only_member for a direction that the wire does not have;
   /// data_type_error for what may not travel).
@@ -211,20 +211,20 @@ class WireServerBase {
 
  protected:
   struct Functions {
-    std::function<void(WireEnd)> connected;
-    std::function<std::shared_ptr<void>()> peek_in;
-    std::function<std::shared_ptr<void>()> peek_out;
-    std::function<void(const void*, const TimeSpec&, std::uint32_t)> received;
+    Function<void(WireEnd)> connected;
+    Function<std::shared_ptr<void>()> peek_in;
+    Function<std::shared_ptr<void>()> peek_out;
+    Function<void(const void*, const TimeSpec&, std::uint32_t)> received;
   };
   WireServerBase(const Skeleton& skeleton, const Member& member, const Holding& holding);
   void send_all(const void* value) const;
   std::shared_ptr<const void> received(TimeSpec& time) const;
   [[nodiscard]] std::vector<WireEnd> ends() const;
-  void set_connected(std::function<void(WireEnd)> function) const;
-  void set_peek_in(std::function<std::shared_ptr<void>()> function) const;
-  void set_peek_out(std::function<std::shared_ptr<void>()> function) const;
+  void set_connected(Function<void(WireEnd)> function) const;
+  void set_peek_in(Function<std::shared_ptr<void>()> function) const;
+  void set_peek_out(Function<std::shared_ptr<void>()> function) const;
   void set_received(
-      std::function<void(const void*, const TimeSpec&, std::uint32_t)> function) const;
+      Function<void(const void*, const TimeSpec&, std::uint32_t)> function) const;
 
   const Skeleton* skeleton_;
   const Member* member_;

@@ -72,12 +72,12 @@ MessageVersion PipeEnd::State::version() const {
 // acknowledges too much gains nothing.
 void PipeEnd::State::take_acknowledgement(std::uint32_t number) {
   if (acknowledged_.load() < asked_.load()) acknowledged_.fetch_add(1);
-  std::shared_ptr<const std::function<void(std::uint32_t)>> function;
+  Function<void(std::uint32_t)> function;
   {
     const std::lock_guard lock(mutex_);
     function = acknowledged_function_;
   }
-  if (function && *function) call([&] { (*function)(number); });
+  if (function) call([&] { function(number); });
 }
 
 std::size_t PipeEnd::State::unacknowledged() const {
@@ -86,11 +86,9 @@ std::size_t PipeEnd::State::unacknowledged() const {
   return asked > acknowledged ? asked - acknowledged : 0;
 }
 
-void PipeEnd::State::on_acknowledged(std::function<void(std::uint32_t)> function) {
-  std::shared_ptr<const std::function<void(std::uint32_t)>> shared =
-      std::make_shared<std::function<void(std::uint32_t)>>(std::move(function));
+void PipeEnd::State::on_acknowledged(Function<void(std::uint32_t)> function) {
   const std::lock_guard lock(mutex_);
-  acknowledged_function_.swap(shared);  // what was there before ends behind the lock
+  std::swap(acknowledged_function_, function);  // what was there before ends behind the lock
 }
 
 bool PipeEnd::State::wait_sent(std::chrono::milliseconds limit, std::size_t bytes) const {
@@ -118,7 +116,7 @@ bool PipeEnd::is_open() const { return state_ && state_->is_open(); }
 std::int32_t PipeEnd::index() const { return need(state_).identity.index; }
 bool PipeEnd::is_unreliable() const { return need(state_).identity.is_unreliable; }
 std::uint32_t PipeEnd::client() const { return need(state_).identity.client; }
-void PipeEnd::on_closed(std::function<void()> function) {
+void PipeEnd::on_closed(Function<void()> function) {
   need(state_).on_closed(std::move(function));
 }
 std::size_t PipeEnd::available() const { return need(state_).available(); }
@@ -128,7 +126,7 @@ void PipeEnd::set_queue_limit(std::size_t packets, WhenFull when_full, std::size
 }
 std::size_t PipeEnd::lost_count() const { return need(state_).lost_count(); }
 void PipeEnd::ask_for_acknowledgements(bool on) { need(state_).ask_for_acknowledgements(on); }
-void PipeEnd::on_acknowledged(std::function<void(std::uint32_t)> function) {
+void PipeEnd::on_acknowledged(Function<void(std::uint32_t)> function) {
   need(state_).on_acknowledged(std::move(function));
 }
 std::size_t PipeEnd::unacknowledged() const { return need(state_).unacknowledged(); }
@@ -138,7 +136,7 @@ bool PipeEnd::wait_sent(std::chrono::milliseconds limit, std::size_t bytes) cons
 std::shared_ptr<void> PipeEnd::take() { return need(state_).take(); }
 std::shared_ptr<const void> PipeEnd::peek() const { return need(state_).peek(); }
 std::uint32_t PipeEnd::send(const void* value) { return need(state_).send(value); }
-Subscription PipeEnd::on_received(std::function<void(std::shared_ptr<void>)> function) {
+Subscription PipeEnd::on_received(Function<void(std::shared_ptr<void>)> function) {
   return need(state_).on_received(std::move(function));
 }
 void PipeEnd::start_receive(std::unique_ptr<Completion> completion) {

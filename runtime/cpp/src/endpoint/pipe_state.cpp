@@ -22,7 +22,7 @@ Error closed_error() { return {ErrorCode::invalid_operation, "the pipe endpoint 
 // A function that gets packets.
 class PipeEnd::State::Receiver final : public Subscription::Handler {
  public:
-  explicit Receiver(std::function<void(std::shared_ptr<void>)> function)
+  explicit Receiver(Function<void(std::shared_ptr<void>)> function)
       : function_(std::move(function)) {}
   void receive(std::shared_ptr<void> packet) {
     run([&] { function_(std::move(packet)); });
@@ -31,7 +31,7 @@ class PipeEnd::State::Receiver final : public Subscription::Handler {
  private:
   void drop() override { function_ = nullptr; }
 
-  std::function<void(std::shared_ptr<void>)> function_;
+  Function<void(std::shared_ptr<void>)> function_;
 };
 
 PipeEnd::State::State(std::shared_ptr<const endpoint::Core> core,
@@ -147,7 +147,7 @@ bool PipeEnd::State::deliver_one(std::unique_lock<std::mutex>& lock) {
   return true;
 }
 
-void PipeEnd::State::call(const std::function<void()>& function) const {
+void PipeEnd::State::call(const Function<void()>& function) const {
   try {
     function();
   } catch (const std::exception& error) {
@@ -205,7 +205,7 @@ void PipeEnd::State::set_queue_limit(std::size_t packets, WhenFull when_full, st
   when_full_ = when_full;
 }
 
-Subscription PipeEnd::State::on_received(std::function<void(std::shared_ptr<void>)> function) {
+Subscription PipeEnd::State::on_received(Function<void(std::shared_ptr<void>)> function) {
   auto receiver = std::make_shared<Receiver>(std::move(function));
   bool has_more = false;
   std::shared_ptr<Receiver> before = receiver;
@@ -234,10 +234,10 @@ void PipeEnd::State::start_receive(std::unique_ptr<Completion> completion) {
   if (side) side->connection().expect();
 }
 
-void PipeEnd::State::on_closed(std::function<void()> function) {
+void PipeEnd::State::on_closed(Function<void()> function) {
   {
     const std::lock_guard lock(mutex_);
-    closed_function_.swap(function);
+    std::swap(closed_function_, function);  // the old one goes without the lock
     if (!is_closed_) return;
   }
   deliver_soon();

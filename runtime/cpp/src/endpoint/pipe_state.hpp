@@ -71,7 +71,7 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   [[nodiscard]] std::size_t unacknowledged() const;
   bool wait_sent(std::chrono::milliseconds limit, std::size_t bytes) const;
   void ask_for_acknowledgements(bool on) { asks_.store(on, std::memory_order_relaxed); }
-  void on_acknowledged(std::function<void(std::uint32_t)> function);
+  void on_acknowledged(Function<void(std::uint32_t)> function);
 
   // Receiving (pipe_state.cpp)
   /// Takes a packet that has arrived. Runs no user code: deliver() does. False when the end must be
@@ -86,12 +86,12 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   [[nodiscard]] std::size_t available() const;
   [[nodiscard]] std::size_t lost_count() const;
   void set_queue_limit(std::size_t packets, WhenFull when_full, std::size_t bytes);
-  Subscription on_received(std::function<void(std::shared_ptr<void>)> function);
+  Subscription on_received(Function<void(std::shared_ptr<void>)> function);
   void start_receive(std::unique_ptr<Completion> completion);
 
   // The end
   [[nodiscard]] bool is_open() const { return !is_closed_.load(std::memory_order_acquire); }
-  void on_closed(std::function<void()> function);
+  void on_closed(Function<void()> function);
   /// Ends it on this side only. False when it has ended already.
   bool finish();
   /// The side, while it is open.
@@ -110,7 +110,7 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   [[nodiscard]] bool push(Packet packet);
   Packet pop();
   bool deliver_one(std::unique_lock<std::mutex>& lock);
-  void call(const std::function<void()>& function) const;
+  void call(const Function<void()>& function) const;
 
   const std::shared_ptr<const endpoint::Core> core_;
   const std::string index_text_;
@@ -137,8 +137,8 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   bool is_delivering_ = false;
   std::shared_ptr<Receiver> receiver_;
   std::deque<std::unique_ptr<Completion>> completions_;
-  std::function<void()> closed_function_;
-  std::shared_ptr<const std::function<void(std::uint32_t)>> acknowledged_function_;
+  Function<void()> closed_function_;
+  Function<void(std::uint32_t)> acknowledged_function_;
 };
 
 }  // namespace rr

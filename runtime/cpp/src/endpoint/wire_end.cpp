@@ -128,7 +128,7 @@ void WireEnd::close() {
   if (state_) state_->close();
 }
 bool WireEnd::is_open() const { return state_ && state_->is_open(); }
-void WireEnd::on_closed(std::function<void()> function) {
+void WireEnd::on_closed(Function<void()> function) {
   need(state_).on_closed(std::move(function));
 }
 std::uint32_t WireEnd::client() const { return state_ ? state_->client() : 0; }
@@ -141,7 +141,7 @@ bool WireEnd::wait_received(std::chrono::milliseconds limit) const {
 void WireEnd::set_lifespan(std::chrono::milliseconds lifespan) {
   need(state_).set_lifespan(lifespan);
 }
-Subscription WireEnd::on_received(std::function<void(const void*, const TimeSpec&)> function) {
+Subscription WireEnd::on_received(Function<void(const void*, const TimeSpec&)> function) {
   return need(state_).on_received(std::move(function));
 }
 void WireEnd::send(const void* value) { need(state_).send(value); }

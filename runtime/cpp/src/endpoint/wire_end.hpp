@@ -44,11 +44,11 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   virtual void close() = 0;
   [[nodiscard]] virtual std::uint32_t client() const { return 0; }
   [[nodiscard]] bool is_open() const { return phase_ == Phase::open; }
-  void on_closed(std::function<void()> function);
+  void on_closed(Function<void()> function);
   std::shared_ptr<const void> received(TimeSpec& time) const;
   bool wait_received(std::chrono::milliseconds limit);
   void set_lifespan(std::chrono::milliseconds lifespan);
-  Subscription on_received(std::function<void(const void*, const TimeSpec&)> function);
+  Subscription on_received(Function<void(const void*, const TimeSpec&)> function);
   void send(const void* value);
   std::shared_ptr<const void> sent(TimeSpec& time) const;
 
@@ -103,7 +103,7 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   void start_telling();
   void tell_all();
   bool next_turn(std::shared_ptr<const void>& value, TimeSpec& time, bool& tells_side,
-                 std::vector<std::function<void()>>& closed,
+                 std::vector<Function<void()>>& closed,
                  std::vector<std::shared_ptr<Listener>>& gone);
   template <class Call>
   void guard(const Call& call) const;
@@ -127,7 +127,7 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   bool is_own_sent_ = false;
 
   std::vector<std::shared_ptr<Listener>> listeners_;
-  std::vector<std::function<void()>> on_closed_;
+  std::vector<Function<void()>> on_closed_;
   std::uint64_t told_side_ = 0;                  // the value that tell() was called for
   bool is_telling_ = false;                      // or will be, by posted work
   bool is_over_ = false;                         // all has been told

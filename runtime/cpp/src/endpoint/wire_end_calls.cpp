@@ -9,7 +9,7 @@ namespace rr {
 
 class WireEnd::State::Listener final : public Subscription::Handler {
  public:
-  Listener(std::function<void(const void*, const TimeSpec&)> function, std::uint64_t last)
+  Listener(Function<void(const void*, const TimeSpec&)> function, std::uint64_t last)
       : seen(last), function_(std::move(function)) {}
 
   void call(const void* value, const TimeSpec& time) {
@@ -21,7 +21,7 @@ class WireEnd::State::Listener final : public Subscription::Handler {
  private:
   void drop() override { function_ = nullptr; }
 
-  std::function<void(const void*, const TimeSpec&)> function_;
+  Function<void(const void*, const TimeSpec&)> function_;
 };
 
 // Calls what is the program's.
@@ -39,7 +39,7 @@ void WireEnd::State::guard(const Call& call) const {
 }
 
 Subscription WireEnd::State::on_received(
-    std::function<void(const void*, const TimeSpec&)> function) {
+    Function<void(const void*, const TimeSpec&)> function) {
   channel::Laters laters;
   std::shared_ptr<Listener> listener;
   bool must_start = false;
@@ -57,7 +57,7 @@ Subscription WireEnd::State::on_received(
   return Subscription(std::move(listener));
 }
 
-void WireEnd::State::on_closed(std::function<void()> function) {
+void WireEnd::State::on_closed(Function<void()> function) {
   {
     const std::lock_guard lock(mutex_);
     if (!is_over_) {
@@ -115,7 +115,7 @@ void WireEnd::State::tell_all() {
   std::shared_ptr<const void> value;
   TimeSpec time;
   bool tells_side = false;
-  std::vector<std::function<void()>> closed;
+  std::vector<Function<void()>> closed;
   std::vector<std::shared_ptr<Listener>> gone;
   while (next_turn(value, time, tells_side, closed, gone)) {
     gone.clear();
@@ -124,14 +124,14 @@ void WireEnd::State::tell_all() {
     }
     turn_.clear();
     if (tells_side) guard([&] { tell(value.get(), time); });
-    for (const std::function<void()>& function : closed) guard(function);
+    for (const Function<void()>& function : closed) guard(function);
     closed.clear();
   }
 }
 
 // What is to be told next. False when there is nothing: then this thread is done.
 bool WireEnd::State::next_turn(std::shared_ptr<const void>& value, TimeSpec& time, bool& tells_side,
-                               std::vector<std::function<void()>>& closed,
+                               std::vector<Function<void()>>& closed,
                                std::vector<std::shared_ptr<Listener>>& gone) {
   std::shared_ptr<const void> before;
   {

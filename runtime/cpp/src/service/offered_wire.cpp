@@ -205,17 +205,17 @@ std::vector<WireEnd> WireServerBase::ends() const {
   for (const auto& end : *all) result.emplace_back(end);
   return result;
 }
-void WireServerBase::set_connected(std::function<void(WireEnd)> function) const {
+void WireServerBase::set_connected(Function<void(WireEnd)> function) const {
   offered(*skeleton_, *member_).set_connected(std::move(function));
 }
-void WireServerBase::set_peek_in(std::function<std::shared_ptr<void>()> function) const {
+void WireServerBase::set_peek_in(Function<std::shared_ptr<void>()> function) const {
   offered(*skeleton_, *member_).set_peek_in(std::move(function));
 }
-void WireServerBase::set_peek_out(std::function<std::shared_ptr<void>()> function) const {
+void WireServerBase::set_peek_out(Function<std::shared_ptr<void>()> function) const {
   offered(*skeleton_, *member_).set_peek_out(std::move(function));
 }
 void WireServerBase::set_received(
-    std::function<void(const void*, const TimeSpec&, std::uint32_t)> function) const {
+    Function<void(const void*, const TimeSpec&, std::uint32_t)> function) const {
   offered(*skeleton_, *member_).set_received(std::move(function));
 }
 

@@ -24,9 +24,9 @@ class OfferedWire {
  public:
   using End = std::shared_ptr<ServedWireEnd>;
   using Ends = std::vector<End>;
-  using Connected = std::function<void(WireEnd)>;
-  using Peek = std::function<std::shared_ptr<void>()>;
-  using Received = std::function<void(const void*, const TimeSpec&, std::uint32_t)>;
+  using Connected = Function<void(WireEnd)>;
+  using Peek = Function<std::shared_ptr<void>()>;
+  using Received = Function<void(const void*, const TimeSpec&, std::uint32_t)>;
 
   explicit OfferedWire(const Member& member) : member_(member) {}
 

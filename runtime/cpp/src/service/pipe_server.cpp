@@ -125,7 +125,7 @@ std::vector<PipeEnd> PipeServerBase::ends() const {
   return result;
 }
 
-void PipeServerBase::set_connected(std::function<void(PipeEnd)> function) const {
+void PipeServerBase::set_connected(Function<void(PipeEnd)> function) const {
   place_of(*skeleton_, *member_)->set_connected(std::move(function));
 }
 

@@ -20,14 +20,12 @@ constexpr Parameter index_parameter = parameter<std::int32_t>("index");
 
 }  // namespace
 
-void PipePlace::set_connected(std::function<void(PipeEnd)> function) {
-  std::shared_ptr<const std::function<void(PipeEnd)>> shared =
-      std::make_shared<std::function<void(PipeEnd)>>(std::move(function));
+void PipePlace::set_connected(Function<void(PipeEnd)> function) {
   const std::lock_guard lock(mutex_);
-  connected_.swap(shared);  // what was there before ends behind the lock
+  std::swap(connected_, function);  // what was there before ends behind the lock
 }
 
-std::shared_ptr<const std::function<void(PipeEnd)>> PipePlace::connected() const {
+Function<void(PipeEnd)> PipePlace::connected() const {
   const std::lock_guard lock(mutex_);
   return connected_;
 }
@@ -104,7 +102,7 @@ void Pipes::connect(const Question& question) {
   const End end = open(question, *object, member);
   try {
     const auto connected = end->place->connected();
-    if (connected && *connected) (*connected)(PipeEnd(end));
+    if (connected) connected(PipeEnd(end));
   } catch (...) {
     close(*end, false);
     throw;

@@ -25,8 +25,8 @@ class PipePlace {
   using End = std::shared_ptr<PipeEnd::State>;
   using Ends = std::vector<End>;
 
-  void set_connected(std::function<void(PipeEnd)> function);
-  [[nodiscard]] std::shared_ptr<const std::function<void(PipeEnd)>> connected() const;
+  void set_connected(Function<void(PipeEnd)> function);
+  [[nodiscard]] Function<void(PipeEnd)> connected() const;
   void set_backlog_limit(std::size_t packets);
   [[nodiscard]] std::size_t backlog_limit() const;
 
@@ -36,7 +36,7 @@ class PipePlace {
 
  private:
   mutable std::mutex mutex_;
-  std::shared_ptr<const std::function<void(PipeEnd)>> connected_;
+  Function<void(PipeEnd)> connected_;
   std::size_t backlog_limit_ = 0;
   std::shared_ptr<const Ends> ends_ = std::make_shared<Ends>();  // replaced, never changed
 };
