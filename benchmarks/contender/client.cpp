@@ -6,6 +6,7 @@
 #include <cstring>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -107,6 +108,23 @@ class Client final : public bench::Client {
     };
     for (int i = 0; i < run.outstanding; ++i) Issue{session, run, live}();
     while (live != 0) bench::sleep_s(0.01);
+  }
+
+  void stream(int port, bench::StreamRun& run) override {
+    std::vector<std::unique_ptr<Session>> sessions;
+    std::vector<rr::Subscription> subscriptions;
+    for (int i = 0; i < run.subs; ++i) {
+      auto& session = *sessions.emplace_back(std::make_unique<Session>(node_, port));
+      bench::StreamSink& sink = *run.sinks[static_cast<std::size_t>(i)];
+      auto end = session.stub().states().connect();
+      subscriptions.push_back(end.on_packet([&sink](const std::optional<wire::JointState>& state) {
+        sink.on_packet(state->t_ns, state->q[0]);
+      }));
+    }
+    for (const auto& session : sessions) {
+      session->stub().subscribe(run.packets, run.rate, static_cast<std::uint32_t>(run.subs), false);
+    }
+    run.wait();
   }
 
   void codec(bench::CodecRun& run) override {

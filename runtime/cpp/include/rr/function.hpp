@@ -21,9 +21,9 @@ class Function<R(Arguments...)> {
   Function() = default;
   Function(std::nullptr_t) {}
   template <class Callable>
-    requires(!std::is_same_v<std::remove_cvref_t<Callable>, Function> &&
-             std::is_invocable_r_v<R, std::decay_t<Callable>&, Arguments...>)
-  Function(Callable&& callable) {
+  requires(!std::is_same_v<std::remove_cvref_t<Callable>, Function> &&
+           std::is_invocable_r_v<R, std::decay_t<Callable>&, Arguments...>)
+      Function(Callable&& callable) {
     using Held = HeldTarget<std::decay_t<Callable>>;
     if (!is_empty(callable)) target_ = std::make_shared<Held>(std::forward<Callable>(callable));
   }

@@ -223,8 +223,7 @@ class WireServerBase {
   void set_connected(Function<void(WireEnd)> function) const;
   void set_peek_in(Function<std::shared_ptr<void>()> function) const;
   void set_peek_out(Function<std::shared_ptr<void>()> function) const;
-  void set_received(
-      Function<void(const void*, const TimeSpec&, std::uint32_t)> function) const;
+  void set_received(Function<void(const void*, const TimeSpec&, std::uint32_t)> function) const;
 
   const Skeleton* skeleton_;
   const Member* member_;

@@ -90,6 +90,9 @@ class Connection {
   /// Messages may have full size from now on.
   void set_authorised() { is_authorised_.store(true, std::memory_order_relaxed); }
 
+  /// Throws rr::Error when a message, or an entry of one, cannot be sent: protocol_error for one
+  /// that is too large, or what the writer has failed with.
+  virtual void check_size(const Writer& message) const = 0;
   /// Sends a finished message now, or as soon as the other side takes it; never blocks. The writer
   /// can be used again at once. Throws rr::Error: protocol_error for one that is too large,
   /// connection_error when the connection is gone. `now` need not be exact.

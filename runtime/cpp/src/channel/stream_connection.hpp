@@ -60,6 +60,7 @@ class StreamConnection final : public Connection,
   void start(std::shared_ptr<Receiver> receiver);
 
   [[nodiscard]] std::string local_url() const override;
+  void check_size(const Writer& message) const override;
   using Connection::send;
   void send(Writer& message, Time now) override;
   void send_newest(Writer& message, const Newest& newest, Time now) override;
@@ -109,7 +110,6 @@ class StreamConnection final : public Connection,
   };
 
   // Sending (stream_sending.cpp, stream_streaming.cpp)
-  void check_size(const Writer& message) const;
   void send(Writer& message, Time now, const Newest* newest);
   void send_or_queue(Writer& message, Time now, const Newest* newest);
   [[nodiscard]] bool has_strings() const;

@@ -9,8 +9,8 @@
 #include "rr/error.hpp"
 #include "rr/type.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
-#include "runtime/cpp/src/endpoint/call_terms.hpp"
 #include "runtime/cpp/src/client/session.hpp"
+#include "runtime/cpp/src/endpoint/call_terms.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
 
 namespace rr::client {

@@ -63,9 +63,12 @@ std::shared_ptr<Stub> Session::make_stub(const std::string& told, const std::str
   }
   const ObjectType* known = nullptr;
   for (const std::string& type : types) {
-    if (known == nullptr) known = types_->find_object(type);
+    const ObjectType* const found = types_->find_object(type);
+    if (found == nullptr || found->make_stub == nullptr) continue;
+    known = found;
+    break;
   }
-  if (known == nullptr || known->make_stub == nullptr) {
+  if (known == nullptr) {
     throw Error(ErrorCode::service_error,
                 "Invalid object type: this program does not know `" + told + "`");
   }

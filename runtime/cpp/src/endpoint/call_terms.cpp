@@ -47,7 +47,8 @@ void Cancellation::State::add(std::shared_ptr<endpoint::Caller> caller, endpoint
 }
 
 void Cancellation::State::remove(const endpoint::Pending& call) {
-  std::shared_ptr<endpoint::Caller> caller;  // goes when the lock has, with what the program gave it
+  std::shared_ptr<endpoint::Caller>
+      caller;  // goes when the lock has, with what the program gave it
   const std::lock_guard lock(mutex_);
   const auto found = std::find_if(calls_.begin(), calls_.end(),
                                   [&](const Call& item) { return item.pending == &call; });

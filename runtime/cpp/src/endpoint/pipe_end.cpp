@@ -116,9 +116,7 @@ bool PipeEnd::is_open() const { return state_ && state_->is_open(); }
 std::int32_t PipeEnd::index() const { return need(state_).identity.index; }
 bool PipeEnd::is_unreliable() const { return need(state_).identity.is_unreliable; }
 std::uint32_t PipeEnd::client() const { return need(state_).identity.client; }
-void PipeEnd::on_closed(Function<void()> function) {
-  need(state_).on_closed(std::move(function));
-}
+void PipeEnd::on_closed(Function<void()> function) { need(state_).on_closed(std::move(function)); }
 std::size_t PipeEnd::available() const { return need(state_).available(); }
 bool PipeEnd::wait(std::chrono::milliseconds limit) const { return need(state_).wait(limit); }
 void PipeEnd::set_queue_limit(std::size_t packets, WhenFull when_full, std::size_t bytes) {

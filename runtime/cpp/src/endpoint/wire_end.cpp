@@ -128,9 +128,7 @@ void WireEnd::close() {
   if (state_) state_->close();
 }
 bool WireEnd::is_open() const { return state_ && state_->is_open(); }
-void WireEnd::on_closed(Function<void()> function) {
-  need(state_).on_closed(std::move(function));
-}
+void WireEnd::on_closed(Function<void()> function) { need(state_).on_closed(std::move(function)); }
 std::uint32_t WireEnd::client() const { return state_ ? state_->client() : 0; }
 std::shared_ptr<const void> WireEnd::received(TimeSpec& time) const {
   return state_ ? state_->received(time) : nullptr;

@@ -38,8 +38,7 @@ void WireEnd::State::guard(const Call& call) const {
   }
 }
 
-Subscription WireEnd::State::on_received(
-    Function<void(const void*, const TimeSpec&)> function) {
+Subscription WireEnd::State::on_received(Function<void(const void*, const TimeSpec&)> function) {
   channel::Laters laters;
   std::shared_ptr<Listener> listener;
   bool must_start = false;

@@ -8,6 +8,7 @@
 #include <boost/asio/use_future.hpp>
 #include <chrono>
 #include <future>
+#include <iterator>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -17,6 +18,7 @@
 #include "runtime/cpp/src/node/testing/async_counter.hpp"
 #include "runtime/cpp/src/node/testing/gate.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
+#include "runtime/cpp/src/node/testing/raw_client.hpp"
 #include "runtime/cpp/src/node/testing/raw_peer.hpp"
 
 namespace rr::testing {
@@ -366,6 +368,41 @@ TEST(Timeouts, AnInnerScopeKeepsWhatItDoesNotSay) {
     EXPECT_EQ(error_of([&] { counter->add(1, 2); }).code(), ErrorCode::operation_cancelled);
   }
   EXPECT_EQ(error_of([&] { counter->add(1, 2); }).code(), ErrorCode::operation_cancelled);
+}
+
+// A call of blob(size) with a number of its own.
+RawClient::Request blob_request(std::uint32_t id, std::uint32_t size) {
+  return {EntryType::function_call_req, "counter", "blob",
+          [size](Writer& writer) {
+            type_of<std::uint32_t>.write(writer, "size", &size);
+            return 1U;
+          },
+          id};
+}
+
+TEST(Bounds, AnswersThatAreTooLargeTogetherLeaveInSeveralMessages) {
+  Node node({.limits = {.message_size = 100'000}});
+  const Service service = node.register_service("counter", std::make_shared<Counter>());
+  RawClient client(node, "counter");
+  const std::vector<RawClient::Request> requests{blob_request(1, 60'000), blob_request(2, 20'000),
+                                                 blob_request(3, 200'000), blob_request(4, 50'000),
+                                                 blob_request(5, 10)};
+  client.send(requests);
+  std::vector<RawClient::Answer> answers;
+  std::size_t messages = 0;
+  for (; answers.size() < requests.size(); ++messages) {
+    auto more = client.receive_all();
+    ASSERT_FALSE(more.empty());
+    std::move(more.begin(), more.end(), std::back_inserter(answers));
+  }
+  EXPECT_GT(messages, 1U);
+  EXPECT_LT(messages, requests.size());
+  const std::vector<std::size_t> sizes{60'000, 20'000, 0, 50'000, 10};
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    EXPECT_EQ(answers[i].id, i + 1);
+    EXPECT_EQ(answers[i].error, i == 2 ? 2 : 0) << i;  // ProtocolError
+    EXPECT_GE(answers[i].elements.size(), sizes[i]);
+  }
 }
 
 TEST(Events, TooLargeAreReportedAndTheNextOneComes) {

@@ -12,7 +12,8 @@ namespace rr::service {
 
 class ServerEndpoint;
 
-/// Answers to the requests of one message, which leave in one message too, when the last is there.
+/// Answers to the requests of one message, which leave in one message too, when the last is there;
+/// in several if one cannot hold them.
 class Gathering {
  public:
   Gathering(std::weak_ptr<ServerEndpoint> endpoint, MessageVersion version, std::size_t count)
@@ -24,6 +25,8 @@ class Gathering {
   void put(std::size_t place, std::vector<std::byte> entry, bool is_late = false);
 
  private:
+  void send(ServerEndpoint& endpoint, std::size_t first, std::size_t end, bool is_late);
+
   const std::weak_ptr<ServerEndpoint> endpoint_;  // not kept by answers that are owed
   const MessageVersion version_;
   std::mutex mutex_;

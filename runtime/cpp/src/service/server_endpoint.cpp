@@ -122,6 +122,7 @@ Writer& ServerEndpoint::begin_answer(const Question& question) const {
 // Sends a finished answer, or puts it where those of the same message gather.
 void ServerEndpoint::finish(const Question& question, Writer& writer, std::string_view metadata) {
   if (question.gathering) {
+    connection_->check_size(writer);
     question.gathering->put(question.place, writer.copy());
   } else {
     send_answer(writer, 1, endpoint::answer_header(question.entry).type, Way::reply, metadata);
@@ -226,11 +227,12 @@ void ServerEndpoint::answer_late_text(const LateAnswer& late, std::string_view t
 }
 
 void ServerEndpoint::finish_late(const LateAnswer& late, Writer& writer) {
-  if (late.gathering) {
-    late.gathering->put(late.place, writer.copy(), true);
-    return;
-  }
   try {
+    if (late.gathering) {
+      connection_->check_size(writer);
+      late.gathering->put(late.place, writer.copy(), true);
+      return;
+    }
     send_answer(writer, 1, endpoint::answer_header(question_of(late)).type, Way::send);
   } catch (const Error& error) {
     if (connection_->is_closed() || error.code() == ErrorCode::connection_error) return;
@@ -244,23 +246,30 @@ void Gathering::put(std::size_t place, std::vector<std::byte> entry, bool is_lat
     entries_[place] = std::move(entry);
     if (--missing_ != 0) return;
   }
+  std::erase_if(entries_, [](const auto& each) { return each.empty(); });
+  const auto endpoint = endpoint_.lock();
+  if (endpoint && !entries_.empty()) send(*endpoint, 0, entries_.size(), is_late);
+}
+
+void Gathering::send(ServerEndpoint& endpoint, std::size_t first, std::size_t end, bool is_late) {
   Writer& writer = channel::thread_writer();
   writer.reset(version_);
-  std::uint32_t count = 0;
-  for (auto each = entries_.rbegin(); each != entries_.rend(); ++each) {
-    if (each->empty()) continue;
-    writer.prepend_bytes(each->data(), each->size());
-    ++count;
+  for (std::size_t i = end; i != first; --i) {
+    writer.prepend_bytes(entries_[i - 1].data(), entries_[i - 1].size());
   }
-  // Several entries have no type of their own; one that is left alone is a session's.
-  const auto endpoint = endpoint_.lock();
-  if (count == 0 || !endpoint) return;
   try {
-    endpoint->send_answer(writer, count, EntryType::function_call_res,
-                          is_late ? ServerEndpoint::Way::send : ServerEndpoint::Way::reply);
-  } catch (const Error&) {
-    // Too large together, or the client is gone: it runs into its time limit.
+    // Several entries have no type of their own; one that is left alone is a session's.
+    endpoint.send_answer(writer, static_cast<std::uint32_t>(end - first),
+                         EntryType::function_call_res,
+                         is_late ? ServerEndpoint::Way::send : ServerEndpoint::Way::reply);
+    return;
+  } catch (const Error& error) {
+    // Each fits alone. Otherwise the client is gone.
+    if (error.code() != ErrorCode::protocol_error || end - first == 1) return;
   }
+  const std::size_t middle = first + (end - first) / 2;
+  send(endpoint, first, middle, is_late);
+  send(endpoint, middle, end, is_late);
 }
 
 void ServerEndpoint::leave() {

@@ -36,9 +36,11 @@ constinit const Member board_members[] = {
 };
 
 constinit const ObjectType rr_PipeBoard{
-    "test.pipes.PipeBoard", rr_pipe_board_definition, {}, board_members, []() -> std::shared_ptr<Stub> {
-      return std::make_shared<PipeBoardStub>();
-    }};
+    "test.pipes.PipeBoard",
+    rr_pipe_board_definition,
+    {},
+    board_members,
+    []() -> std::shared_ptr<Stub> { return std::make_shared<PipeBoardStub>(); }};
 constinit const Definition rr_pipe_board_definition{
     "test.pipes", definition_text, {0, 10, 0, 0}, imports, {}, {}, objects};
 

@@ -25,9 +25,17 @@ class RawClient {
   /// Writes the elements of an entry, last first; returns how many.
   using Elements = std::function<std::uint32_t(Writer&)>;
 
+  struct Request {
+    EntryType type = EntryType::null;
+    std::string path;
+    std::string member;
+    Elements elements{};
+    std::uint32_t id = 7;
+  };
   struct Answer {
     EntryType type = EntryType::null;
     std::string member;
+    std::uint32_t id = 0;
     std::uint16_t error = 0;
     std::string header_metadata;
     std::string entry_metadata;
@@ -54,32 +62,56 @@ class RawClient {
 
   void send(EntryType type, std::string_view path, std::string_view member,
             const Elements& elements = nullptr) {
+    const Request request{type, std::string(path), std::string(member), elements};
+    send({&request, 1});
+  }
+  /// Several in one message.
+  void send(std::span<const Request> requests) {
     Writer writer;
     writer.reset(MessageVersion::v2);
-    const std::uint32_t count = elements ? elements(writer) : 0;
-    writer.entry({.type = type, .service_path = path, .member = member, .request_id = 7}, count, 0);
+    for (std::size_t i = requests.size(); i-- != 0;) {
+      const Request& request = requests[i];
+      const std::size_t end = writer.position();
+      const std::uint32_t count = request.elements ? request.elements(writer) : 0;
+      writer.entry({.type = request.type,
+                    .service_path = request.path,
+                    .member = request.member,
+                    .request_id = request.id},
+                   count, end);
+    }
     writer.message({.sender_node = own_,
                     .receiver_node = server_,
                     .sender_endpoint = 31,
                     .receiver_endpoint = endpoint_},
-                   1);
+                   static_cast<std::uint32_t>(requests.size()));
     sockets_.send(writer.copy());
   }
-  /// The next message; nothing when none comes in time.
+  /// The next message of one entry; nothing when none comes in time.
   std::optional<Answer> receive(int milliseconds = 10000) {
+    std::vector<Answer> answers = receive_all(milliseconds);
+    if (answers.size() != 1) return std::nullopt;
+    return std::move(answers.front());
+  }
+  /// The entries of the next message; none when none comes in time.
+  std::vector<Answer> receive_all(int milliseconds = 10000) {
     const std::vector<std::byte> bytes = sockets_.receive_message(milliseconds);
-    if (bytes.empty()) return std::nullopt;
     Message message;
-    Entry entry;
-    if (!read_message(bytes, {}, false, message, entry)) return std::nullopt;
+    Entry first;
+    if (bytes.empty() || !read_message(bytes, {}, false, message, first)) return {};
     if (endpoint_ == 0) endpoint_ = message.sender_endpoint;
-    return Answer{entry.type,
-                  std::string(entry.member),
-                  entry.error,
-                  std::string(message.metadata),
-                  std::string(entry.metadata),
-                  entry.element_count,
-                  {entry.elements.begin(), entry.elements.end()}};
+    std::vector<Answer> answers;
+    EntryReader entries(message);
+    for (Entry entry; entries.next(entry);) {
+      answers.push_back({entry.type,
+                         std::string(entry.member),
+                         entry.request_id,
+                         entry.error,
+                         std::string(message.metadata),
+                         std::string(entry.metadata),
+                         entry.element_count,
+                         {entry.elements.begin(), entry.elements.end()}});
+    }
+    return answers;
   }
   /// Sends a request; what comes next is its answer.
   Answer ask(EntryType type, std::string_view path, std::string_view member,
