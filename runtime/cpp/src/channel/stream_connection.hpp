@@ -34,9 +34,9 @@ namespace rr::channel {
 /// Calls in a tight loop find the socket unwatched ("parked") and leave it so; a timer of a
 /// millisecond puts it back under watch when calls have ceased.
 ///
-/// In the same way a thread of the reactor stays with a connection that brings one request after
-/// the other, and waits for the next one in a receive that blocks. A timer puts the socket back
-/// under watch when a handler takes long.
+/// In the same way a thread of the reactor stays with a connection that brings one message after
+/// the other while no caller reads, and waits for the next one in a receive that blocks. A timer
+/// puts the socket back under watch when a handler takes long.
 class StreamConnection final : public Connection,
                                public Pollable,
                                public Flushable,
@@ -165,9 +165,9 @@ class StreamConnection final : public Connection,
   [[nodiscard]] Milliseconds park_time() const;
   bool is_busy(Time last_received);
   void stay(Scratch& scratch);
-  bool begin_staying();
-  bool go_on_staying(Received received);
-  void read_to_stay();
+  bool begin_staying(std::uint32_t& leads);
+  bool go_on_staying(Received received, std::uint32_t& leads);
+  std::uint32_t read_to_stay();
 
   // Stream operations and heartbeats (stream_operations.cpp)
   bool take_own(const Message& message, const Entry& entry);
@@ -222,6 +222,7 @@ class StreamConnection final : public Connection,
   bool had_message_ = false;          // with the read turn
   bool has_receive_timeout_ = false;  // with the read turn
   unsigned busy_receives_ = 0;        // with the read turn
+  std::uint32_t busy_leads_ = 0;      // with the read turn
   bool holds_back_answers_ = false;   // with the dispatch turn
 
   std::mutex sending_;

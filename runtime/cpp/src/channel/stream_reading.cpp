@@ -71,7 +71,7 @@ void StreamConnection::read_as_reactor(bool until_end) {
     const Time last_received = last_received_.load(std::memory_order_relaxed);
     const Received received = receive(*scratch, false, is_full);
     const bool has_more = received == Received::some && (is_full || until_end);
-    const bool may_stay = role_ == Role::server && is_busy(last_received);
+    const bool may_stay = is_busy(last_received);
     const bool is_again = leave_read_turn(*scratch, true);
     if (!is_again && !has_more) {
       if (may_stay) stay(*scratch);
@@ -193,7 +193,7 @@ bool StreamConnection::leave_read_turn(Scratch& scratch, bool may_dispatch) {
     } else {
       is_read_ = false;
       is_again = !is_stalled_ && std::exchange(read_again_, false);
-      if (!is_park_timed_) watch_again();
+      if (!is_stayed_with_) watch_again();
     }
   }
   if (is_end) finish_close();
@@ -203,6 +203,7 @@ bool StreamConnection::leave_read_turn(Scratch& scratch, bool may_dispatch) {
     later();
   }
   scratch.laters.clear();
+  if (streamed_bytes_.load(std::memory_order_relaxed) != 0) flush();  // calls of completions
   if (has_turn) {
     Turn turn(*this, scratch);
     dispatch(turn);

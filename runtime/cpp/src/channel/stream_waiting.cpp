@@ -221,13 +221,15 @@ void StreamConnection::unpark() {
 
 // Staying
 
-// With the read turn, after a receive: whether requests have come close after each other for a
-// while. Asked again, only after another while.
+// With the read turn, after a receive: whether messages have come close after each other for a
+// while, in which no caller has read: it would have to follow. Asked again, only after another
+// while.
 bool StreamConnection::is_busy(Time last_received) {
   constexpr Milliseconds close{8};  // the clock has steps of 4 ms
   constexpr unsigned while_of_receives = 64;
   const bool is_close = last_received_.load(std::memory_order_relaxed) - last_received < close;
-  busy_receives_ = is_close ? busy_receives_ + 1 : 0;
+  const bool is_lone = std::exchange(busy_leads_, leads_) == leads_;  // the turn keeps leads_
+  busy_receives_ = is_close && is_lone ? busy_receives_ + 1 : 0;
   if (busy_receives_ < while_of_receives) return false;
   busy_receives_ = 0;
   return true;
@@ -235,30 +237,32 @@ bool StreamConnection::is_busy(Time last_received) {
 
 void StreamConnection::stay(Scratch& scratch) {
   if (!reactor_->begin_stay()) return;
-  for (bool goes_on = begin_staying(); goes_on;) {
+  std::uint32_t leads = 0;
+  for (bool goes_on = begin_staying(leads); goes_on;) {
     limit_receive_time();
     bool is_full = false;
     const Received received = receive(scratch, true, is_full);
     leave_read_turn(scratch, true);
-    goes_on = go_on_staying(received);
+    goes_on = go_on_staying(received, leads);
   }
   reactor_->end_stay();
 }
 
-bool StreamConnection::begin_staying() {
+bool StreamConnection::begin_staying(std::uint32_t& leads) {
   const std::lock_guard lock(turns_);
   if (is_closing_ || is_read_ || is_stalled_ || watch_ != Watch::full) return false;
   is_stayed_with_ = true;
   set_watch(Watch::parked);
-  read_to_stay();
+  leads = read_to_stay();
   return true;
 }
 
-bool StreamConnection::go_on_staying(Received received) {
+bool StreamConnection::go_on_staying(Received received, std::uint32_t& leads) {
   const std::lock_guard lock(turns_);
-  if (received == Received::some && !is_closing_ && !is_read_ && !is_stalled_ &&
+  const bool is_lone = leads_ == leads;
+  if (received == Received::some && is_lone && !is_closing_ && !is_read_ && !is_stalled_ &&
       watch_ == Watch::parked && !reactor_->is_stay_over()) {
-    read_to_stay();
+    leads = read_to_stay();
     return true;
   }
   is_stayed_with_ = false;
@@ -266,13 +270,15 @@ bool StreamConnection::go_on_staying(Received received) {
   return false;
 }
 
-// Under turns_.
-void StreamConnection::read_to_stay() {
+// Under turns_. Returns what leads_ will be as long as no caller reads.
+std::uint32_t StreamConnection::read_to_stay() {
   is_read_ = true;
   ++leads_;
-  if (std::exchange(is_park_timed_, true)) return;
-  leads_seen_ = leads_;
-  reactor_->schedule(park_timer_, weak_from_this(), Clock::now() + park_time());
+  if (!std::exchange(is_park_timed_, true)) {
+    leads_seen_ = leads_;
+    reactor_->schedule(park_timer_, weak_from_this(), Clock::now() + park_time());
+  }
+  return leads_;
 }
 
 }  // namespace rr::channel

@@ -158,8 +158,7 @@ class Session final : public channel::Receiver,
   };
   [[nodiscard]] Writer& write(const Outgoing& request) const;
   Numbers draw(endpoint::Pending* call, bool has_number);
-  void send_numbered(const Outgoing& request, Writer& writer, const Numbers& numbers,
-                     channel::Time now);
+  void number(const Outgoing& request, Writer& writer, const Numbers& numbers) const;
   void write_packet_message(Writer& writer, const EntryHeader& header, std::uint32_t element_count,
                             std::string_view metadata);
   void fail_all(const Error& why, channel::Laters& laters);

@@ -48,7 +48,8 @@ void Session::perform(const Outgoing& request, endpoint::BlockingCall& call, Mil
   const channel::Time deadline = channel::after(now, timeout_for(timeout, terms));
   Writer& writer = write(request);
   call.perform(terms, deadline, now, [&](endpoint::Pending& open) {
-    send_numbered(request, writer, draw(&open, true), now);
+    number(request, writer, draw(&open, true));
+    connection_->send(writer, now);
   });
 }
 
@@ -72,12 +73,15 @@ void Session::start(const Outgoing& request, AnswerReader read, Milliseconds tim
   call->start(
       timeout_for(timeout, terms), terms, [&]() -> Writer& { return write(request); },
       [&](endpoint::Pending& open, Writer& writer) {
-        send_numbered(request, writer, draw(&open, true), channel::coarse_now());
+        number(request, writer, draw(&open, true));
+        connection_->stream(writer);  // it may be one of many
       });
 }
 
 void Session::send(const Outgoing& request, bool has_number) {
-  send_numbered(request, write(request), draw(nullptr, has_number), channel::coarse_now());
+  Writer& writer = write(request);
+  number(request, writer, draw(nullptr, has_number));
+  connection_->send(writer);
 }
 
 namespace {
@@ -106,9 +110,8 @@ Session::Numbers Session::draw(endpoint::Pending* call, bool has_number) {
   return numbers;
 }
 
-// Puts a request's headers in front of its elements, and sends it.
-void Session::send_numbered(const Outgoing& request, Writer& writer, const Numbers& numbers,
-                            channel::Time now) {
+// Puts a request's headers in front of its elements.
+void Session::number(const Outgoing& request, Writer& writer, const Numbers& numbers) const {
   writer.entry({.type = request.type,
                 .service_path = request.path,
                 .member = request.member,
@@ -127,7 +130,6 @@ void Session::send_numbered(const Outgoing& request, Writer& writer, const Numbe
     header.receiver_name = remote_name_;
   }
   writer.message(header, 1);
-  connection_->send(writer, now);
 }
 
 void Session::send_newest(Writer& writer, const EntryHeader& header, std::uint32_t element_count,

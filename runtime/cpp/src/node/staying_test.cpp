@@ -74,15 +74,18 @@ class Staying : public ::testing::Test {
     links_.push_back(std::move(link));
     return *links_.back();
   }
-  // Until a thread stays with the connection, which is alone.
+  // Until a thread stays with the connection, which is alone. On a crowded machine calls that seem
+  // to pause come in between.
   void keep_busy(Link& link) {
-    ASSERT_TRUE(eventually([&] {
+    const auto deadline = channel::Clock::now() + 60s;
+    while (reactor_->stays() != 1) {
+      ASSERT_LT(channel::Clock::now(), deadline);
       link.call();
-      return reactor_->stays() == 1;
-    }));
+    }
   }
 
-  std::shared_ptr<const NodeOptions> options_ = std::make_shared<NodeOptions>();
+  std::shared_ptr<const NodeOptions> options_ = std::make_shared<NodeOptions>(
+      NodeOptions{.first_message_timeout = 120s, .heartbeat_period = 120s});
   // Four threads: one may stay.
   std::shared_ptr<channel::Reactor> reactor_ = std::make_shared<channel::Reactor>(4);
   std::vector<std::unique_ptr<Link>> links_;
@@ -108,8 +111,10 @@ TEST_F(Staying, IsForAsManyAsThereAreThreadsFor) {
   std::thread other([&] {
     while (!is_over) first.call();
   });
-  for (int i = 0; i < 1000; ++i) second.call();
-  EXPECT_EQ(reactor_->stays(), 1U);
+  for (int i = 0; i < 1000; ++i) {
+    second.call();
+    EXPECT_LE(reactor_->stays(), 1U);
+  }
   is_over = true;
   other.join();
 }
