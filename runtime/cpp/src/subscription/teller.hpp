@@ -68,8 +68,6 @@ class Listeners {
     all_.push_back(listener);
     return listener;
   }
-  [[nodiscard]] bool empty() const { return all_.empty(); }
-  [[nodiscard]] const std::vector<Each>& all() const { return all_; }
   /// Tells all that are there now.
   void tell(Teller& teller, const std::decay_t<Arguments>&... arguments) const {
     if (all_.empty()) return;
