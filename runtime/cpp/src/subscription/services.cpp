@@ -6,19 +6,12 @@
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
-#include "runtime/cpp/src/subscription/object_links.hpp"
 #include "runtime/cpp/src/subscription/owner.hpp"
-#include "runtime/cpp/src/subscription/pipe_links.hpp"
-#include "runtime/cpp/src/subscription/wire_links.hpp"
 
 namespace rr::subscription {
 namespace {
 
 const Error closed_here(ErrorCode::operation_aborted, "the client was closed");
-
-[[noreturn]] void throw_closed() {
-  throw Error(ErrorCode::invalid_operation, "the subscription is closed");
-}
 
 // A delay of nothing would keep a thread busy.
 channel::Milliseconds usable(channel::Milliseconds delay) {
@@ -56,7 +49,7 @@ void Services::appear(const std::string& key, FoundService service, bool is_know
   Farewell farewell;
   {
     const std::lock_guard lock(mutex_);
-    if (is_closed_) throw_closed();
+    check_open();
     TargetPointer target = find_target(key);
     if (target && target->service.urls == service.urls) {
       target->service = std::move(service);
@@ -135,6 +128,10 @@ void Services::close() {
   farewell.say();
   changed();
   if (const auto owner = owner_.lock()) owner->forget(*this);
+}
+
+void Services::check_open() const {
+  if (is_closed_) throw Error(ErrorCode::invalid_operation, "the subscription is closed");
 }
 
 bool Services::is_open() const {
@@ -240,7 +237,7 @@ bool Services::is_claimed(const std::shared_ptr<Session>& session) const {
 
 std::shared_ptr<Session> Services::claim(const Stub* stub) {
   const std::lock_guard lock(mutex_);
-  if (is_closed_) throw_closed();
+  check_open();
   for (const TargetPointer& target : connected()) {
     const auto& session = target->client->session;
     if (stub == nullptr || session != stub->rr_session()) continue;
@@ -274,7 +271,7 @@ void Services::release(ClientBase& client) {
 
 Subscription Services::on_connected(Function<void(const SubscriptionClientId&)> function) {
   const std::lock_guard lock(mutex_);
-  if (is_closed_) throw_closed();
+  check_open();
   const auto listener = on_connected_.add(std::move(function));
   for (const TargetPointer& target : connected()) {
     program_->add([listener, id = target->client->id] { listener->call(id); });
@@ -285,14 +282,14 @@ Subscription Services::on_connected(Function<void(const SubscriptionClientId&)> 
 Subscription Services::on_disconnected(
     Function<void(const SubscriptionClientId&, const Error&)> function) {
   const std::lock_guard lock(mutex_);
-  if (is_closed_) throw_closed();
+  check_open();
   return Subscription(on_disconnected_.add(std::move(function)));
 }
 
 Subscription Services::on_failed(
     Function<void(const std::vector<std::string>&, const Error&)> function) {
   const std::lock_guard lock(mutex_);
-  if (is_closed_) throw_closed();
+  check_open();
   const auto listener = on_failed_.add(std::move(function));
   for (const TargetPointer& target : targets_) {
     if (target->failures == 0) continue;
@@ -301,56 +298,6 @@ Subscription Services::on_failed(
     });
   }
   return Subscription(listener);
-}
-
-// Members
-
-std::shared_ptr<Links> Services::add_member(std::shared_ptr<Links> member) {
-  if (is_closed_) throw_closed();
-  members_.push_back(member);
-  for (const TargetPointer& target : connected()) {
-    inner_->add([member, client = target->client] { member->client_came(client); });
-  }
-  return member;
-}
-
-std::shared_ptr<Links> Services::add_wire(std::string_view member, std::string_view path,
-                                          const Holding& holding) {
-  auto wire =
-      std::make_shared<WireLinks>(host_.core, weak_from_this(), std::string(member), path, holding);
-  const std::lock_guard lock(mutex_);
-  for (const auto& other : members_) {
-    const auto same = std::dynamic_pointer_cast<WireLinks>(other);
-    if (!same || same->member() != wire->member() || same->path() != wire->path()) continue;
-    if (&same->holding() == &holding) return same;
-    throw Error(ErrorCode::invalid_operation,
-                "the wire `" + wire->member() + "` is used with values of another type");
-  }
-  return add_member(std::move(wire));
-}
-
-std::shared_ptr<Links> Services::add_pipe(std::string_view member, std::string_view path,
-                                          const Holding& holding, std::size_t max_received) {
-  auto pipe = std::make_shared<PipeLinks>(host_.core, weak_from_this(), std::string(member), path,
-                                          holding, max_received);
-  const std::lock_guard lock(mutex_);
-  return add_member(std::move(pipe));
-}
-
-std::shared_ptr<Links> Services::add_sub_object(std::string_view path) {
-  auto object = std::make_shared<ObjectLinks>(host_.core, weak_from_this(), path);
-  const std::lock_guard lock(mutex_);
-  return add_member(std::move(object));
-}
-
-void Services::forget(const Links& member) {
-  std::shared_ptr<Links> gone;
-  const std::lock_guard lock(mutex_);
-  const auto found = std::find_if(members_.begin(), members_.end(),
-                                  [&](const auto& other) { return other.get() == &member; });
-  if (found == members_.end()) return;
-  gone = std::move(*found);
-  members_.erase(found);
 }
 
 }  // namespace rr::subscription

@@ -60,6 +60,7 @@ class Services final : public Waits, public std::enable_shared_from_this<Service
   Subscription on_connected(Function<void(const SubscriptionClientId&)> function);
   Subscription on_disconnected(Function<void(const SubscriptionClientId&, const Error&)> function);
   Subscription on_failed(Function<void(const std::vector<std::string>&, const Error&)> function);
+  // Members (service_members.cpp)
   std::shared_ptr<Links> add_wire(std::string_view member, std::string_view path,
                                   const Holding& holding);
   std::shared_ptr<Links> add_pipe(std::string_view member, std::string_view path,
@@ -104,6 +105,7 @@ class Services final : public Waits, public std::enable_shared_from_this<Service
   void session_ended(const TargetPointer& target, SessionEnd& end, const Error& why);
 
   // Under the lock
+  void check_open() const;  // throws invalid_operation
   [[nodiscard]] bool is_full() const;
   [[nodiscard]] TargetPointer find_target(const std::string& key) const;
   [[nodiscard]] std::vector<TargetPointer> connected() const;
