@@ -10,6 +10,7 @@
 #include <boost/asio/async_result.hpp>
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/executor_work_guard.hpp>
+#include <chrono>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -24,6 +25,7 @@
 #include "rr/pipes.hpp"
 #include "rr/skeleton.hpp"
 #include "rr/stub.hpp"
+#include "rr/subscription.hpp"
 #include "rr/wires.hpp"
 
 /// The asynchronous forms of calls, for any completion token of Boost.Asio: a callback, use_future,
@@ -468,6 +470,56 @@ auto Pipe<T>::async_connect(Token&& token, const PipeOptions& options) {
                                        std::forward<decltype(handler)>(handler)));
       },
       token, options);
+}
+
+/// Of a stub that is waited for.
+template <class Handler, class S>
+class StubCompletion final : public HandlerCompletion<Handler> {
+ public:
+  using HandlerCompletion<Handler>::HandlerCompletion;
+  void* result() override { return &found_; }
+  void succeed() override {
+    std::shared_ptr<S> stub;
+    try {
+      stub = stub_cast<S>(std::move(found_));
+    } catch (...) {
+      fail(std::current_exception());
+      return;
+    }
+    this->finish(std::exception_ptr(), std::move(stub));
+  }
+  void fail(std::exception_ptr error) override {
+    this->finish(std::move(error), std::shared_ptr<S>());
+  }
+
+ private:
+  std::shared_ptr<Stub> found_;
+};
+
+template <class S, class Token>
+auto ServiceSubscription::async_default_client(std::chrono::milliseconds limit,
+                                               Token&& token) const {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr, std::shared_ptr<S>)>(
+      [subscription = *this, limit](auto&& handler) {
+        using Handler = std::decay_t<decltype(handler)>;
+        subscription.start_wait(
+            type_of_stub<S>(), limit,
+            std::make_unique<StubCompletion<Handler, S>>(std::forward<decltype(handler)>(handler)));
+      },
+      token);
+}
+
+template <class S, class Token>
+auto SubObjectSubscription::async_default_client(std::chrono::milliseconds limit,
+                                                 Token&& token) const {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr, std::shared_ptr<S>)>(
+      [subscription = *this, limit](auto&& handler) {
+        using Handler = std::decay_t<decltype(handler)>;
+        subscription.start_wait(
+            type_of_stub<S>(), limit,
+            std::make_unique<StubCompletion<Handler, S>>(std::forward<decltype(handler)>(handler)));
+      },
+      token);
 }
 
 /// Connects as Node::connect does, on a thread of its own. Signature: void(std::exception_ptr,

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "rr/node_id.hpp"
@@ -77,10 +78,33 @@ class ClientBase {
   void logout();
 
   explicit ClientBase(std::shared_ptr<Session> session);  // made by Node::connect
+  [[nodiscard]] const std::shared_ptr<Session>& rr_session() const { return session_; }
+  /// Leaves this without its session, which stays open. For subscriptions.
+  [[nodiscard]] std::shared_ptr<Session> rr_release() { return std::exchange(session_, nullptr); }
 
  private:
   std::shared_ptr<Session> session_;
 };
+
+/// What the objects of a generated stub are; null for rr::Stub, which stands for any object.
+template <class S>
+const ObjectType* type_of_stub() {
+  if constexpr (std::is_same_v<S, Stub>) {
+    return nullptr;
+  } else {
+    return &S().rr_object_type();
+  }
+}
+
+[[noreturn]] void refuse_stub();
+/// A stub as an S; null stays null. Throws rr::Error (service_error) when it is none.
+template <class S>
+std::shared_ptr<S> stub_cast(std::shared_ptr<Stub> stub) {
+  if (!stub) return nullptr;
+  auto result = std::dynamic_pointer_cast<S>(std::move(stub));
+  if (!result) refuse_stub();
+  return result;
+}
 
 /// The same, with the stub of the root object.
 template <class S>

@@ -18,6 +18,7 @@
 #include "rr/service.hpp"
 #include "rr/skeleton.hpp"
 #include "rr/stub.hpp"
+#include "rr/subscription.hpp"
 
 namespace rr {
 
@@ -119,6 +120,24 @@ class Node {
       done(std::move(error), std::move(client));
     });
   }
+  /// Keeps a connection to the service at a URL, until the subscription is closed or this node
+  /// ends; see rr/subscription.hpp. Does not wait. Throws rr::Error: invalid_argument for what is
+  /// no URL of a service or a filter's wrong expression, invalid_operation after shutdown().
+  template <class Text>
+  requires std::is_convertible_v<const Text&, std::string_view> ServiceSubscription
+  subscribe(const Text& url, SubscriptionOptions options = {}) {
+    return subscribe_to({{std::string(std::string_view(url))}}, std::move(options));
+  }
+  /// The same with several ways to one service, tried in this order.
+  ServiceSubscription subscribe(std::vector<std::string> urls, SubscriptionOptions options = {}) {
+    return subscribe_to({std::move(urls)}, std::move(options));
+  }
+  /// The same with several services, each with its URLs.
+  ServiceSubscription subscribe_all(std::vector<std::vector<std::string>> services,
+                                    SubscriptionOptions options = {}) {
+    return subscribe_to(std::move(services), std::move(options));
+  }
+
   /// Runs something on a thread of its own, which shutdown() waits for. It may not throw. Throws
   /// rr::Error (invalid_operation) after shutdown().
   void run_aside(std::function<void()> work);
@@ -139,25 +158,12 @@ class Node {
   using Opened = std::pair<std::shared_ptr<Session>, std::shared_ptr<Stub>>;
 
   template <class S>
-  static const ObjectType* type_of_stub() {
-    if constexpr (std::is_same_v<S, Stub>) {
-      return nullptr;
-    } else {
-      return &S().rr_object_type();
-    }
-  }
-  template <class S>
-  static std::shared_ptr<S> cast(std::shared_ptr<Stub> stub) {
-    auto result = std::dynamic_pointer_cast<S>(std::move(stub));
-    if (!result) refuse();
-    return result;
-  }
-  template <class S>
   static Client<S> connect(State& state, std::string_view url, ConnectOptions options) {
     auto [session, stub] = open(state, url, std::move(options), type_of_stub<S>());
-    return Client<S>(std::move(session), cast<S>(std::move(stub)));
+    return Client<S>(std::move(session), stub_cast<S>(std::move(stub)));
   }
-  [[noreturn]] static void refuse();
+  ServiceSubscription subscribe_to(std::vector<std::vector<std::string>> services,
+                                   SubscriptionOptions options);
   static Opened open(State& state, std::string_view url, ConnectOptions options,
                      const ObjectType* type);
   std::unique_ptr<State> state_;

@@ -14,6 +14,7 @@
 #include "rr/error.hpp"
 #include "rr/reader.hpp"
 #include "rr/writer.hpp"
+#include "runtime/cpp/src/channel/interruption.hpp"
 #include "runtime/cpp/src/channel/operations.hpp"
 
 namespace rr::channel {
@@ -180,9 +181,14 @@ class Attempts {
   std::optional<Agreed> wait(Time until) {
     std::vector<pollfd> wanted;
     for (const auto& attempt : attempts_) wanted.push_back(attempt->wanted());
+    const Interruption* const interruption = Interruption::current();
+    if (interruption != nullptr) wanted.push_back({interruption->descriptor(), POLLIN, 0});
     poll(wanted.data(), wanted.size(), poll_milliseconds(until));
+    if (interruption != nullptr && interruption->is_interrupted()) {
+      fail(ErrorCode::operation_cancelled, "connecting was given up");
+    }
     std::optional<Agreed> agreed;
-    for (std::size_t i = 0; i < wanted.size() && !agreed; ++i) {
+    for (std::size_t i = 0; i < attempts_.size() && !agreed; ++i) {
       if (wanted[i].revents == 0) continue;
       if (!keep_failure([&] { agreed = attempts_[i]->go_on(); })) attempts_[i].reset();
     }

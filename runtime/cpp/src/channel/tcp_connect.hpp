@@ -23,7 +23,7 @@ struct Agreed {
 };
 
 /// Tries all addresses of the URL's host, a new one every few milliseconds; the first with which
-/// the handshake succeeds wins. Throws rr::Error.
+/// the handshake succeeds wins. Throws rr::Error: operation_cancelled when an Interruption ends it.
 Agreed connect_stream(const Url& url, const NodeOptions& options, Time deadline);
 
 }  // namespace rr::channel

@@ -149,7 +149,7 @@ void Session::answer_callback(const Message& message, const Entry& entry, const 
   try {
     const auto slot = find_callback(entry);
     member = slot->member;
-    const Arguments::Source source{message, entry, owner, *types_};
+    const Arguments::Source source{message, entry, owner, *types()};
     result = slot->call(Arguments(source));
     if (member->type != nullptr && !result) {
       throw Error(ErrorCode::internal_error, "the function has given no value");

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "rr/error.hpp"
 #include "runtime/cpp/src/client/session.hpp"
 
 namespace rr {
@@ -46,6 +47,10 @@ std::string ClientBase::find_object_type(const std::string& path) const {
 }
 std::map<std::string, VarValue> ClientBase::fetch_attributes() const {
   return session_->ask_attributes();
+}
+
+void refuse_stub() {
+  throw Error(ErrorCode::service_error, "Invalid object type: the object has another class");
 }
 
 }  // namespace rr

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -68,6 +69,12 @@ class Session final : public channel::Receiver,
   /// Connects and makes the root's stub, which has the type `wanted` or one that implements it when
   /// that is not null. Throws rr::Error.
   std::shared_ptr<Stub> connect(const Url& url, const ObjectType* wanted);
+  /// Connects without asking whether the program knows the root's type. Throws rr::Error.
+  void connect(const Url& url);
+  /// The root's stub, as above, by all definitions that the node knows now; once connected.
+  std::shared_ptr<Stub> root(const ObjectType* wanted);
+  /// Knows from now on what has been made known to the node after this was made.
+  void learn();
   /// See ClientBase.
   void close();
   /// Tells the service and ends the connection without waiting.
@@ -80,6 +87,9 @@ class Session final : public channel::Receiver,
   [[nodiscard]] const std::string& remote_name() const { return remote_name_; }
   [[nodiscard]] const std::string& object_type() const { return object_type_; }
   [[nodiscard]] std::map<std::string, std::string> definitions() const;
+  [[nodiscard]] const std::string& service() const { return service_; }
+  /// The root's type and those that it implements, directly or not.
+  [[nodiscard]] std::vector<std::string> root_types() const;
 
   /// NodeOptions::memory_transfer_limit.
   [[nodiscard]] std::uint32_t memory_transfer_limit() const {
@@ -100,7 +110,9 @@ class Session final : public channel::Receiver,
   /// Exists once a stub does.
   [[nodiscard]] channel::Connection& connection() const override { return *connection_; }
   [[nodiscard]] const std::shared_ptr<endpoint::Core>& core() const override { return core_; }
-  [[nodiscard]] const std::shared_ptr<const TypeRegistry>& types() const override { return types_; }
+  [[nodiscard]] const std::shared_ptr<const TypeRegistry>& types() const override {
+    return *types_.load(std::memory_order_acquire);
+  }
   bool take(endpoint::Pending& call) override;
   std::shared_ptr<endpoint::Caller> share() override { return shared_from_this(); }
 
@@ -164,6 +176,7 @@ class Session final : public channel::Receiver,
   void fail_all(const Error& why, channel::Laters& laters);
 
   // Connecting (session_connect.cpp)
+  void establish(const Url& url, const std::function<void()>& check);
   void connect_combined(Milliseconds timeout);
   void connect_in_steps(Milliseconds timeout);
   void pull_definition(const std::string& name, Milliseconds timeout);
@@ -176,6 +189,8 @@ class Session final : public channel::Receiver,
                                   std::string_view wanted,
                                   const std::vector<std::string>& implements);
   [[nodiscard]] std::vector<std::string> implemented(const std::string& type) const;
+  [[nodiscard]] std::vector<std::string> all_types(
+      const std::string& told, const std::vector<std::string>& implements) const;
   void pull_type(const std::string& type, Milliseconds timeout);
   std::shared_ptr<Stub> known_stub(const std::string& path);
   void release_path(std::string_view path);
@@ -191,7 +206,6 @@ class Session final : public channel::Receiver,
   void give_up(const Error& why);
 
   const std::shared_ptr<endpoint::Core> core_;
-  const std::shared_ptr<const TypeRegistry> types_;
   const std::string service_;
   ConnectOptions options_;
   std::shared_ptr<channel::Connection> connection_;
@@ -206,6 +220,8 @@ class Session final : public channel::Receiver,
   std::map<std::string, VarValue> attributes_;
 
   mutable std::mutex mutex_;
+  std::list<std::shared_ptr<const TypeRegistry>> known_types_;  // all that types_ has named
+  std::atomic<const std::shared_ptr<const TypeRegistry>*> types_;
   endpoint::PendingTable pending_;
   std::atomic<std::uint16_t> next_message_id_{0};
   bool is_connected_ = false;  // the service knows this client

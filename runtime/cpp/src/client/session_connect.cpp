@@ -83,11 +83,12 @@ std::map<std::string, VarValue> optional_map(Decoder& decoder, const Entry& entr
 
 Session::Session(std::shared_ptr<endpoint::Core> core, const Url& url, ConnectOptions options)
     : core_(std::move(core)),
-      types_(core_->types()),
       service_(url.service),
       options_(std::move(options)),
       endpoint_(core_->new_endpoint()),
       remote_node_(url.node_id),
+      known_types_{core_->types()},
+      types_(&known_types_.back()),
       quiet_since_(channel::coarse_now()) {
   if (service_.empty()) throw Error(ErrorCode::invalid_argument, "the URL names no service");
 }
@@ -95,6 +96,33 @@ Session::Session(std::shared_ptr<endpoint::Core> core, const Url& url, ConnectOp
 Session::~Session() { core_->release_endpoint(endpoint_); }
 
 std::shared_ptr<Stub> Session::connect(const Url& url, const ObjectType* wanted) {
+  std::shared_ptr<Stub> stub;
+  establish(url, [&] { stub = root(wanted); });
+  return stub;
+}
+
+void Session::connect(const Url& url) {
+  establish(url, [] {});
+}
+
+std::shared_ptr<Stub> Session::root(const ObjectType* wanted) {
+  learn();
+  const std::string_view type = !options_.object_type.empty() ? options_.object_type
+                                : wanted != nullptr           ? wanted->name
+                                                              : std::string_view();
+  return make_stub(object_type_, service_, type, object_implements_);
+}
+
+void Session::learn() {
+  auto types = core_->types();
+  const std::lock_guard lock(mutex_);
+  if (known_types_.back() == types) return;
+  known_types_.push_back(std::move(types));
+  types_.store(&known_types_.back(), std::memory_order_release);
+}
+
+// `check` refuses the service by throwing.
+void Session::establish(const Url& url, const std::function<void()>& check) {
   const channel::Time deadline =
       channel::after(channel::Clock::now(), core_->options().connect_timeout);
   core_->start();
@@ -112,12 +140,8 @@ std::shared_ptr<Stub> Session::connect(const Url& url, const ObjectType* wanted)
     } else {
       connect_in_steps(timeout);
     }
-    const std::string_view type = !options_.object_type.empty() ? options_.object_type
-                                  : wanted != nullptr           ? wanted->name
-                                                                : std::string_view();
-    auto stub = make_stub(object_type_, service_, type, object_implements_);
+    check();
     core_->attend(weak_from_this());
-    return stub;
   } catch (const Error&) {
     std::function<void(const Error&)> on_closed;
     {

@@ -36,7 +36,7 @@ std::vector<std::string> Session::implemented(const std::string& type) const {
         found.push_back(std::move(other));
       }
     };
-    if (const ObjectType* const known = types_->find_object(name)) {
+    if (const ObjectType* const known = types()->find_object(name)) {
       for (const std::string_view other : known->implements) add(std::string(other));
     }
     const auto outline = outlines_.find(service);
@@ -48,22 +48,29 @@ std::vector<std::string> Session::implemented(const std::string& type) const {
   return found;
 }
 
+// The same with what the service has told besides.
+std::vector<std::string> Session::all_types(const std::string& told,
+                                            const std::vector<std::string>& implements) const {
+  std::vector<std::string> types = implemented(told);
+  for (const std::string& other : implements) {
+    types.push_back(other.find('.') == std::string::npos ? service_of(told) + "." + other : other);
+  }
+  return types;
+}
+
 // The stub of an object of which the service has told the type, and perhaps what it implements. Of
 // all its types that this program knows the most derived one is taken.
 std::shared_ptr<Stub> Session::make_stub(const std::string& told, const std::string& path,
                                          std::string_view wanted,
                                          const std::vector<std::string>& implements) {
-  std::vector<std::string> types = implemented(told);
-  for (const std::string& other : implements) {
-    types.push_back(other.find('.') == std::string::npos ? service_of(told) + "." + other : other);
-  }
-  if (!wanted.empty() && std::find(types.begin(), types.end(), wanted) == types.end()) {
+  const std::vector<std::string> names = all_types(told, implements);
+  if (!wanted.empty() && std::find(names.begin(), names.end(), wanted) == names.end()) {
     throw Error(ErrorCode::service_error,
                 "Invalid object type: `" + path + "` is a `" + told + "`");
   }
   const ObjectType* known = nullptr;
-  for (const std::string& type : types) {
-    const ObjectType* const found = types_->find_object(type);
+  for (const std::string& type : names) {
+    const ObjectType* const found = types()->find_object(type);
     if (found == nullptr || found->make_stub == nullptr) continue;
     known = found;
     break;
@@ -80,6 +87,10 @@ std::shared_ptr<Stub> Session::make_stub(const std::string& told, const std::str
   if (auto other = cached.lock()) return other;  // somebody was faster
   cached = stub;
   return stub;
+}
+
+std::vector<std::string> Session::root_types() const {
+  return all_types(object_type_, object_implements_);
 }
 
 std::shared_ptr<Stub> Session::known_stub(const std::string& path) {
@@ -125,7 +136,7 @@ bool Session::take_packet(const Message& message, const Entry& entry, const Memo
   const auto end = wires_.find(entry.service_path, entry.member);
   if (!end) return false;
   if (entry.type == EntryType::wire_packet) {
-    end->take(message, entry, owner, *types_, laters);
+    end->take(message, entry, owner, *types(), laters);
   } else {
     wires_.remove(*end);
     end->finish(laters);
@@ -221,7 +232,7 @@ void Session::handle_event(const Message& message, const Entry& entry, const Mem
       }
     }
   }
-  const Arguments::Source source{message, entry, owner, *types_};
+  const Arguments::Source source{message, entry, owner, *types()};
   for (const auto& handler : handlers) {
     try {
       handler->call(Arguments(source));

@@ -11,12 +11,14 @@
 #include "runtime/cpp/src/client/session.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
 #include "runtime/cpp/src/service/directory.hpp"
+#include "runtime/cpp/src/subscription/owner.hpp"
 
 namespace rr {
 
 struct Node::State {
   std::shared_ptr<endpoint::Core> core;
   std::shared_ptr<service::Directory> directory;
+  std::shared_ptr<subscription::Owner> subscriptions;
   // Threads of run_aside(), and whether they have done their work.
   struct Worker {
     std::thread thread;
@@ -52,6 +54,12 @@ struct Node::State {
       std::erase_if(list, [](const std::weak_ptr<T>& other) { return other.expired(); });
     }
     list.push_back(item);
+  }
+
+  void keep(const std::shared_ptr<Session>& session) {
+    const std::lock_guard lock(mutex);
+    if (is_shut_down) throw Error(ErrorCode::invalid_operation, "the node is shut down");
+    remember(sessions, session);
   }
 
   void join_done() {
@@ -98,6 +106,7 @@ void Node::State::begin_end() {
     old_sessions.swap(sessions);
   }
   old_listeners.clear();
+  subscriptions->end();
   for (const auto& session : old_sessions) {
     if (const auto alive = session.lock()) alive->drop();
   }
@@ -126,6 +135,10 @@ Node::Node(NodeOptions options) : state_(std::make_unique<State>()) {
   state_->core = std::make_shared<endpoint::Core>(std::move(options));
   state_->directory = std::make_shared<service::Directory>(state_->core);
   state_->directory->start();
+  state_->subscriptions = std::make_shared<subscription::Owner>(subscription::Host{
+      state_->core,
+      [state = state_.get()](std::function<void()> work) { state->run_aside(std::move(work)); },
+      [state = state_.get()](const std::shared_ptr<Session>& session) { state->keep(session); }});
 }
 
 Node::~Node() {
@@ -178,22 +191,19 @@ void Node::add_definition(const Definition& definition) {
   state_->core->add_definition(definition);
 }
 
-void Node::refuse() {
-  throw Error(ErrorCode::service_error, "Invalid object type: the root object has another class");
-}
-
 Node::Opened Node::open(State& state, std::string_view url, ConnectOptions options,
                         const ObjectType* type) {
   const Url parsed = Url::parse(url);
   if (type != nullptr) state.core->add_definition(type->definition);
   auto session = std::make_shared<Session>(state.core, parsed, std::move(options));
-  {
-    const std::lock_guard lock(state.mutex);
-    if (state.is_shut_down) throw Error(ErrorCode::invalid_operation, "the node is shut down");
-    State::remember(state.sessions, session);
-  }
+  state.keep(session);
   auto stub = session->connect(parsed, type);
   return {std::move(session), std::move(stub)};
+}
+
+ServiceSubscription Node::subscribe_to(std::vector<std::vector<std::string>> services,
+                                       SubscriptionOptions options) {
+  return ServiceSubscription(state_->subscriptions->add(std::move(services), std::move(options)));
 }
 
 void Node::run_aside(std::function<void()> work) { state_->run_aside(std::move(work)); }

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a subscription connects to its services, and what it does when that fails or ends.
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "rr/call.hpp"
+#include "rr/url.hpp"
+#include "runtime/cpp/src/channel/time.hpp"
+#include "runtime/cpp/src/subscription/services.hpp"
+
+namespace rr::subscription {
+
+void Target::on_timer() {
+  if (const auto services = services_.lock()) services->due(shared_from_this());
+}
+
+// On the watching thread.
+void Services::due(const TargetPointer& target) {
+  const std::lock_guard lock(mutex_);
+  if (target->phase == Target::Phase::resting) {
+    begin_soon(target);
+  } else if (target->phase == Target::Phase::attempting) {
+    target->attempt->is_over_time = true;
+    host_.core->reactor().post([attempt = target->attempt] { attempt->give_up(); });
+  }
+}
+
+// Under the lock, as the next one.
+void Services::begin_soon(const TargetPointer& target) {
+  host_.core->reactor().post([self = shared_from_this(), target] { self->begin(target); });
+}
+
+// Those that had to wait because there were as many as may be.
+void Services::begin_waiting() {
+  for (const TargetPointer& target : targets_) {
+    if (target->phase == Target::Phase::waiting) begin_soon(target);
+  }
+}
+
+bool Services::is_full() const {
+  if (filter_.max_connections() == 0) return false;
+  const auto count = std::count_if(targets_.begin(), targets_.end(), [](const auto& target) {
+    return target->phase == Target::Phase::attempting || target->phase == Target::Phase::connected;
+  });
+  return static_cast<std::size_t>(count) >= filter_.max_connections();
+}
+
+void Services::begin(const TargetPointer& target) {
+  AttemptPointer attempt;
+  try {
+    auto made = std::make_shared<Attempt>();
+    {
+      const std::lock_guard lock(mutex_);
+      const bool is_idle =
+          target->phase == Target::Phase::resting || target->phase == Target::Phase::waiting;
+      if (is_closed_ || !is_idle) return;
+      host_.core->reactor().cancel(*target);
+      if (is_full()) {
+        target->phase = Target::Phase::waiting;
+        return;
+      }
+      target->phase = Target::Phase::attempting;
+      target->attempt = attempt = std::move(made);
+      host_.core->reactor().schedule(
+          *target, target, channel::after(channel::Clock::now(), options_.connect_timeout));
+    }
+    host_.run_aside(
+        [self = shared_from_this(), target, attempt] { self->attempt(target, attempt); });
+  } catch (const Error& error) {
+    fail(target, attempt, error);
+  } catch (const std::exception& error) {  // no thread to be had
+    fail(target, attempt, Error(ErrorCode::system_resource_error, error.what()));
+  }
+}
+
+void Services::attempt(const TargetPointer& target, const AttemptPointer& attempt) {
+  try {
+    succeed(target, attempt, reach(target, attempt));
+  } catch (const Error& error) {
+    if (attempt->is_over_time) {
+      const auto limit = std::to_string(options_.connect_timeout.count());
+      fail(target, attempt,
+           Error(ErrorCode::operation_timeout, "not connected within " + limit + " ms"));
+    } else {
+      fail(target, attempt, error);
+    }
+  } catch (const std::exception& error) {
+    fail(target, attempt, Error(ErrorCode::operation_failed, error.what()));
+  } catch (...) {
+    fail(target, attempt, Error(ErrorCode::operation_failed, "the predicate has thrown"));
+  }
+}
+
+// One URL after the other. Throws why the last of them could not be used.
+Services::Reached Services::reach(const TargetPointer& target, const AttemptPointer& attempt) {
+  FoundService service;
+  bool is_known = false;
+  {
+    const std::lock_guard lock(mutex_);
+    service = target->service;
+    is_known = target->is_known;
+  }
+  std::exception_ptr last;
+  for (const std::string& url : service.urls) {
+    if (!filter_.takes_scheme(url)) continue;
+    try {
+      Reached reached = connect(url, service, target, attempt);
+      try {
+        check(*reached.session, url, service, is_known);
+      } catch (...) {
+        reached.session->drop();
+        throw;
+      }
+      return reached;
+    } catch (const Error&) {
+      last = std::current_exception();
+      if (attempt->interruption.is_interrupted()) break;
+    }
+  }
+  if (last) std::rethrow_exception(last);
+  throw Error(ErrorCode::service_not_found,
+              "the filter takes none of the URLs of `" + service.name + "`");
+}
+
+Services::Reached Services::connect(const std::string& url, const FoundService& service,
+                                    const TargetPointer& target, const AttemptPointer& attempt) {
+  const Url parsed = Url::parse(url);
+  const auto choice =
+      filter_.choose_node(service.node.is_any() ? parsed.node_id : service.node,
+                          service.node_name.empty() ? parsed.node_name : service.node_name, false);
+  if (!choice.is_wanted || !filter_.takes_name(parsed.service)) {
+    throw Error(ErrorCode::service_not_found, "the filter does not take `" + url + "`");
+  }
+  ConnectOptions options{.username = options_.username,
+                         .credentials = options_.credentials,
+                         .request_timeout = options_.request_timeout};
+  if (choice.node != nullptr && !choice.node->username.empty()) {
+    options.username = choice.node->username;
+    options.credentials = choice.node->credentials;
+  }
+  const auto end = std::make_shared<SessionEnd>();
+  options.on_closed = [services = weak_from_this(), target = std::weak_ptr(target),
+                       end](const Error& why) {
+    const auto self = services.lock();
+    const auto whose = target.lock();
+    if (self && whose) self->session_ended(whose, *end, why);
+  };
+  auto session = std::make_shared<Session>(host_.core, parsed, std::move(options));
+  host_.keep(session);
+  const channel::Interruption::Scope interruptible(attempt->interruption);
+  const CallScope scope(attempt->cancellation);
+  session->connect(parsed);
+  return {std::move(session), end, url};
+}
+
+// What only a connected service tells.
+void Services::check(const Session& session, const std::string& url, FoundService service,
+                     bool is_known) const {
+  const std::vector<std::string> types = session.root_types();
+  const std::string& wanted = options_.object_type;
+  if (!wanted.empty() && std::find(types.begin(), types.end(), wanted) == types.end()) {
+    throw Error(ErrorCode::service_error,
+                "Invalid object type: `" + session.service() + "` is a `" + types.front() + "`");
+  }
+  service.node = session.remote_node();
+  service.node_name = session.remote_name();
+  if (!is_known) {
+    service.name = session.service();
+    service.object_type = types.front();
+    service.implements.assign(types.begin() + 1, types.end());
+    service.attributes = session.attributes();
+  }
+  std::string refusal;
+  if (!filter_.choose_node(service.node, service.node_name, true).is_wanted) {
+    refusal = "its node";
+  } else {
+    refusal = filter_.refusal(service);
+  }
+  if (!refusal.empty()) {
+    throw Error(ErrorCode::service_not_found, "the filter does not take `" + url + "`: " + refusal);
+  }
+}
+
+void Services::succeed(const TargetPointer& target, const AttemptPointer& attempt,
+                       Reached reached) {
+  bool is_wanted = false;
+  std::optional<Error> ended;
+  {
+    const std::lock_guard lock(mutex_);
+    ended = reached.end->why;
+    is_wanted = target->phase == Target::Phase::attempting && target->attempt == attempt;
+    if (is_wanted && !ended) {
+      host_.core->reactor().cancel(*target);
+      target->phase = Target::Phase::connected;
+      target->attempt.reset();
+      target->end = std::move(reached.end);
+      target->url = std::move(reached.url);
+      target->order = ++last_order_;
+      target->error.reset();
+      target->failures = 0;
+      target->client = std::make_shared<LiveClient>(
+          LiveClient{{reached.session->remote_node(), reached.session->service()},
+                     std::move(reached.session)});
+      inner_->add([members = members_, client = target->client] {
+        for (const auto& member : members) member->client_came(client);
+      });
+      on_connected_.tell(*program_, target->client->id);
+    }
+  }
+  if (is_wanted && !ended) {
+    changed();
+    return;
+  }
+  reached.session->drop();
+  fail(target, attempt,
+       ended ? *ended : Error(ErrorCode::operation_cancelled, "connecting was given up"));
+}
+
+// Under the lock: the target has no attempt, and is tried again later.
+void Services::rest(Target& target, const Error& why) {
+  target.phase = Target::Phase::resting;
+  target.attempt.reset();
+  target.error = why;
+  target.failed_at = ++last_failure_;
+  channel::Milliseconds delay = delay_;
+  for (std::size_t i = 1; i < target.failures && delay < maximum_; ++i) delay *= 2;
+  if (target.failures > 1) delay = std::max(delay_, std::min(delay, maximum_));
+  host_.core->reactor().schedule(target, target.weak_from_this(),
+                                 channel::after(channel::Clock::now(), delay));
+}
+
+void Services::fail(const TargetPointer& target, const AttemptPointer& attempt, const Error& why) {
+  {
+    const std::lock_guard lock(mutex_);
+    const bool is_this = attempt ? target->phase == Target::Phase::attempting
+                                 : target->phase == Target::Phase::resting;
+    if (is_closed_ || target->attempt != attempt || !is_this) return;
+    ++target->failures;
+    rest(*target, why);
+    on_failed_.tell(*program_, target->service.urls, why);
+    begin_waiting();
+  }
+  changed();
+}
+
+// From the session, on a thread of the node.
+void Services::session_ended(const TargetPointer& target, SessionEnd& end, const Error& why) {
+  {
+    const std::lock_guard lock(mutex_);
+    end.why = why;
+    if (is_closed_ || target->phase != Target::Phase::connected || target->end.get() != &end)
+      return;
+    const auto client = std::exchange(target->client, nullptr);
+    tell_left(client);
+    on_disconnected_.tell(*program_, client->id, why);
+    rest(*target, why);
+    begin_waiting();
+  }
+  changed();
+}
+
+}  // namespace rr::subscription

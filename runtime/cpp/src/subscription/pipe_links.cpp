@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/subscription/pipe_links.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "rr/error.hpp"
+#include "runtime/cpp/src/channel/time.hpp"
+#include "runtime/cpp/src/endpoint/pipe_state.hpp"
+
+namespace rr::subscription {
+namespace {
+
+// A pipe of a stub whose packets are handled without their type.
+class RawPipe : public PipeMember {
+ public:
+  RawPipe(Stub& stub, const Member& member) : PipeMember(stub, member, *member.holding) {}
+  using PipeMember::start_connect;
+};
+
+// What one client may say while something is sent to all of them.
+bool is_of_connection(const Error& error) {
+  return error.code() == ErrorCode::connection_error ||
+         error.code() == ErrorCode::invalid_operation ||
+         error.code() == ErrorCode::buffer_limit_violation;
+}
+
+}  // namespace
+
+// Connecting
+
+Links::LinkPointer PipeLinks::make_link(std::shared_ptr<const LiveClient> client) {
+  return std::make_shared<PipeLink>(*this, std::move(client));
+}
+
+void PipeLinks::connect(const LinkPointer& link, const std::shared_ptr<Stub>& object) {
+  const Member& member = need_member(*link->client->session, *object, MemberKind::pipe, holding_);
+  PipeEnd* const place = &as_pipe(*link).end;
+  RawPipe(*object, member).start_connect({}, completion(link, place));
+}
+
+void PipeLinks::use(Link& link) {
+  End& end = as_pipe(link).end;
+  const auto weak_this = std::weak_ptr(std::static_pointer_cast<PipeLinks>(shared_from_this()));
+  const auto weak_link = link.weak_from_this();
+  {
+    const std::lock_guard lock(mutex_);
+    end.ask_for_acknowledgements(backlog_limit_ != 0);
+  }
+  end.on_closed([weak_this, weak_link] {
+    const auto self = weak_this.lock();
+    const auto closed = weak_link.lock();
+    if (self && closed) self->closed(closed);
+  });
+  end.on_received([weak_this, id = link.client->id](std::shared_ptr<void> packet) {
+       if (const auto self = weak_this.lock()) self->put({std::move(packet), id});
+     })
+      .detach();
+}
+
+void PipeLinks::leave(Link& link) {
+  const auto& state = PipeEnd::State::of(as_pipe(link).end);
+  if (const auto side = state->side()) side->close(*state, false);
+}
+
+// Packets
+
+void PipeLinks::put(Packet packet) {
+  Packet lost;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!is_open_) return;
+    packets_.push_back(std::move(packet));
+    if (max_received_ != 0 && packets_.size() > max_received_) {
+      lost = std::move(packets_.front());
+      packets_.pop_front();
+      ++lost_;
+    }
+    deliver_soon();
+  }
+  arrived_.notify_all();
+}
+
+PipeLinks::Packet PipeLinks::take() {
+  Packet packet;
+  const std::lock_guard lock(mutex_);
+  if (packets_.empty()) return packet;
+  packet = std::move(packets_.front());
+  packets_.pop_front();
+  return packet;
+}
+
+std::size_t PipeLinks::available() const {
+  const std::lock_guard lock(mutex_);
+  return packets_.size();
+}
+
+std::size_t PipeLinks::lost_count() const {
+  const std::lock_guard lock(mutex_);
+  return lost_;
+}
+
+bool PipeLinks::wait(std::chrono::milliseconds limit) {
+  const channel::Time deadline = channel::after(channel::Clock::now(), limit);
+  if (available() != 0) return true;
+  channel::Reactor::about_to_wait();
+  std::unique_lock lock(mutex_);
+  while (packets_.empty() && is_open_ && channel::Clock::now() < deadline) {
+    channel::wait_until(arrived_, lock, deadline);
+  }
+  return !packets_.empty();
+}
+
+// The function
+
+Subscription PipeLinks::on_received(Function<void(const Packet&)> function) {
+  auto receiver = std::make_shared<Listener<const Packet&>>(std::move(function));
+  Subscription result(receiver);
+  Receiver before;
+  {
+    const std::lock_guard lock(mutex_);
+    check_open();
+    before = std::exchange(receiver_, std::move(receiver));
+    deliver_soon();
+  }
+  return result;
+}
+
+void PipeLinks::deliver_soon() {
+  if (!receiver_ || packets_.empty() || std::exchange(is_delivering_, true)) return;
+  teller_->add(
+      [self = std::static_pointer_cast<PipeLinks>(shared_from_this())] { self->deliver(); });
+}
+
+void PipeLinks::deliver() {
+  while (true) {
+    Packet packet;
+    Receiver receiver;
+    {
+      const std::lock_guard lock(mutex_);
+      if (receiver_ && !receiver_->is_connected()) receiver.swap(receiver_);
+      if (packets_.empty() || !receiver_) {
+        is_delivering_ = false;
+        return;
+      }
+      receiver = receiver_;
+      packet = std::move(packets_.front());
+      packets_.pop_front();
+    }
+    bool is_taken = true;
+    try {
+      is_taken = receiver->call(packet);
+    } catch (const std::exception& error) {
+      core()->log(LogLevel::error,
+                  "a function for the pipe `" + member() + "` has thrown: " + error.what());
+    } catch (...) {
+      core()->log(LogLevel::error, "a function for the pipe `" + member() + "` has thrown");
+    }
+    if (is_taken) continue;
+    const std::lock_guard lock(mutex_);
+    packets_.push_front(std::move(packet));
+  }
+}
+
+void PipeLinks::end_functions() {
+  if (!receiver_) return;
+  teller_->add([receiver = std::exchange(receiver_, nullptr)] { receiver->disconnect(); });
+}
+
+// Sending
+
+void PipeLinks::set_backlog_limit(std::size_t packets) {
+  const std::lock_guard lock(mutex_);
+  backlog_limit_ = packets;
+  for (const LinkPointer& link : links_) {
+    if (link->phase == Link::Phase::open) {
+      as_pipe(*link).end.ask_for_acknowledgements(packets != 0);
+    }
+  }
+}
+
+std::size_t PipeLinks::send_all(const void* value) {
+  std::vector<End> ends;
+  std::size_t limit = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    check_open();
+    limit = backlog_limit_;
+    for (const LinkPointer& link : links_) {
+      if (link->phase == Link::Phase::open) ends.push_back(as_pipe(*link).end);
+    }
+  }
+  std::size_t count = 0;
+  for (End& end : ends) {
+    if (limit != 0 && end.unacknowledged() > limit) continue;
+    try {
+      end.send(value);
+      ++count;
+    } catch (const Error& error) {
+      if (!is_of_connection(error)) throw;
+    }
+  }
+  return count;
+}
+
+}  // namespace rr::subscription

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rr/subscription.hpp"
+#include "runtime/cpp/src/subscription/filter.hpp"
+#include "runtime/cpp/src/subscription/host.hpp"
+#include "runtime/cpp/src/subscription/links.hpp"
+#include "runtime/cpp/src/subscription/target.hpp"
+#include "runtime/cpp/src/subscription/teller.hpp"
+#include "runtime/cpp/src/subscription/url_source.hpp"
+#include "runtime/cpp/src/subscription/waits.hpp"
+
+namespace rr::subscription {
+
+class Owner;
+
+/// The state of a subscription: services that have appeared, and a connection to each of them. Who
+/// says that services appear and disappear is somebody else: UrlSource, or discovery.
+///
+/// Everything happens on threads of the node, but for an attempt to connect, which blocks and has a
+/// thread aside while it lasts. Its members are told of clients by `inner_`, in the order in which
+/// these come and go.
+class Services final : public Waits, public std::enable_shared_from_this<Services> {
+ public:
+  /// Throws rr::Error (invalid_argument) for a wrong filter.
+  Services(Host host, SubscriptionOptions options, std::weak_ptr<Owner> owner);
+
+  // For who knows of services. A service is named by a key.
+  /// A service may be reached now; or it may be reached in other ways, or is another, than was said
+  /// before. What it is connected by stays if that is among the URLs. `is_known` when all of
+  /// `service` is filled in, not only what URLs tell.
+  void appear(const std::string& key, FoundService service, bool is_known);
+  /// It is gone. Its connection is closed.
+  void disappear(const std::string& key);
+  /// What the program says itself.
+  [[nodiscard]] UrlSource& urls() { return urls_; }
+
+  // What handles do; see ServiceSubscription.
+  void close();
+  [[nodiscard]] bool is_open() const;
+  void set_retry_delay(std::chrono::milliseconds delay, std::chrono::milliseconds maximum);
+  void learn(const ObjectType* type);
+  std::shared_ptr<Stub> find(const ObjectType* type) override;
+  std::shared_ptr<Stub> find(const SubscriptionClientId& id, const ObjectType* type);
+  [[nodiscard]] std::vector<SubscriptionClientId> connected_clients() const;
+  [[nodiscard]] std::vector<SubscribedService> services() const;
+  [[nodiscard]] std::optional<Error> last_error() const;
+  std::shared_ptr<Session> claim(const Stub* stub);
+  void release(ClientBase& client);
+  Subscription on_connected(Function<void(const SubscriptionClientId&)> function);
+  Subscription on_disconnected(Function<void(const SubscriptionClientId&, const Error&)> function);
+  Subscription on_failed(Function<void(const std::vector<std::string>&, const Error&)> function);
+  // Members (service_members.cpp)
+  std::shared_ptr<Links> add_wire(std::string_view member, std::string_view path,
+                                  const Holding& holding);
+  std::shared_ptr<Links> add_pipe(std::string_view member, std::string_view path,
+                                  const Holding& holding, std::size_t max_received);
+  std::shared_ptr<Links> add_sub_object(std::string_view path);
+
+  // For its parts.
+  [[nodiscard]] std::chrono::milliseconds retry_delay() const;
+  void forget(const Links& member);
+  /// The timer of a service.
+  void due(const std::shared_ptr<Target>& target);
+
+ private:
+  using TargetPointer = std::shared_ptr<Target>;
+  using AttemptPointer = std::shared_ptr<Attempt>;
+
+  // What is to be done when the lock has gone.
+  struct Farewell {
+    std::vector<AttemptPointer> attempts;
+    std::vector<std::shared_ptr<Session>> sessions;
+    /// Ends them without waiting.
+    void say();
+  };
+
+  // Attempts (attempts.cpp)
+  void begin_soon(const TargetPointer& target);
+  void begin_waiting();
+  void begin(const TargetPointer& target);
+  void attempt(const TargetPointer& target, const AttemptPointer& attempt);
+  struct Reached {
+    std::shared_ptr<Session> session;
+    std::shared_ptr<SessionEnd> end;
+    std::string url;
+  };
+  Reached reach(const TargetPointer& target, const AttemptPointer& attempt);
+  Reached connect(const std::string& url, const FoundService& service, const TargetPointer& target,
+                  const AttemptPointer& attempt);
+  void check(const Session& session, const std::string& url, FoundService service,
+             bool is_known) const;
+  void succeed(const TargetPointer& target, const AttemptPointer& attempt, Reached reached);
+  void fail(const TargetPointer& target, const AttemptPointer& attempt, const Error& why);
+  void session_ended(const TargetPointer& target, SessionEnd& end, const Error& why);
+
+  // Under the lock
+  void check_open() const;  // throws invalid_operation
+  [[nodiscard]] bool is_full() const;
+  [[nodiscard]] TargetPointer find_target(const std::string& key) const;
+  [[nodiscard]] std::vector<TargetPointer> connected() const;
+  [[nodiscard]] bool is_claimed(const std::shared_ptr<Session>& session) const;
+  void rest(Target& target, const Error& why);
+  void leave(const TargetPointer& target, Farewell& farewell, const Error& why);
+  void tell_left(const std::shared_ptr<const LiveClient>& client);
+  std::shared_ptr<Links> add_member(std::shared_ptr<Links> member);
+
+  [[nodiscard]] bool has_ended() const override { return !is_open(); }
+  [[nodiscard]] std::optional<Error> why_none() const override { return last_error(); }
+  std::shared_ptr<Waits> share() override { return shared_from_this(); }
+
+  const Host host_;
+  const SubscriptionOptions options_;
+  const Filter filter_;
+  const std::weak_ptr<Owner> owner_;
+  UrlSource urls_{*this};
+  const std::shared_ptr<Teller> inner_;    // to members
+  const std::shared_ptr<Teller> program_;  // to functions of the program
+
+  mutable std::mutex mutex_;
+  bool is_closed_ = false;
+  std::chrono::milliseconds delay_;
+  std::chrono::milliseconds maximum_;
+  std::vector<TargetPointer> targets_;
+  std::uint64_t last_order_ = 0;
+  std::uint64_t last_failure_ = 0;
+  std::vector<std::weak_ptr<Session>> claimed_;
+  std::vector<std::shared_ptr<Links>> members_;
+  Listeners<const SubscriptionClientId&> on_connected_;
+  Listeners<const SubscriptionClientId&, const Error&> on_disconnected_;
+  Listeners<const std::vector<std::string>&, const Error&> on_failed_;
+};
+
+}  // namespace rr::subscription

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "rr/service_filter.hpp"
+
+namespace rr::subscription {
+
+class Services;
+
+/// Services that the program names by URLs: they have appeared for as long as it says so.
+class UrlSource {
+ public:
+  explicit UrlSource(Services& services) : services_(services) {}
+
+  /// Of each service its URLs.
+  using Lists = std::vector<FoundService>;
+  /// Throws rr::Error (invalid_argument) unless each list has URLs, all of the same service.
+  static Lists checked(std::vector<std::vector<std::string>> lists);
+
+  /// These from now on. A service that shares a URL with one before is the same.
+  void replace(const Lists& lists);
+
+ private:
+  Services& services_;
+  std::mutex mutex_;  // while it is changed; before those of Services
+  std::map<std::string, std::vector<std::string>> known_;
+  std::uint64_t last_key_ = 0;
+};
+
+}  // namespace rr::subscription

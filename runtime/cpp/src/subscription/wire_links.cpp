@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/subscription/wire_links.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "rr/error.hpp"
+#include "runtime/cpp/src/channel/time.hpp"
+
+namespace rr::subscription {
+namespace {
+
+// A wire of a stub whose values are handled without their type.
+class RawWire : public WireMember {
+ public:
+  RawWire(Stub& stub, const Member& member) : WireMember(stub, member, *member.holding) {}
+  using WireMember::start_connect;
+};
+
+// What a client that goes while something is sent to all of them may say.
+bool is_of_connection(const Error& error) {
+  return error.code() == ErrorCode::connection_error ||
+         error.code() == ErrorCode::invalid_operation;
+}
+
+}  // namespace
+
+// Connecting
+
+Links::LinkPointer WireLinks::make_link(std::shared_ptr<const LiveClient> client) {
+  auto link = std::make_shared<WireLink>(*this, std::move(client));
+  link->newest.set_lifespan(lifespan_);
+  return link;
+}
+
+void WireLinks::connect(const LinkPointer& link, const std::shared_ptr<Stub>& object) {
+  const Member& member = need_member(*link->client->session, *object, MemberKind::wire, holding_);
+  WireEnd* const place = &as_wire(*link).end;
+  RawWire(*object, member).start_connect(place, completion(link, place));
+}
+
+void WireLinks::use(Link& link) {
+  End& end = as_wire(link).end;
+  const auto weak_this = std::weak_ptr(std::static_pointer_cast<WireLinks>(shared_from_this()));
+  const auto weak_link = link.weak_from_this();
+  end.on_closed([weak_this, weak_link] {
+    const auto self = weak_this.lock();
+    const auto closed = weak_link.lock();
+    if (self && closed) self->closed(closed);
+  });
+  end.on_received([weak_this, weak_link](const void*, const TimeSpec&) {
+       const auto self = weak_this.lock();
+       const auto from = weak_link.lock();
+       if (self && from) self->take(as_wire(*from));
+     })
+      .detach();
+}
+
+// Its answer is waited for, but by nobody here.
+void WireLinks::leave(Link& link) {
+  core()->reactor().post([end = as_wire(link).end]() mutable { end.close(); });
+}
+
+// Values
+
+void WireLinks::take(WireLink& link) {
+  TimeSpec time;
+  const std::shared_ptr<const void> value = link.end.received(time);
+  if (!value) return;
+  std::shared_ptr<const void> before;
+  std::shared_ptr<const void> newest_before;
+  {
+    const std::lock_guard lock(mutex_);
+    // A later call may have come first.
+    if (link.phase != Link::Phase::open || link.newest.value() == value) return;
+    before = link.newest.put(value, time);
+    newest_before = newest_.put(value, time);
+    newest_client_ = link.client->id;
+    link.sequence = ++sequence_;
+    tell_soon();
+  }
+  arrived_.notify_all();
+}
+
+void WireLinks::set_lifespan(std::chrono::milliseconds lifespan) {
+  const std::lock_guard lock(mutex_);
+  lifespan_ = channel::saturated(lifespan);
+  newest_.set_lifespan(lifespan_);
+  for (const LinkPointer& link : links_) as_wire(*link).newest.set_lifespan(lifespan_);
+}
+
+WireLinks::Value WireLinks::received() const {
+  Value result;
+  const std::lock_guard lock(mutex_);
+  result.value = newest_.get(result.time);
+  result.client = newest_client_;
+  return result;
+}
+
+// Under the lock: those that have a value, in the order of arrival.
+std::vector<const WireLinks::WireLink*> WireLinks::fresh_links() const {
+  std::vector<const WireLink*> result;
+  for (const LinkPointer& link : links_) {
+    const auto& wire = static_cast<const WireLink&>(*link);
+    if (wire.newest.is_fresh()) result.push_back(&wire);
+  }
+  std::sort(result.begin(), result.end(),
+            [](const auto* a, const auto* b) { return a->sequence < b->sequence; });
+  return result;
+}
+
+std::vector<WireLinks::Value> WireLinks::all_received() const {
+  std::vector<Value> result;
+  const std::lock_guard lock(mutex_);
+  for (const WireLink* const link : fresh_links()) {
+    result.push_back({link->newest.value(), link->newest.time(), link->client->id});
+  }
+  return result;
+}
+
+bool WireLinks::wait(std::chrono::milliseconds limit) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (newest_.is_fresh()) return true;
+  }
+  const channel::Time deadline = channel::after(channel::Clock::now(), limit);
+  channel::Reactor::about_to_wait();
+  std::unique_lock lock(mutex_);
+  while (!newest_.is_fresh() && is_open_ && channel::Clock::now() < deadline) {
+    channel::wait_until(arrived_, lock, deadline);
+  }
+  return newest_.is_fresh();
+}
+
+// Functions
+
+Subscription WireLinks::on_received(Function<void(const Value&)> function) {
+  const auto listener = std::make_shared<Listener<const Value&>>(std::move(function));
+  const std::lock_guard lock(mutex_);
+  check_open();
+  std::erase_if(told_, [](const Told& told) { return !told.listener->is_connected(); });
+  told_.push_back({listener});
+  tell_soon();
+  return Subscription(listener);
+}
+
+void WireLinks::tell_soon() {
+  if (told_.empty() || std::exchange(is_telling_, true)) return;
+  teller_->add(
+      [self = std::static_pointer_cast<WireLinks>(shared_from_this())] { self->tell_all(); });
+}
+
+void WireLinks::tell_all() {
+  for (auto turns = next_turn(); !turns.empty(); turns = next_turn()) {
+    for (const Turn& turn : turns) {
+      try {
+        turn.listener->call(turn.value);
+      } catch (const std::exception& error) {
+        core()->log(LogLevel::error,
+                    "a function for the wire `" + member() + "` has thrown: " + error.what());
+      } catch (...) {
+        core()->log(LogLevel::error, "a function for the wire `" + member() + "` has thrown");
+      }
+    }
+  }
+}
+
+// What each function is to be called with next; nothing when all have been.
+std::vector<WireLinks::Turn> WireLinks::next_turn() {
+  std::vector<Turn> turns;
+  const std::lock_guard lock(mutex_);
+  const auto links = fresh_links();
+  for (Told& told : told_) {
+    for (const WireLink* const link : links) {
+      if (link->sequence <= told.seen) continue;
+      turns.push_back(
+          {told.listener, {link->newest.value(), link->newest.time(), link->client->id}});
+    }
+    told.seen = sequence_;
+  }
+  is_telling_ = !turns.empty();
+  return turns;
+}
+
+void WireLinks::end_functions() {
+  if (told_.empty()) return;
+  teller_->add([told = std::exchange(told_, {})] {
+    for (const Told& each : told) each.listener->disconnect();
+  });
+}
+
+// Sending
+
+std::size_t WireLinks::send_all(const void* value) {
+  std::vector<End> ends;
+  {
+    const std::lock_guard lock(mutex_);
+    check_open();
+    for (const LinkPointer& link : links_) {
+      if (link->phase == Link::Phase::open) ends.push_back(as_wire(*link).end);
+    }
+  }
+  std::size_t count = 0;
+  for (End& end : ends) {
+    try {
+      end.send(value);
+      ++count;
+    } catch (const Error& error) {
+      if (!is_of_connection(error)) throw;
+    }
+  }
+  return count;
+}
+
+}  // namespace rr::subscription
