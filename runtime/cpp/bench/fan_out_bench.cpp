@@ -149,52 +149,33 @@ void read(const std::string& port, int count) {
   }
 }
 
-// The number that a process says behind a word. Ends the program when it does not.
-double wait_for(Child& child, std::vector<std::string>& unread, const std::string& word) {
-  const auto deadline = Clock::now() + patience;
-  while (Clock::now() < deadline) {
-    for (std::string& line : child.take_lines()) unread.push_back(std::move(line));
-    for (auto line = unread.begin(); line != unread.end(); ++line) {
-      if (!line->starts_with(word + ' ')) continue;
-      const double number = std::stod(line->substr(word.size()));
-      unread.erase(line);
-      return number;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  std::fprintf(stderr, "fan_out_bench: a process does not say its %s\n", word.c_str());
-  std::exit(1);
+// The number that a process answers with, behind a word.
+double ask(Child& child, const std::string& command, const std::string& word) {
+  child.tell(command);
+  return std::stod(child.wait_for(word));
 }
 
-struct Process {
-  Child child;
-  std::vector<std::string> unread{};
-  double ask(const std::string& command, const std::string& word) {
-    child.tell(command);
-    return wait_for(child, unread, word);
-  }
-};
-
 void measure(int clients, int values, double rate, int bytes) {
-  Process service{Child({"serve"})};
-  const auto port = static_cast<int>(wait_for(service.child, service.unread, "port"));
-  const double empty = service.ask("memory", "memory");
-  std::vector<Process> processes;
+  Child service({"serve"});
+  const auto port = service.wait_for("port");
+  const double empty = ask(service, "memory", "memory");
+  std::vector<Child> processes;
   for (int first = 0; first < clients; first += clients_of_a_process) {
     const int count = std::min(clients_of_a_process, clients - first);
-    processes.push_back({Child({"read", std::to_string(port), std::to_string(count)})});
+    processes.push_back(Child({"read", port, std::to_string(count)}));
   }
-  for (Process& one : processes) wait_for(one.child, one.unread, "ready");
-  const double idle = service.ask("memory", "memory");
+  for (Child& one : processes) one.wait_for("ready");
+  const double idle = ask(service, "memory", "memory");
   const auto send = [&](int count) {
-    service.child.tell("send " + std::to_string(count) + ' ' + std::to_string(rate) + ' ' +
-                       std::to_string(bytes));
-    const double cpu = wait_for(service.child, service.unread, "cpu");
+    const double cpu = ask(
+        service,
+        "send " + std::to_string(count) + ' ' + std::to_string(rate) + ' ' + std::to_string(bytes),
+        "cpu");
     double received = 0;
     double current = 0;
-    for (Process& one : processes) {
-      received += one.ask("report " + std::to_string(count), "values");
-      current += wait_for(one.child, one.unread, "current");
+    for (Child& one : processes) {
+      received += ask(one, "report " + std::to_string(count), "values");
+      current += std::stod(one.wait_for("current"));
     }
     return std::array<double, 3>{cpu, received, current};
   };

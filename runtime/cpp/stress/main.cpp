@@ -27,6 +27,10 @@ bool read_options(int count, char** words, rr::stress::Options& options) {
       options.role = value;
       continue;
     }
+    if (word == "--host") {
+      options.host = value;
+      continue;
+    }
     char* end = nullptr;
     const unsigned long number = std::strtoul(value.c_str(), &end, 10);
     if (value.empty() || *end != '\0') return false;
@@ -63,6 +67,7 @@ int main(int count, char** words) {
   try {
     if (options.role == "service") return rr::stress::serve(options);
     if (options.role == "clients") return rr::stress::use(options);
+    if (options.role == "holder") return rr::stress::hold(options);
     return rr::stress::direct(options);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "stress: %s\n", error.what());

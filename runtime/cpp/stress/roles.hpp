@@ -16,6 +16,7 @@ struct Options {
   bool may_kill = true;  ///< whether processes are killed and stopped
   // Of one process
   std::string role = "director";
+  std::string host = "127.0.0.1";  ///< where the service is
   std::uint16_t port = 0;
   std::uint32_t first = 0;  ///< of the clients of a process
   std::uint32_t count = 0;
@@ -25,6 +26,7 @@ struct Options {
 int direct(const Options& options);
 int serve(const Options& options);
 int use(const Options& options);
+int hold(const Options& options);
 
 /// How long a call may take before it is taken to hang, and for what comes by itself.
 std::chrono::seconds hang_limit();

@@ -8,28 +8,14 @@
 #include <thread>
 
 #include "rr/node.hpp"
-#include "rr/users.hpp"
 #include "runtime/cpp/src/node/testing/process_state.hpp"
 #include "runtime/cpp/stress/bench.hpp"
+#include "runtime/cpp/stress/everybody.hpp"
 #include "runtime/cpp/stress/roles.hpp"
 #include "runtime/cpp/stress/watchdog.hpp"
 
 namespace rr::stress {
 namespace {
-
-/// Anybody with the right password, and everybody may lock.
-class Everybody final : public Users {
- public:
-  [[nodiscard]] User authenticate(const std::string& name,
-                                  const std::map<std::string, VarValue>& credentials,
-                                  const NodeId& /*node*/) const override {
-    const auto password = credentials.find("password");
-    if (password == credentials.end() || !(password->second == VarValue("of " + name))) {
-      throw Error(ErrorCode::authentication_error, "wrong password");
-    }
-    return {name, {std::string(lock_privilege)}};
-  }
-};
 
 /// Sends to all clients until it ends.
 class Producer {
@@ -84,7 +70,7 @@ int serve(const Options& options) {
                                    bench->forget(client.endpoint);
                                    --clients;
                                  }});
-  lines.write("port " + std::to_string(node.listen_tcp(0, "127.0.0.1")));
+  lines.write("port " + std::to_string(node.listen_tcp(0, options.host)));
   {
     const Producer producer(lines, *bench, options.seed);
     for (std::string command; std::getline(std::cin, command) && command != "end";) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "runtime/cpp/stress/bench.hpp"
+#include "runtime/cpp/stress/everybody.hpp"
 #include "runtime/cpp/stress/roles.hpp"
 
 namespace rr::stress {
@@ -71,7 +72,7 @@ bool Session::connect(Node& node) {
     attempt("connect", [&] {
       client_ = node.connect<BenchStub>(
           ground_.url, {.username = user,
-                        .credentials = {{"password", VarValue("of " + user)}},
+                        .credentials = {{"password", Everybody::password_of(user)}},
                         .on_closed = [state = state_](const Error& why) {
                           state->has_ended = true;
                           ++state->ends_told;
