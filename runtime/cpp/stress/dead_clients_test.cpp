@@ -36,7 +36,7 @@ constexpr std::size_t mebibyte = std::size_t{1024} * 1024;
 /// A service here, with a client in another process that has all it can get.
 class DeadClient : public ::testing::Test {
  protected:
-  void begin(NodeOptions options) {
+  void start(NodeOptions options) {
     node_ = std::make_unique<Node>(std::move(options));
     service_ = node_->register_service(
         "bench", bench_,
@@ -80,13 +80,13 @@ class DeadClient : public ::testing::Test {
 };
 
 TEST_F(DeadClient, ThatIsKilledIsForgotten) {
-  begin({});
+  start({});
   holder_->signal(SIGKILL);
   expect_nothing_left();
 }
 
 TEST_F(DeadClient, ThatIsStoppedIsForgottenAfterTheReceiveTimeout) {
-  this->begin({.heartbeat_period = 200ms, .receive_timeout = 1s});
+  start({.heartbeat_period = 200ms, .receive_timeout = 1s});
   const auto begin = Clock::now();
   holder_->stop();
   ASSERT_TRUE(eventually([&] { return service_->clients().empty(); }));
@@ -96,7 +96,7 @@ TEST_F(DeadClient, ThatIsStoppedIsForgottenAfterTheReceiveTimeout) {
 }
 
 TEST_F(DeadClient, ThatIsKilledFailsItsCallbacks) {
-  this->begin({});
+  start({});
   holder_->stop();  // so that the callback waits
   const auto begin = Clock::now();
   std::thread killing([&] { holder_->signal(SIGKILL); });
@@ -109,7 +109,7 @@ TEST_F(DeadClient, ThatIsKilledFailsItsCallbacks) {
 }
 
 TEST_F(DeadClient, ThatIsStoppedLetsItsCallbacksEndInTheirTime) {
-  this->begin({.request_timeout = 1s});
+  start({.request_timeout = 1s});
   EXPECT_EQ(bench_->question(endpoint_, 3), 3U);
   holder_->stop();
   const auto begin = Clock::now();
@@ -119,7 +119,7 @@ TEST_F(DeadClient, ThatIsStoppedLetsItsCallbacksEndInTheirTime) {
 }
 
 TEST_F(DeadClient, ThatDoesNotReadCostsOneValueOfAWire) {
-  begin({.send_queue_limit = 4 * mebibyte});
+  start({.send_queue_limit = 4 * mebibyte});
   holder_->stop();
   const Stamp large{0, 1, rr::Array<double>(10'000)};
   for (int i = 0; i < 100; ++i) bench_->level().set_in(large);  // until the socket is full
@@ -130,7 +130,7 @@ TEST_F(DeadClient, ThatDoesNotReadCostsOneValueOfAWire) {
 }
 
 TEST_F(DeadClient, ThatDoesNotReadLosesItsPipeEndsAndNoMore) {
-  begin({.send_queue_limit = 4 * mebibyte});
+  start({.send_queue_limit = 4 * mebibyte});
   holder_->stop();
   const std::size_t before = ProcessState::now().allocated;
   const Stamp large{0, 1, rr::Array<double>(10'000)};
@@ -146,7 +146,7 @@ TEST_F(DeadClient, ThatDoesNotReadLosesItsPipeEndsAndNoMore) {
 }
 
 TEST_F(DeadClient, ThatDoesNotReadIsGivenUpWhenTooManyEventsWait) {
-  begin({.send_queue_limit = 4 * mebibyte});
+  start({.send_queue_limit = 4 * mebibyte});
   holder_->stop();
   const std::size_t before = ProcessState::now().allocated;
   for (std::uint64_t i = 0; i < 400'000 && !service_->clients().empty(); ++i) {

@@ -29,14 +29,17 @@ class Consecutive {
     if (last != 0 && number != last + 1) {
       lines_.fault(name_ + ": " + std::to_string(number) + " came behind " + std::to_string(last));
     }
+    if (last == 0) first_ = number;
     last_ = number;
   }
   /// 0: none has come.
+  [[nodiscard]] std::uint64_t first() const { return first_; }
   [[nodiscard]] std::uint64_t last() const { return last_; }
 
  private:
   Lines& lines_;
   const std::string name_;
+  std::atomic<std::uint64_t> first_{0};
   std::atomic<std::uint64_t> last_{0};
 };
 

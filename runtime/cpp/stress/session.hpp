@@ -96,6 +96,8 @@ class Session {
   void send_values();
   void compare_level();
   void settle();
+  void settle_stream(const char* what, const Consecutive& stream, std::uint64_t from,
+                     std::uint64_t to);
 
   // session_calls.cpp
   void act();
@@ -135,6 +137,9 @@ class Session {
   bool has_level_ = false;
   bool has_mirror_ = false;
   bool has_target_ = false;
+  // What comes from these numbers on is complete: they were sent once all was connected.
+  std::uint64_t ticks_from_ = 0;
+  std::uint64_t broadcast_from_ = 0;
   std::uint64_t sent_echo_ = 0;
   std::uint64_t sent_mirror_ = 0;
   std::uint64_t sent_target_ = 0;

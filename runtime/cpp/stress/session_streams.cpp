@@ -54,6 +54,10 @@ void Session::connect_streams() {
     });
   }
   connect_wires();
+  attempt("numbers of streams", [&] {
+    broadcast_from_ = bench_->broadcast_number();
+    ticks_from_ = bench_->tick_number();
+  });
 }
 
 void Session::connect_wires() {
@@ -129,8 +133,7 @@ void Session::compare_level() {
     const auto value = level_.try_in();
     const std::uint64_t seen = value ? value->value->number : 0;
     state_->level_polled.take(seen, "polled");
-    // The number is of a value that may have been set before the wire was connected.
-    if (value) check(seen >= number, "the age of a wire's value");
+    check(seen >= number, "the age of a wire's value");
     const auto peeked = bench_->level().peek_in();
     check(peeked.value->number >= seen, "the age of a peeked value");
   });
@@ -147,20 +150,28 @@ void Session::settle() {
       return (value ? value->value->number : 0) == sent_mirror_;
     });
   }
+  if (has_echo_) {
+    wait_for("acknowledgements", [&] { return echo_.unacknowledged() == 0; });
+  }
   if (has_broadcast_) {
     attempt("broadcast_number", [&] {
-      const std::uint64_t number = bench_->broadcast_number();
-      wait_for("packets for all",
-               [&] { return state_->broadcast.last() == 0 || state_->broadcast.last() >= number; });
+      settle_stream("packets for all", state_->broadcast, broadcast_from_,
+                    bench_->broadcast_number());
     });
   }
   if (has_ticks_) {
-    attempt("tick_number", [&] {
-      const std::uint64_t number = bench_->tick_number();
-      wait_for("events",
-               [&] { return state_->ticks.last() == 0 || state_->ticks.last() >= number; });
-    });
+    attempt("tick_number",
+            [&] { settle_stream("events", state_->ticks, ticks_from_, bench_->tick_number()); });
   }
+}
+
+// All numbers behind `from` but one, up to `to` at least, have come or will.
+void Session::settle_stream(const char* what, const Consecutive& stream, std::uint64_t from,
+                            std::uint64_t to) {
+  // The one behind it may have been on its way to the others while this client connected.
+  if (from == 0 || to <= from + 1) return;
+  wait_for(what, [&] { return stream.last() >= to; });
+  check(stream.first() <= from + 2, what);
 }
 
 }  // namespace rr::stress
