@@ -92,7 +92,9 @@ int use(const Options& options) {
   SocketCutter cutter;
   Ground ground{lines, watchdog, cutter,
                 "rr+tcp://127.0.0.1:" + std::to_string(options.port) + "/?service=bench"};
-  Node node({.request_timeout = hang_limit(), .connect_timeout = hang_limit()});
+  Node node({.request_timeout = hang_limit(),
+             .connect_timeout = hang_limit(),
+             .receive_timeout = hang_limit()});
   Phase phase;
   std::vector<std::thread> threads;
   for (std::uint32_t i = 0; i < options.count; ++i) {

@@ -249,7 +249,7 @@ int Director::run() {
 int direct(const Options& options) { return Director(options).run(); }
 
 std::chrono::seconds hang_limit() {
-  return std::chrono::seconds(60) * std::min(testing::slowness(), 4);
+  return std::chrono::seconds(120) * std::min(testing::slowness(), 3);
 }
 std::chrono::seconds patience() {
   return std::chrono::seconds(20) * std::min(testing::slowness(), 4);

@@ -56,7 +56,7 @@ int serve(const Options& options) {
   Shared shared(lines);
   const auto bench = std::make_shared<Bench>(shared, options.clients);
   std::atomic<int> clients{0};
-  Node node({.request_timeout = hang_limit()});
+  Node node({.request_timeout = hang_limit(), .receive_timeout = hang_limit()});
   const Service service =
       node.register_service("bench", bench,
                             {.users = std::make_shared<Everybody>(),

@@ -96,7 +96,8 @@ void Session::use(Node& shared, const std::function<bool()>& is_over) {
   if (draw(4) == 0) {
     own.emplace(NodeOptions{.client_offer = {.message_v4 = draw(2) == 0},
                             .request_timeout = hang_limit(),
-                            .connect_timeout = hang_limit()});
+                            .connect_timeout = hang_limit(),
+                            .receive_timeout = hang_limit()});
   }
   if (!connect(own ? *own : shared)) return;
   ++ground_.sessions;

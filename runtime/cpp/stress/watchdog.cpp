@@ -4,6 +4,11 @@
 #include <cstdlib>
 
 namespace rr::stress {
+namespace {
+
+constexpr std::chrono::seconds period{1};
+
+}  // namespace
 
 Watchdog::Watchdog(Lines& lines, std::chrono::seconds limit)
     : lines_(lines), limit_(limit), thread_([this] { watch(); }) {}
@@ -29,16 +34,17 @@ Watchdog::Entry::~Entry() {
 
 void Watchdog::watch() {
   std::unique_lock lock(mutex_);
-  while (!ending_.wait_for(lock, std::chrono::seconds(1), [&] { return is_ending_; })) look();
+  while (!ending_.wait_for(lock, period, [&] { return is_ending_; })) look();
 }
 
 void Watchdog::look() {
-  const auto now = std::chrono::steady_clock::now().time_since_epoch();
   bool hangs = false;
-  for (const Watched& one : threads_) {
+  for (Watched& one : threads_) {
+    const std::uint64_t begun = one.begun;
     const char* const doing = one.doing;
-    const auto waited = now - std::chrono::nanoseconds(one.since);
-    if (doing == nullptr || waited < limit_) continue;
+    if (std::exchange(one.seen, begun) != begun) one.unchanged = {};
+    one.unchanged += period;
+    if (doing == nullptr || one.unchanged < limit_) continue;
     hangs = true;
     lines_.fault(one.name + " hangs in " + doing);
   }

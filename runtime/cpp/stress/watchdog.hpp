@@ -15,7 +15,8 @@
 
 namespace rr::stress {
 
-/// Ends the process when a thread waits too long in one call, and says which and where.
+/// Ends the process when a thread waits too long in one call, and says which and where. Counts the
+/// seconds itself, so that a process that was stopped for a while is not taken to hang.
 class Watchdog {
  public:
   Watchdog(Lines& lines, std::chrono::seconds limit);
@@ -28,7 +29,10 @@ class Watchdog {
     explicit Watched(std::string thread) : name(std::move(thread)) {}
     const std::string name;
     std::atomic<const char*> doing{nullptr};
-    std::atomic<std::int64_t> since{0};  // nanoseconds
+    std::atomic<std::uint64_t> begun{0};  ///< how often it has begun something else
+    // Of the watchdog: what it saw last, and for how long.
+    std::uint64_t seen = 0;
+    std::chrono::seconds unchanged{0};
   };
   /// Its place in the list while it lives.
   class Entry {
@@ -70,8 +74,8 @@ class Doing {
 
  private:
   void start(const char* what) {
-    watched_.since = std::chrono::steady_clock::now().time_since_epoch().count();
     watched_.doing = what;
+    ++watched_.begun;
   }
 
   Watchdog::Watched& watched_;
