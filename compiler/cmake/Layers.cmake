@@ -27,6 +27,7 @@ set(robdef_layers
   "runtime/cpp/src/node: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/client runtime/cpp/src/service runtime/cpp/src/subscription"
   "runtime/cpp/fuzz: runtime/cpp/include/rr runtime/cpp/src"
   "runtime/cpp/bench: runtime/cpp/include/rr runtime/cpp/src"
+  "runtime/cpp/stress: runtime/cpp/include/rr runtime/cpp/src/node/testing"
 
   "conformance: runtime/cpp/include/rr"
   "benchmarks: runtime/cpp/include/rr compiler"
@@ -37,8 +38,8 @@ set(robdef_layers
 set(robdef_outside_headers
   "^(antlr4|Robdef(Lexer|Parser))| compiler/syntax"
   "^boost/| runtime/cpp/include/rr/async.hpp"
-  "^rr/async\\.hpp$| runtime/cpp/src examples conformance benchmarks compiler/backends"
-  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/node/testing runtime/cpp/fuzz conformance benchmarks"
+  "^rr/async\\.hpp$| runtime/cpp/src runtime/cpp/stress examples conformance benchmarks compiler/backends"
+  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress conformance benchmarks"
   "^fmt/| compiler benchmarks"
   "^nlohmann/| runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp conformance"
   "^png\\.h$| examples")

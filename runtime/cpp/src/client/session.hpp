@@ -81,6 +81,8 @@ class Session final : public channel::Receiver,
   void drop();
   void cancel_calls();
   [[nodiscard]] bool is_open() const;
+  /// Throws what a request fails with once the session has ended.
+  [[noreturn]] void refuse_ended() const;
 
   [[nodiscard]] const std::map<std::string, VarValue>& attributes() const { return attributes_; }
   [[nodiscard]] const NodeId& remote_node() const { return remote_node_; }

@@ -95,6 +95,11 @@ namespace {
 
 }  // namespace
 
+void Session::refuse_ended() const {
+  const std::lock_guard lock(mutex_);
+  refuse_closed(why_closed_.value());
+}
+
 // The numbers of the next message; a request that waits for its answer is open from now on.
 Session::Numbers Session::draw(endpoint::Pending* call, bool has_number) {
   const std::lock_guard lock(mutex_);

@@ -29,7 +29,7 @@ std::shared_ptr<ClientWireEnd> begin_connecting(const Stub& stub, const Member& 
       throw Error(ErrorCode::invalid_operation,
                   "the wire `" + std::string(member.name) + "` is connected already");
     case endpoint::WireTable::Added::ended:
-      throw Error(ErrorCode::invalid_operation, "the session has ended");
+      session.refuse_ended();
     case endpoint::WireTable::Added::yes:
       break;
   }

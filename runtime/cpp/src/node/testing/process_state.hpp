@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace rr::testing {
+
+/// What this process holds now.
+struct ProcessState {
+  std::size_t threads = 0;
+  std::size_t descriptors = 0;
+  std::size_t allocated = 0;  ///< bytes that the program has not freed
+  std::size_t resident = 0;   ///< bytes of memory that are in use, what was freed included
+
+  static ProcessState now();
+  [[nodiscard]] std::string text() const;
+};
+
+/// How much slower than usual this build is.
+int slowness();
+
+}  // namespace rr::testing
