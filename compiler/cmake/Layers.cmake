@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: Apache-2.0
+# runtime/cpp/src/dynamic/json.cpp SPDX-License-Identifier: Apache-2.0
 # Who may include whom, and a reader of all #include lines that holds the tree to it.
 #   cmake -D ROOT=<tree> -P compiler/cmake/Layers.cmake      (target check_layers, test layers)
 
@@ -24,6 +24,8 @@ set(robdef_layers
   "runtime/cpp/src/client: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint"
   "runtime/cpp/src/service: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint"
   "runtime/cpp/src/node: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/client runtime/cpp/src/service"
+  # The compiler's model reads definitions here too.
+  "runtime/cpp/src/dynamic: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/client compiler/diagnostics compiler/syntax compiler/model"
   "runtime/cpp/fuzz: runtime/cpp/include/rr runtime/cpp/src"
   "runtime/cpp/bench: runtime/cpp/include/rr runtime/cpp/src"
 

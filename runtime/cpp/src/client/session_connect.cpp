@@ -7,6 +7,7 @@
 #include "rr/type.hpp"
 #include "rr/varvalue.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
+#include "runtime/cpp/src/client/definition_reader.hpp"
 #include "runtime/cpp/src/client/session.hpp"
 #include "runtime/cpp/src/endpoint/client_version.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
@@ -83,7 +84,7 @@ std::map<std::string, VarValue> optional_map(Decoder& decoder, const Entry& entr
 
 Session::Session(std::shared_ptr<endpoint::Core> core, const Url& url, ConnectOptions options)
     : core_(std::move(core)),
-      types_(core_->types()),
+      types_(options.definition_reader ? options.definition_reader->types() : core_->types()),
       service_(url.service),
       options_(std::move(options)),
       endpoint_(core_->new_endpoint()),
