@@ -40,7 +40,8 @@ int main(int argc, char** argv) {
     rr::conformance::ServedNode node(adapters);
     answer_lines([&](const Json& request) { return node.answer(request); });
   } else if (verb == "call") {
-    rr::conformance::CallingNode node(adapters);
+    rr::conformance::GeneratedBinding binding(adapters);
+    rr::conformance::CallingNode node(binding);
     answer_lines([&](const Json& request) { return node.answer(request); });
   } else {
     std::cerr << "usage: conformance_runner decode|encode|serve|call\n";

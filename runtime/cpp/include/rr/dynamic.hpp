@@ -198,6 +198,9 @@ class Object {
 
   /// For rr::lock, rr::enter_monitor, rr::MonitorLock, and time-outs.
   [[nodiscard]] Stub& stub() const;
+  [[nodiscard]] std::shared_ptr<Stub> shared_stub() const;
+  /// The object of such a stub; throws rr::Error (invalid_argument) for one of generated code.
+  static Object of(const std::shared_ptr<Stub>& stub);
 
   explicit Object(std::shared_ptr<DynamicStub> stub) : stub_(std::move(stub)) {}  // internal
 

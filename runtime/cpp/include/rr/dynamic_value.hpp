@@ -56,7 +56,8 @@ class ValueType {
   [[nodiscard]] Kind kind() const;
   /// Qualified, without spaces; `void` for no type.
   [[nodiscard]] const std::string& text() const;
-  /// The number's, or the array items'; int32 for an enum; void_ for all others.
+  /// The number's, that of an array's or namedarray's numbers; int32 for an enum; void_ for all
+  /// others.
   [[nodiscard]] ElementType number() const;
   /// The type of an item of a list, map or array.
   [[nodiscard]] ValueType item() const;
@@ -143,6 +144,8 @@ class Value {
   /// What it is: `double`, `int32[*]`, `com.robotraconteur.geometry.Vector3[]`; `null`, `list`,
   /// `map`, `fields` for what has no exact type.
   [[nodiscard]] std::string type_text() const;
+  /// The same to work with; lists and maps as they are in a varvalue. None for null and `fields`.
+  [[nodiscard]] ValueType type() const;
   /// The type of a number, an enum's value (int32), or an array's numbers; else void_.
   [[nodiscard]] ElementType number_type() const;
 

@@ -22,22 +22,35 @@ using ::testing::ElementsAre;
 using testing::error_text;
 using ::testing::HasSubstr;
 
-class Machine : public experimental::functions::MachineDefault {
+namespace functions = experimental::functions;
+
+class Machine : public functions::MachineSkeleton {
  public:
   void stop() override { is_stopped = true; }
+  double speed() override { return 1; }
   void move_to(double pan, double tilt) override { at = {pan, tilt}; }
-  std::string join(std::string first, std::string second,
-                   std::optional<std::vector<std::string>> others) override {
-    for (const std::string& other : others.value_or(std::vector<std::string>())) second += other;
-    return first + second;
+  std::string join(const std::string& first, const std::string& second,
+                   const std::optional<std::vector<std::string>>& others) override {
+    std::string all = first + second;
+    for (const std::string& other : others.value_or(std::vector<std::string>())) all += other;
+    return all;
   }
-  std::optional<experimental::functions::Report> inspect(
-      std::optional<experimental::functions::Report> previous,
-      rr::Array<std::uint8_t> picture) override {
+  std::optional<functions::Report> inspect(const std::optional<functions::Report>& previous,
+                                           const rr::Array<std::uint8_t>& picture) override {
     if (!previous) throw Error(ErrorCode::null_value, "no report");
-    previous->count += static_cast<std::int32_t>(picture.size());
-    return previous;
+    functions::Report report = *previous;
+    report.count += static_cast<std::int32_t>(picture.size());
+    return report;
   }
+  rr::Array<double> filter(const rr::Array<double>& samples, const std::array<double, 3>&,
+                           bool) override {
+    return samples;
+  }
+  std::optional<std::map<std::string, VarValue>> a_function_whose_name_is_rather_long(
+      const VarValue& first, const std::optional<std::vector<VarValue>>&) override {
+    return std::map<std::string, VarValue>{{"first", first}};
+  }
+
   bool is_stopped = false;
   std::pair<double, double> at;
 };
@@ -100,6 +113,8 @@ TEST(DynamicClient, CallsFunctions) {
       machine->call("inspect", {StringMap{{"count", 1}, {"text", "t"}}, List{1, 2}});
   EXPECT_EQ(report["count"].as<int>(), 3);
   EXPECT_EQ(report.type_text(), "experimental.functions.Report");
+  const Value any = machine->call("a_function_whose_name_is_rather_long", {report, List{1}});
+  EXPECT_EQ(any.at("first"), report);
 }
 
 TEST(DynamicClient, NamesFunctionAndParameterInErrors) {
@@ -156,10 +171,13 @@ TEST(DynamicClient, TellsItsMembers) {
 }
 
 class Joint : public experimental::objrefs::JointDefault {};
-class Robot : public experimental::objrefs::RobotDefault {
+class Robot : public experimental::objrefs::RobotSkeleton {
  public:
   std::shared_ptr<experimental::objrefs::JointSkeleton> get_base() override { return joint; }
   std::shared_ptr<experimental::objrefs::JointSkeleton> get_joint(std::int32_t) override {
+    return joint;
+  }
+  std::shared_ptr<experimental::objrefs::JointSkeleton> get_joint_by_number(std::int32_t) override {
     return joint;
   }
   std::shared_ptr<experimental::objrefs::JointSkeleton> get_joint_by_name(
@@ -168,6 +186,7 @@ class Robot : public experimental::objrefs::RobotDefault {
     return joint;
   }
   std::shared_ptr<rr::Skeleton> get_tool() override { return joint; }
+  std::shared_ptr<rr::Skeleton> get_tools(const std::string&) override { return joint; }
   std::shared_ptr<Joint> joint = std::make_shared<Joint>();
 };
 
@@ -191,7 +210,7 @@ TEST(DynamicClient, FindsObjects) {
   EXPECT_EQ(found.get().path(), "tested.joint[4]");
 }
 
-class Siren : public experimental::events::SirenDefault {
+class Siren : public experimental::events::SirenSkeleton {
  public:
   void test() override {
     tick();
@@ -219,8 +238,8 @@ TEST(DynamicClient, HearsEvents) {
 
 class Recorder : public experimental::pods::RecorderDefault {
  public:
-  experimental::pods::Burst record(experimental::pods::Sample from,
-                                   rr::Array<experimental::pods::Sample> until) override {
+  experimental::pods::Burst record(const experimental::pods::Sample& from,
+                                   const rr::Array<experimental::pods::Sample>& until) override {
     experimental::pods::Burst burst{};
     burst.first = from;
     for (const auto& sample : until) burst.rest.push_back(sample);
@@ -255,7 +274,7 @@ TEST(DynamicClient, FailsOnceItsSessionHasEnded) {
   const Object root = machine.client.root();
   machine.client.close();
   EXPECT_FALSE(machine.client.is_open());
-  EXPECT_EQ(error_text([&] { root.call("stop"); }).substr(0, 2), "1:");
+  EXPECT_EQ(error_text([&] { root.call("stop"); }).substr(0, 3), "17:");
   EXPECT_EQ(root.members().size(), 7U);
 }
 

@@ -129,6 +129,7 @@ bool ArrayNode::read(Decoder& decoder, const Element& element, void* value) cons
   return true;
 }
 
+ElementType RecordNode::number() const { return table_.number; }
 ElementType RecordNode::element_type() const { return table_.wire_type->element_type(); }
 
 void RecordNode::write(Writer& writer, const ElementName& name, const void* value) const {

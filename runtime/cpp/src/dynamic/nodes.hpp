@@ -146,6 +146,7 @@ class RecordNode final : public TypeNode {
   RecordNode(const RecordTable& table, std::string text)
       : TypeNode(Kind::record, std::move(text)), table_(table) {}
   [[nodiscard]] const RecordTable* record() const override { return &table_; }
+  [[nodiscard]] ElementType number() const override;  ///< of a namedarray
   [[nodiscard]] ElementType element_type() const override;
   void write(Writer& writer, const ElementName& name, const void* value) const override;
   bool read(Decoder& decoder, const Element& element, void* value) const override;

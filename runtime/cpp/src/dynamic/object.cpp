@@ -32,10 +32,6 @@ void check_index(const MemberTable& table, const Member& member, IndexForm given
               subject_of(table.name) + ": expected " + expected + ", got " + got);
 }
 
-Object object_of(const std::shared_ptr<Stub>& stub) {
-  return Object(std::dynamic_pointer_cast<DynamicStub>(stub));
-}
-
 class Listener final : public EventHandler {
  public:
   Listener(const Member& member, Function<void(const List&)> function)
@@ -52,6 +48,13 @@ const std::string& Object::path() const { return stub_->rr_path(); }
 const std::string& Object::type_name() const { return stub_->table().name; }
 const std::string& Object::documentation() const { return stub_->table().documentation; }
 Stub& Object::stub() const { return *stub_; }
+std::shared_ptr<Stub> Object::shared_stub() const { return stub_; }
+
+Object Object::of(const std::shared_ptr<Stub>& stub) {
+  auto own = std::dynamic_pointer_cast<DynamicStub>(stub);
+  if (!own) throw Error(ErrorCode::invalid_argument, "the stub is one of generated code");
+  return Object(std::move(own));
+}
 
 std::vector<MemberDescription> Object::members() const {
   std::vector<MemberDescription> members;
@@ -119,19 +122,19 @@ Generator Object::generate(std::string_view function, const List& arguments) con
 Object Object::object(std::string_view objref) const {
   const MemberTable& member = need(objref, MemberKind::objref);
   check_index(member, stub_->wire(member), IndexForm::none);
-  return object_of(stub_->rr_find(stub_->wire(member)));
+  return Object::of(stub_->rr_find(stub_->wire(member)));
 }
 
 Object Object::object(std::string_view objref, std::int32_t index) const {
   const MemberTable& member = need(objref, MemberKind::objref);
   check_index(member, stub_->wire(member), IndexForm::int32);
-  return object_of(stub_->rr_find(stub_->wire(member), index));
+  return Object::of(stub_->rr_find(stub_->wire(member), index));
 }
 
 Object Object::object(std::string_view objref, std::string_view index) const {
   const MemberTable& member = need(objref, MemberKind::objref);
   check_index(member, stub_->wire(member), IndexForm::string);
-  return object_of(stub_->rr_find(stub_->wire(member), index));
+  return Object::of(stub_->rr_find(stub_->wire(member), index));
 }
 
 Subscription Object::on_event(std::string_view event, Function<void(const List&)> function) const {
@@ -190,7 +193,7 @@ void Object::async_object(std::string_view objref, const Value& index, Done<Obje
   check_index(table, member, given);
   auto completion = std::make_unique<Found>(
       std::move(done),
-      [](std::shared_ptr<Stub>& stub, const Done<Object>& end) { end(nullptr, object_of(stub)); });
+      [](std::shared_ptr<Stub>& stub, const Done<Object>& end) { end(nullptr, Object::of(stub)); });
   if (given == IndexForm::none) {
     stub_->rr_start_find(member, std::move(completion));
   } else if (given == IndexForm::int32) {

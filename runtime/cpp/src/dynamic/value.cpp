@@ -4,6 +4,7 @@
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/dynamic/content.hpp"
+#include "runtime/cpp/src/dynamic/definition_tables.hpp"
 #include "runtime/cpp/src/dynamic/numbers.hpp"
 #include "runtime/cpp/src/dynamic/tables.hpp"
 
@@ -126,6 +127,32 @@ std::string Value::type_text() const {
       return "map";
     default:
       return "null";
+  }
+}
+
+ValueType Value::type() const {
+  switch (kind_) {
+    case Kind::number:
+    case Kind::enumeration:
+      return {nullptr, &number_node(number_)};
+    case Kind::text:
+      return {nullptr, &text_node()};
+    case Kind::array: {
+      const auto& array = content_of<ArrayContent>(*this);
+      if (!array.record) return {nullptr, &number_array_node(array.number, array.has_dims)};
+      const RecordTable& record = *array.record;
+      return record.tables->handle(array.has_dims ? record.multi_array.get() : record.array.get());
+    }
+    case Kind::record: {
+      const auto& table = content_of<RecordContent>(*this).table;
+      return table ? table->tables->handle(table->node.get()) : ValueType();
+    }
+    case Kind::list:
+    case Kind::int_map:
+    case Kind::string_map:
+      return {nullptr, &any_container_node(kind_)};
+    default:
+      return {};
   }
 }
 

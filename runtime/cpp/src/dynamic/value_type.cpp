@@ -71,7 +71,8 @@ Value ValueType::convert(const Value& value, std::string_view subject) const {
 }
 
 Value ValueType::from_json(std::string_view json, std::string_view subject) const {
-  return need(node_).convert(parse_json(json), Place(subject, tables_.get()));
+  const std::shared_ptr<const Tables> types = tables_ ? tables_ : Definitions().tables();
+  return need(node_).convert(parse_json(json), Place(subject, types.get()));
 }
 
 std::string ValueType::to_json(const Value& value) const {
