@@ -20,7 +20,7 @@ Binding::Connected DynamicBinding::connect(Node& node, const std::string& url,
 }
 
 std::unique_ptr<Caller> DynamicBinding::caller(const Held& held) {
-  return std::make_unique<DynamicCaller>(none_, dynamic::Object::of(held.stub), newest_->types());
+  return std::make_unique<DynamicCaller>(none_, dynamic::Object::of(held.stub));
 }
 
 Json DynamicBinding::write(const VarValue& value) {

@@ -13,8 +13,8 @@ namespace rr::conformance {
 /// The members of an object by name, with run-time values.
 class DynamicCaller final : public Caller {
  public:
-  DynamicCaller(const Adapters& none, dynamic::Object object, dynamic::Definitions definitions)
-      : Caller(none), object_(std::move(object)), definitions_(std::move(definitions)) {}
+  DynamicCaller(const Adapters& none, dynamic::Object object)
+      : Caller(none), object_(std::move(object)), definitions_(object_.types()) {}
 
   Json get(std::string_view property) override;
   void set(std::string_view property, const Json& value) override;

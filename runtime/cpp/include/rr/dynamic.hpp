@@ -171,6 +171,8 @@ class Object {
   /// In the order of the definition.
   [[nodiscard]] std::vector<MemberDescription> members() const;
   [[nodiscard]] MemberDescription member(std::string_view name) const;
+  /// The definitions that it was found by.
+  [[nodiscard]] Definitions types() const;
 
   [[nodiscard]] Value get(std::string_view property) const;
   void set(std::string_view property, const Value& value) const;

@@ -56,6 +56,8 @@ Object Object::of(const std::shared_ptr<Stub>& stub) {
   return Object(std::move(own));
 }
 
+Definitions Object::types() const { return Definitions(stub_->table().tables->shared_from_this()); }
+
 std::vector<MemberDescription> Object::members() const {
   std::vector<MemberDescription> members;
   for (const MemberTable& member : stub_->table().members) {
