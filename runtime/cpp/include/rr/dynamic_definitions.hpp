@@ -10,6 +10,10 @@
 #include "rr/definition.hpp"
 #include "rr/dynamic_value.hpp"
 
+namespace rr {
+class TypeRegistry;
+}
+
 namespace rr::dynamic {
 
 class Tables;
@@ -55,6 +59,9 @@ class Definitions {
   [[nodiscard]] std::vector<MemberDescription> members(std::string_view object) const;
   /// The comments before an object. Throws as members().
   [[nodiscard]] std::string documentation(std::string_view object) const;
+
+  /// Where a Decoder finds the types of what is in varvalues. Lives as long as the definitions.
+  [[nodiscard]] const TypeRegistry& registry() const;
 
   explicit Definitions(std::shared_ptr<const Tables> tables) : tables_(std::move(tables)) {}
   [[nodiscard]] const std::shared_ptr<const Tables>& tables() const { return tables_; }  // internal

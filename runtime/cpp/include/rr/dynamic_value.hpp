@@ -68,6 +68,8 @@ class ValueType {
   [[nodiscard]] RecordKind record_kind() const;
   /// Of an enum, in the order of the definition.
   [[nodiscard]] std::vector<std::pair<std::string, std::int32_t>> enum_values() const;
+  /// As what its values travel, each a rr::dynamic::Value of this type.
+  [[nodiscard]] const rr::Type& wire_type() const;
   /// Whether an array has dimensions: `T[*]`, `T[2,3]`.
   [[nodiscard]] bool has_dims() const;
 

@@ -133,6 +133,8 @@ ValueType Definitions::type(std::string_view text) const {
   return tables_->handle(&tables_->type(text));
 }
 
+const TypeRegistry& Definitions::registry() const { return std::as_const(*tables_).registry(); }
+
 std::vector<std::string> Definitions::services() const {
   std::vector<std::string> names;
   for (const auto& [name, definition] : tables_->definitions()) names.push_back(name);

@@ -66,6 +66,8 @@ std::vector<std::pair<std::string, std::int32_t>> ValueType::enum_values() const
 
 bool ValueType::has_dims() const { return node_ != nullptr && node_->has_dims(); }
 
+const rr::Type& ValueType::wire_type() const { return need(node_); }
+
 Value ValueType::convert(const Value& value, std::string_view subject) const {
   return need(node_).convert(value, Place(subject));
 }
