@@ -1,4 +1,4 @@
-# runtime/cpp/src/dynamic/json.cpp SPDX-License-Identifier: Apache-2.0
+# SPDX-License-Identifier: Apache-2.0
 # Who may include whom, and a reader of all #include lines that holds the tree to it.
 #   cmake -D ROOT=<tree> -P compiler/cmake/Layers.cmake      (target check_layers, test layers)
 
