@@ -226,7 +226,8 @@ class Client : public ClientBase {
   [[nodiscard]] Definitions types() const;
   /// A varvalue of the service, as of an error's parameter.
   [[nodiscard]] Value value(const VarValue& varvalue) const;
-  /// As the service gave them when connecting; values of named types are not among them.
+  /// As the service gave them when connecting, which is before its definitions are read: empty when
+  /// one of them is of a named type.
   [[nodiscard]] StringMap attributes() const;
   /// As they are now, all of them.
   [[nodiscard]] StringMap fetch_attributes() const;

@@ -37,7 +37,10 @@ class Machine : public functions::MachineSkeleton {
   }
   std::optional<functions::Report> inspect(const std::optional<functions::Report>& previous,
                                            const rr::Array<std::uint8_t>& picture) override {
-    if (!previous) throw Error(ErrorCode::null_value, "no report");
+    if (!previous) {
+      throw Error(ErrorCode::null_value, "test.NoReport", "no report", "",
+                  VarStringMap{{"missing", "previous"}});
+    }
     functions::Report report = *previous;
     report.count += static_cast<std::int32_t>(picture.size());
     return report;
@@ -136,6 +139,16 @@ TEST(DynamicClient, NamesFunctionAndParameterInErrors) {
   EXPECT_EQ(error_text([&] { machine->call("inspect", {Value(), List{}}); }), "20: no report");
 }
 
+TEST(DynamicClient, ReadsTheParametersOfErrors) {
+  Connected<Machine> machine;
+  try {
+    machine->call("inspect", {Value(), List{}});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(machine.client.value(error.parameter())["missing"].text(), "previous");
+  }
+}
+
 TEST(DynamicClient, CallsAsynchronously) {
   Connected<Machine> machine;
   Awaited<Value> joined;
@@ -170,6 +183,14 @@ TEST(DynamicClient, TellsItsMembers) {
   EXPECT_THAT(machine.client.types().services(), ElementsAre("experimental.functions"));
 }
 
+class Siren : public experimental::events::SirenSkeleton {
+ public:
+  void test() override {
+    tick();
+    raised(3, experimental::events::Alarm{.text = "fire"}, {1, 2}, std::nullopt);
+  }
+};
+
 class Joint : public experimental::objrefs::JointDefault {};
 class Robot : public experimental::objrefs::RobotSkeleton {
  public:
@@ -186,7 +207,9 @@ class Robot : public experimental::objrefs::RobotSkeleton {
     return joint;
   }
   std::shared_ptr<rr::Skeleton> get_tool() override { return joint; }
-  std::shared_ptr<rr::Skeleton> get_tools(const std::string&) override { return joint; }
+  std::shared_ptr<rr::Skeleton> get_tools(const std::string&) override {
+    return std::make_shared<Siren>();
+  }
   std::shared_ptr<Joint> joint = std::make_shared<Joint>();
 };
 
@@ -210,13 +233,22 @@ TEST(DynamicClient, FindsObjects) {
   EXPECT_EQ(found.get().path(), "tested.joint[4]");
 }
 
-class Siren : public experimental::events::SirenSkeleton {
- public:
-  void test() override {
-    tick();
-    raised(3, experimental::events::Alarm{.text = "fire"}, {1, 2}, std::nullopt);
-  }
-};
+TEST(DynamicClient, ReadsDefinitionsThatComeLater) {
+  Connected<Robot> robot;
+  robot.server.add_definition(experimental::events::rr_definition);
+  EXPECT_THAT(robot.client.types().services(), ElementsAre("experimental.objrefs"));
+  const Object siren = robot->object("tools", "siren");
+  EXPECT_EQ(siren.type_name(), "experimental.events.Siren");
+  EXPECT_THAT(robot.client.types().services(),
+              ElementsAre("experimental.events", "experimental.objrefs"));
+  std::promise<List> raised;
+  const Subscription subscription =
+      siren.on_event("raised", [&](const List& arguments) { raised.set_value(arguments); });
+  siren.call("test");
+  EXPECT_EQ(raised.get_future().get().at(1)["text"].text(), "fire");
+  // What was found before goes on.
+  EXPECT_EQ(robot->object("base").type_name(), "experimental.objrefs.Joint");
+}
 
 TEST(DynamicClient, HearsEvents) {
   Connected<Siren> siren;
@@ -267,6 +299,12 @@ TEST(DynamicClient, GetsAttributes) {
   EXPECT_EQ(siren.client.attributes().at("place").text(), "roof");
   EXPECT_EQ(siren.client.attributes().at("more").at("a").as<int>(), 1);
   EXPECT_EQ(siren.client.fetch_attributes().at("n").as<int>(), 1);
+}
+
+TEST(DynamicClient, FetchesAttributesOfNamedTypes) {
+  Connected<Siren> siren(
+      {.attributes = {{"alarm", std::optional(experimental::events::Alarm{.text = "smoke"})}}});
+  EXPECT_EQ(siren.client.fetch_attributes().at("alarm")["text"].text(), "smoke");
 }
 
 TEST(DynamicClient, FailsOnceItsSessionHasEnded) {
