@@ -64,8 +64,12 @@ template <class T>
 constexpr RecordOperations make_record_operations() {
   // A struct without strings, arrays and the like looks like a pod here; that does no harm.
   if constexpr (std::is_trivially_copyable_v<T>) {
-    return {&value_operations<T>, &type_of<Array<T>>, &value_operations<Array<T>>,
-            &type_of<MultiArray<T>>, &value_operations<MultiArray<T>>, nullptr};
+    return {&value_operations<T>,
+            &type_of<Array<T>>,
+            &value_operations<Array<T>>,
+            &type_of<MultiArray<T>>,
+            &value_operations<MultiArray<T>>,
+            nullptr};
   } else {
     return {&value_operations<T>, nullptr, nullptr, nullptr, nullptr, nullptr};
   }
