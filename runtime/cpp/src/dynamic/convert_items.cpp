@@ -90,6 +90,7 @@ class NestedLists {
     count_ = dims_.empty() ? 0 : stride;
   }
   Value collect(const Value& value) {
+    check(value, 0, place_);  // before there is room for as many as the first lists promise
     Collector items(node_, count_);
     take(items, value, 0, 0, place_);
     return items.finish(dims_);
@@ -102,17 +103,22 @@ class NestedLists {
         (node_.record() != nullptr && node_.record()->kind == RecordKind::namedarray);
     return may_be && !dims_.empty() && level.size() != 0 && is_number(level.list()[0]);
   }
+  void check(const Value& value, std::size_t depth, const Place& place) const {
+    if (depth == dims_.size()) return;
+    const bool is_list = value.kind() == Kind::list;
+    if (!is_list || value.size() != dims_[depth]) {
+      place.fail("expected a list of " + counted(dims_[depth]) + ", got " +
+                 (is_list ? counted(value.size()) : value.type_text()));
+    }
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      check(value.list()[i], depth + 1, place.item(i));
+    }
+  }
   void take(Collector& items, const Value& value, std::size_t depth, std::size_t offset,
             const Place& place) {
     if (depth == dims_.size()) {
       items.set(offset, value, place);
       return;
-    }
-    if (value.kind() != Kind::list) {
-      place.fail("expected a list of " + counted(dims_[depth]) + ", got " + value.type_text());
-    }
-    if (value.size() != dims_[depth]) {
-      place.fail("expected a list of " + counted(dims_[depth]) + ", got " + counted(value.size()));
     }
     for (std::size_t i = 0; i < value.size(); ++i) {
       take(items, value.list()[i], depth + 1, offset + i * strides_[depth], place.item(i));

@@ -150,6 +150,7 @@ void RecordNode::write(Writer& writer, const ElementName& name, const void* valu
 
 bool RecordNode::read(Decoder& decoder, const Element& element, void* value) const {
   if (!is_struct(table_)) {
+    if (!decoder.reserve(table_.size, element.name)) return false;
     const Array<std::uint8_t> memory(table_.size);
     auto* const bytes = const_cast<std::uint8_t*>(memory.data());
     if (!table_.wire_type->read(decoder, element, bytes)) return false;
