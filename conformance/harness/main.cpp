@@ -3,6 +3,7 @@
 #include <functional>
 #include <iostream>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -16,7 +17,7 @@ namespace {
 
 constexpr std::string_view usage =
     R"(usage: conformance_harness play --captures DIR (--runner PROGRAM | --connect HOST:PORT | --listen PORT)
-                           [--language NAME] [--only REGEX] [--before COMMAND]
+                           [--language NAME] [--roles ROLES] [--only REGEX] [--before COMMAND]
                            [--expected FILE] [--deviations FILE | --borrowed-deviations FILE]
                            [--json FILE]
        conformance_harness definitions --captures DIR --output DIR
@@ -26,6 +27,7 @@ play: plays a folder of captures. With --runner, a language's runner is the serv
   decodes and encodes; with --connect, a service that runs elsewhere is tested, and COMMAND (a shell
   command) brings it to its first state before each scenario; with --listen, a client. Deviations are
   borrowed when the list was written for other captures: not each of them must occur.
+  --roles leaves out what a language does not have: it plays these of decode, encode, service, client.
 definitions: writes the service definitions of the folder, for a compiler.
 record: plays a plan of the folder with a runner on both ends and writes it down as a scenario.
 Exit code: 0 when all holds, 1 when not, 2 when used wrongly.
@@ -50,6 +52,21 @@ rr::conformance::Address address_of(std::string_view text) {
   return {std::string(text.substr(0, colon)), port_of(text.substr(colon + 1))};
 }
 
+// `client`, or several with blanks between them.
+std::vector<rr::conformance::Role> roles_of(const std::string& text) {
+  using rr::conformance::Role;
+  std::vector<Role> roles;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::size_t before = roles.size();
+    for (const Role role : {Role::decode, Role::encode, Role::service, Role::client}) {
+      if (name_of(role) == word) roles.push_back(role);
+    }
+    if (roles.size() == before) throw UsageError("no role: " + word);
+  }
+  return roles;
+}
+
 struct CommandLine {
   rr::conformance::Options options;
   std::string output;
@@ -65,6 +82,7 @@ void take_option(CommandLine& line, const std::string& name, const std::string& 
       {"--plan", [&] { line.plan = value; }},
       {"--version", [&] { line.version = value; }},
       {"--runner", [&] { options.runner = {value}; }},
+      {"--roles", [&] { options.roles = roles_of(value); }},
       {"--language", [&] { options.language = value; }},
       {"--connect", [&] { options.connect = address_of(value); }},
       {"--before", [&] { options.before = value; }},

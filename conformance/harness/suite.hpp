@@ -16,6 +16,7 @@ struct Options {
   std::string language = "cpp";
   std::vector<std::string> runner;  ///< command of the language's runner
   std::optional<Address> connect;   ///< a foreign service
+  std::vector<Role> roles;          ///< those the language has; empty for all
   std::string before;               ///< shell command that resets it before a scenario
   std::optional<int> listen;        ///< port for a foreign client
   std::string only;                 ///< regular expression of scenario names; empty for all

@@ -20,12 +20,12 @@ constexpr const char* done = "OK";
 constexpr int client_closed = 1;
 constexpr int path_released = 5;
 
-Json raised(const Adapters& adapters, const Error& error) {
+Json raised(Binding& binding, const Error& error) {
   Json json = {{"code", static_cast<int>(error.code())},
                {"name", error.name()},
                {"message", error.message()}};
   if (!error.subname().empty()) json["subname"] = error.subname();
-  if (!error.parameter().is_null()) json["param"] = to_json(adapters, error.parameter());
+  if (!error.parameter().is_null()) json["param"] = binding.write(error.parameter());
   return json;
 }
 
@@ -81,8 +81,7 @@ Json CallingNode::answer(const Json& request) {
     stop();
     arrivals_.clear();
     node_ = std::make_unique<Node>(node_options(request));
-    for (const auto& [name, definition] : adapters_.definitions())
-      node_->add_definition(*definition);
+    binding_.prepare(*node_);
     return {{"done", true}};
   }
   if (what == "stop_node") {
@@ -92,7 +91,7 @@ Json CallingNode::answer(const Json& request) {
   try {
     return {{"result", play(request.at("step"))}};
   } catch (const Error& error) {
-    return {{"raised", raised(adapters_, error)}};
+    return {{"raised", raised(binding_, error)}};
   } catch (const NotSupported& reason) {
     return {{"unsupported", reason.what()}};
   }
@@ -119,7 +118,7 @@ Json CallingNode::play(const Json& step) {
     return nullptr;
   }
   if (operation == "disconnect") {
-    clients_.at(step.at("obj").get<std::string>()).close();
+    clients_.at(step.at("obj").get<std::string>())->close();
     return nullptr;
   }
   if (operation == "get") return object(step).caller->get(step.at("member").get<std::string>());
@@ -180,7 +179,7 @@ CallingNode::Object& CallingNode::object(const Json& step) {
 }
 
 Json CallingNode::keep(const std::string& name, const std::string& client, Held held) {
-  auto caller = adapters_.object(held.type).call(adapters_, held.stub);
+  auto caller = binding_.caller(held);
   const Json type = {{"rrtype", held.type}};
   objects_[name] = {std::move(held), std::move(caller), client};
   return type;
@@ -190,14 +189,14 @@ std::map<std::string, VarValue> CallingNode::credentials(const Json& step) const
   std::map<std::string, VarValue> values;
   const Json given = step.value("credentials", Json::object());
   for (const auto& [key, value] : given.items()) {
-    values[key] = made_from_json<VarValue>(adapters_, value);
+    values[key] = binding_.read(value);
   }
   return values;
 }
 
 void CallingNode::authenticate(const Json& step) {
   clients_.at(object(step).client)
-      .authenticate(step.at("username").get<std::string>(), credentials(step));
+      ->authenticate(step.at("username").get<std::string>(), credentials(step));
 }
 
 Json CallingNode::connect(const Json& step) {
@@ -212,10 +211,10 @@ Json CallingNode::connect(const Json& step) {
   options.on_path_released = [this, name](const std::string& path) {
     arrivals_.add({{"event_type", path_released}, {"path", path}, {"service", name}});
   };
-  auto client = node_->connect<Stub>(step.at("url").get<std::string>(), std::move(options));
-  const std::shared_ptr<Stub> root = client.stub();
+  auto [client, root] =
+      binding_.connect(*node_, step.at("url").get<std::string>(), std::move(options));
   clients_.insert_or_assign(name, std::move(client));
-  return keep(name, name, {root, root->rr_object_type().name});
+  return keep(name, name, std::move(root));
 }
 
 Json CallingNode::find(const Json& step) {
@@ -228,7 +227,7 @@ Json CallingNode::find(const Json& step) {
 Json CallingNode::find_object_type(const Json& step) {
   const Object& parent = object(step);
   return clients_.at(parent.client)
-      .find_object_type(parent.held.stub->rr_path() + "." + relative_path(step));
+      ->find_object_type(parent.held.stub->rr_path() + "." + relative_path(step));
 }
 
 Json CallingNode::listen(const Json& step) {
@@ -242,8 +241,8 @@ Json CallingNode::listen(const Json& step) {
 
 Json CallingNode::attributes(const Json& step) {
   Json result = Json::object();
-  for (const auto& [name, value] : clients_.at(object(step).client).attributes()) {
-    result[name] = to_json(adapters_, value);
+  for (const auto& [name, value] : clients_.at(object(step).client)->attributes()) {
+    result[name] = binding_.write(value);
   }
   return result;
 }

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "conformance/runners/cpp/adapters.hpp"
+#include "conformance/runners/cpp/binding.hpp"
 #include "conformance/runners/cpp/caller.hpp"
 
 namespace rr::conformance {
@@ -28,10 +28,10 @@ class Arrivals {
   Json things_ = Json::array();
 };
 
-/// `call`: a node that does the steps of a plan.
+/// `call`: a node that does the steps of a plan, by way of one kind of client.
 class CallingNode {
  public:
-  explicit CallingNode(const Adapters& adapters) : adapters_(adapters) {}
+  explicit CallingNode(Binding& binding) : binding_(binding) {}
   ~CallingNode() { stop(); }
 
   /// {do: start, ...} and {do: stop_node} give {done}; {do: step, step} gives what became of it.
@@ -64,10 +64,10 @@ class CallingNode {
   Json keep(const std::string& name, const std::string& client, Held held);
   Object& object(const Json& step);
 
-  const Adapters& adapters_;
+  Binding& binding_;
   Arrivals arrivals_;
   std::unique_ptr<Node> node_;
-  std::map<std::string, Client<Stub>> clients_;
+  std::map<std::string, std::unique_ptr<ClientBase>> clients_;
   std::map<std::string, Object> objects_;
   std::vector<Subscription> subscriptions_;
   // What steps hold by a handle.

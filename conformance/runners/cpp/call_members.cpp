@@ -105,7 +105,10 @@ Json CallingNode::set_callback(const Json& step) {
       member, [this, member, calls, outcomes = step.at("outcomes")](const Json& arguments) {
         arrivals_.add({{"callback", member}, {"args", arguments}});
         const Json outcome = outcome_of_call(outcomes, (*calls)++);
-        if (outcome.contains("throw")) raise(adapters_, outcome["throw"], arguments);
+        if (outcome.contains("throw")) {
+          const auto read = [this](const Json& json) { return binding_.read(json); };
+          raise(read, outcome["throw"], arguments);
+        }
         return part(outcome, "return");
       });
   return nullptr;

@@ -39,17 +39,12 @@ std::string type_of_request(const Json& request) {
   return type == "void" ? "varvalue" : type;
 }
 
-Json unpack(const Adapters& adapters, std::span<const std::byte> bytes, const Json& request) {
-  const ValueAdapter& adapter = adapters.value(type_of_request(request));
-  Decoder decoder(version_of(request), nullptr, {}, &adapters.types());
+Json unpack(const ValueCodec& codec, std::span<const std::byte> bytes, const Json& request) {
+  Decoder decoder(version_of(request), nullptr, {}, &codec.types());
   ElementReader reader(decoder, bytes, 1);
   Element element;
-  Value value(adapter);
-  if (!reader.next(element) || !reader.at_end() ||
-      !adapter.type->read(decoder, element, value.place())) {
-    throw std::runtime_error(decoder.message());
-  }
-  return adapter.write(adapters, value.place());
+  if (!reader.next(element) || !reader.at_end()) throw std::runtime_error(decoder.message());
+  return codec.read(type_of_request(request), decoder, element);
 }
 
 // Metadata and extended fields are not part of a value: they are put into its element.
@@ -70,22 +65,17 @@ std::vector<std::byte> with_additions(std::span<const std::byte> bytes, const Js
   return write_element_tree(element, version);
 }
 
-Json pack(const Adapters& adapters, const Json& request) {
-  const ValueAdapter& adapter = adapters.value(type_of_request(request));
-  Value value(adapter);
-  try {
-    adapter.read(adapters, request.at("value"), value.place());
-  } catch (const Error& error) {
-    return {{"refused", error.message()}};
-  }
+Json pack(const ValueCodec& codec, const Json& request) {
   Writer writer;
   writer.reset(version_of(request));
-  if (request.contains("element_number")) {
-    const ElementName number(request["element_number"].get<std::int32_t>());
-    adapter.type->write(writer, number, value.place());
-  } else {
-    const std::string name = request.at("element_name");
-    adapter.type->write(writer, ElementName(std::string_view(name)), value.place());
+  const std::string text = request.value("element_name", "");
+  const ElementName name = request.contains("element_number")
+                               ? ElementName(request["element_number"].get<std::int32_t>())
+                               : ElementName(std::string_view(text));
+  try {
+    codec.write(type_of_request(request), request.at("value"), name, writer);
+  } catch (const Error& error) {
+    return {{"refused", error.message()}};
   }
   if (writer.failed()) return {{"refused", writer.message()}};
   std::vector<std::byte> bytes = writer.copy();
@@ -97,7 +87,24 @@ Json pack(const Adapters& adapters, const Json& request) {
 
 }  // namespace
 
-Json decode(const Adapters& adapters, const Json& request) {
+Json AdapterCodec::read(const std::string& type, Decoder& decoder, const Element& element) const {
+  const ValueAdapter& adapter = adapters_.value(type);
+  Value value(adapter);
+  if (!adapter.type->read(decoder, element, value.place())) {
+    throw std::runtime_error(decoder.message());
+  }
+  return adapter.write(adapters_, value.place());
+}
+
+void AdapterCodec::write(const std::string& type, const Json& value, const ElementName& name,
+                         Writer& writer) const {
+  const ValueAdapter& adapter = adapters_.value(type);
+  Value held(adapter);
+  adapter.read(adapters_, value, held.place());
+  adapter.type->write(writer, name, held.place());
+}
+
+Json decode(const ValueCodec& codec, const Json& request) {
   const Bytes bytes = bytes_of_hex(request.at("hex").get<std::string>());
   if (request.at("do") == "message") {
     MessageTree message;
@@ -107,13 +114,12 @@ Json decode(const Adapters& adapters, const Json& request) {
   ElementTree element;
   const MessageVersion version = version_of(request);
   if (!read_element_tree(bytes, version, element)) throw std::runtime_error("not an element");
-  return {{"decoded", json_of_element(element, version)},
-          {"value", unpack(adapters, bytes, request)}};
+  return {{"decoded", json_of_element(element, version)}, {"value", unpack(codec, bytes, request)}};
 }
 
-Json encode(const Adapters& adapters, const Json& request) {
+Json encode(const ValueCodec& codec, const Json& request) {
   const std::string what = request.at("do");
-  if (what == "value") return pack(adapters, request);
+  if (what == "value") return pack(codec, request);
   std::vector<std::byte> bytes;
   if (what == "element") {
     const MessageVersion version = version_of(request);

@@ -32,15 +32,17 @@ int main(int argc, char** argv) {
   const std::string verb = argc == 2 ? argv[1] : "";
   rr::conformance::Adapters adapters;
   add_all(adapters);
+  const rr::conformance::AdapterCodec codec(adapters);
   if (verb == "decode") {
-    answer_lines([&](const Json& request) { return decode(adapters, request); });
+    answer_lines([&](const Json& request) { return decode(codec, request); });
   } else if (verb == "encode") {
-    answer_lines([&](const Json& request) { return encode(adapters, request); });
+    answer_lines([&](const Json& request) { return encode(codec, request); });
   } else if (verb == "serve") {
     rr::conformance::ServedNode node(adapters);
     answer_lines([&](const Json& request) { return node.answer(request); });
   } else if (verb == "call") {
-    rr::conformance::CallingNode node(adapters);
+    rr::conformance::GeneratedBinding binding(adapters);
+    rr::conformance::CallingNode node(binding);
     answer_lines([&](const Json& request) { return node.answer(request); });
   } else {
     std::cerr << "usage: conformance_runner decode|encode|serve|call\n";

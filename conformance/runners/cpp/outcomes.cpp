@@ -30,7 +30,7 @@ Json outcome_of_call(const Json& outcomes, std::size_t call) {
 
 // Code 100 is a remote error of any name; another code has its own name, and free are those of 16
 // and of codes that the protocol does not know.
-void raise(const Adapters& adapters, const Json& what, const Json& parameters) {
+void raise(const ReadVarValue& read, const Json& what, const Json& parameters) {
   if (what.contains("native")) {
     throw std::runtime_error(text_of(with_parameters(what["native"], parameters)));
   }
@@ -41,7 +41,14 @@ void raise(const Adapters& adapters, const Json& what, const Json& parameters) {
   const Json parameter = with_parameters(part(what, "param"), parameters);
   std::string name(error_name(code));
   if (code == ErrorCode::remote_error || name.empty()) name = text_of(part(what, "name"));
-  throw Error(code, name, message, subname, made_from_json<VarValue>(adapters, parameter));
+  throw Error(code, name, message, subname, read(parameter));
+}
+
+void raise(const Adapters& adapters, const Json& what, const Json& parameters) {
+  const ReadVarValue read = [&](const Json& json) {
+    return made_from_json<VarValue>(adapters, json);
+  };
+  raise(read, what, parameters);
 }
 
 }  // namespace rr::conformance

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 
 #include "conformance/runners/cpp/adapters.hpp"
 
@@ -14,8 +15,12 @@ Json part(const Json& json, std::string_view key);
 /// their order, and the last one is for all calls to come. An outcome that is no list is for all.
 Json outcome_of_call(const Json& outcomes, std::size_t call);
 
+/// Reads the parameter of an error.
+using ReadVarValue = std::function<VarValue(const Json&)>;
+
 /// Throws what the `throw` of an outcome says. A "$n" stands for parameter n of the call.
 [[noreturn]] void raise(const Adapters& adapters, const Json& what,
                         const Json& parameters = Json::array());
+[[noreturn]] void raise(const ReadVarValue& read, const Json& what, const Json& parameters);
 
 }  // namespace rr::conformance

@@ -17,6 +17,10 @@
 /// The client's side of a connected service.
 namespace rr {
 
+namespace client {
+class DefinitionReader;
+}
+
 /// How to connect.
 struct ConnectOptions {
   /// Of a service that has users; then `credentials` usually holds `password`.
@@ -35,6 +39,7 @@ struct ConnectOptions {
   /// Called when the service has released the object at a path, on a thread of the node. Stubs for
   /// it and for what lies below may still be used and reach the object that is there then, if any.
   std::function<void(const std::string&)> on_path_released{};
+  std::shared_ptr<client::DefinitionReader> definition_reader{};  // internal: of rr::dynamic
 };
 
 /// A session with a service: closes it when destroyed. The stubs found through it stay, but their

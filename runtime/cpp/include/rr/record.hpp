@@ -57,15 +57,21 @@ struct RecordOperations {
   const ValueOperations* array_value;
   const Type* multi_array;
   const ValueOperations* multi_array_value;
+  /// How `value` travels where a varvalue holds a struct; null when the record itself knows.
+  const Type* held_type = nullptr;
 };
 template <class T>
 constexpr RecordOperations make_record_operations() {
   // A struct without strings, arrays and the like looks like a pod here; that does no harm.
   if constexpr (std::is_trivially_copyable_v<T>) {
-    return {&value_operations<T>, &type_of<Array<T>>, &value_operations<Array<T>>,
-            &type_of<MultiArray<T>>, &value_operations<MultiArray<T>>};
+    return {&value_operations<T>,
+            &type_of<Array<T>>,
+            &value_operations<Array<T>>,
+            &type_of<MultiArray<T>>,
+            &value_operations<MultiArray<T>>,
+            nullptr};
   } else {
-    return {&value_operations<T>, nullptr, nullptr, nullptr, nullptr};
+    return {&value_operations<T>, nullptr, nullptr, nullptr, nullptr, nullptr};
   }
 }
 template <class T>

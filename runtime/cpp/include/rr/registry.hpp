@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <map>
 #include <string_view>
 
@@ -17,6 +18,11 @@ class TypeRegistry {
   /// Knows a definition and all that it imports, directly or not.
   explicit TypeRegistry(const Definition& definition) : TypeRegistry() { add(definition); }
   void add(const Definition& definition);
+  TypeRegistry(const TypeRegistry& other);
+  TypeRegistry& operator=(const TypeRegistry&) = delete;
+  /// What is not known here is looked for in `later` from now on, which must live as long. Once;
+  /// while others read.
+  void continue_in(const TypeRegistry& later) { later_ = &later; }
 
   // Null for what is not known.
   [[nodiscard]] const Definition* find_definition(std::string_view service) const;
@@ -27,12 +33,17 @@ class TypeRegistry {
   [[nodiscard]] bool knows_service(std::string_view service) const;
 
  private:
+  template <class T>
+  using Names = std::map<std::string_view, const T*>;
+  template <class T>
+  const T* find(Names<T> TypeRegistry::*names, std::string_view name) const;
   void take_stubs(const Definition& definition);
 
-  std::map<std::string_view, const Definition*> definitions_;
-  std::map<std::string_view, const RecordType*> records_;
-  std::map<std::string_view, const ObjectType*> objects_;
-  std::map<std::string_view, const ExceptionType*> exceptions_;
+  Names<Definition> definitions_;
+  Names<RecordType> records_;
+  Names<ObjectType> objects_;
+  Names<ExceptionType> exceptions_;
+  std::atomic<const TypeRegistry*> later_{nullptr};
 };
 
 }  // namespace rr

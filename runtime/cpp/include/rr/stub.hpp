@@ -119,6 +119,9 @@ class Stub {
 
   /// The object's type; the most derived one that this program knows.
   [[nodiscard]] virtual const ObjectType& rr_object_type() const = 0;
+  /// For stubs of a class that is for objects of any type: called once by the session that has made
+  /// one, before anybody has it.
+  virtual void rr_take_object_type(const ObjectType& /*type*/) {}
   /// `service.objref[index]...`
   [[nodiscard]] const std::string& rr_path() const { return rr_path_; }
   [[nodiscard]] const std::shared_ptr<Session>& rr_session() const { return rr_session_; }
@@ -176,14 +179,6 @@ class Stub {
   template <class R, class P, class Token, class... Arguments>
   auto rr_async_generate(const Member& member, Token&& token, const Arguments&... arguments);
 
- private:
-  friend class Session;
-  template <class...>
-  friend class Event;
-
-  template <class Handler, class S>
-  friend class FindCompletion;
-
   // What the asynchronous templates stand on: encodes and sends at once, so arguments need not
   // outlive the call. `set` tells a property's two requests apart.
   void rr_start(const Member& member, bool set, const void* const* arguments,
@@ -200,6 +195,14 @@ class Stub {
                           std::unique_ptr<Completion> completion);
   [[noreturn]] static void rr_refuse(const Member& member);  // an object of another type
   Subscription rr_connect(const Member& member, std::unique_ptr<EventHandler> handler);
+
+ private:
+  friend class Session;
+  template <class...>
+  friend class Event;
+
+  template <class Handler, class S>
+  friend class FindCompletion;
 
   std::shared_ptr<Session> rr_session_;
   std::string rr_path_;

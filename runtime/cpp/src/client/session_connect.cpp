@@ -7,6 +7,7 @@
 #include "rr/type.hpp"
 #include "rr/varvalue.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
+#include "runtime/cpp/src/client/definition_reader.hpp"
 #include "runtime/cpp/src/client/session.hpp"
 #include "runtime/cpp/src/endpoint/client_version.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
@@ -87,7 +88,8 @@ Session::Session(std::shared_ptr<endpoint::Core> core, const Url& url, ConnectOp
       options_(std::move(options)),
       endpoint_(core_->new_endpoint()),
       remote_node_(url.node_id),
-      known_types_{core_->types()},
+      known_types_{options_.definition_reader ? options_.definition_reader->types()
+                                              : core_->types()},
       types_(&known_types_.back()),
       quiet_since_(channel::coarse_now()) {
   if (service_.empty()) throw Error(ErrorCode::invalid_argument, "the URL names no service");
@@ -114,6 +116,7 @@ std::shared_ptr<Stub> Session::root(const ObjectType* wanted) {
 }
 
 void Session::learn() {
+  if (options_.definition_reader) return;  // whose types grow by themselves
   auto types = core_->types();
   const std::lock_guard lock(mutex_);
   if (known_types_.back() == types) return;

@@ -7,6 +7,7 @@
 #include "rr/error.hpp"
 #include "rr/type.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
+#include "runtime/cpp/src/client/definition_reader.hpp"
 #include "runtime/cpp/src/client/session.hpp"
 #include "runtime/cpp/src/endpoint/arguments.hpp"
 #include "runtime/cpp/src/endpoint/client_version.hpp"
@@ -63,6 +64,7 @@ std::vector<std::string> Session::all_types(const std::string& told,
 std::shared_ptr<Stub> Session::make_stub(const std::string& told, const std::string& path,
                                          std::string_view wanted,
                                          const std::vector<std::string>& implements) {
+  if (options_.definition_reader) options_.definition_reader->read(definitions());
   const std::vector<std::string> names = all_types(told, implements);
   if (!wanted.empty() && std::find(names.begin(), names.end(), wanted) == names.end()) {
     throw Error(ErrorCode::service_error,
@@ -82,6 +84,7 @@ std::shared_ptr<Stub> Session::make_stub(const std::string& told, const std::str
   std::shared_ptr<Stub> stub = known->make_stub();
   stub->rr_session_ = shared_from_this();
   stub->rr_path_ = path;
+  stub->rr_take_object_type(*known);
   const std::lock_guard lock(mutex_);
   std::weak_ptr<Stub>& cached = stubs_[path];
   if (auto other = cached.lock()) return other;  // somebody was faster

@@ -8,15 +8,16 @@ namespace {
 
 constexpr std::string_view own_service = "RobotRaconteur";
 
-template <class Map>
-typename Map::mapped_type find_in(const Map& map, std::string_view name) {
-  const auto found = map.find(name);
-  return found != map.end() ? found->second : nullptr;
-}
-
 }  // namespace
 
 TypeRegistry::TypeRegistry() { records_.emplace(time_spec_type.name(), &time_spec_type); }
+
+TypeRegistry::TypeRegistry(const TypeRegistry& other)
+    : definitions_(other.definitions_),
+      records_(other.records_),
+      objects_(other.objects_),
+      exceptions_(other.exceptions_),
+      later_(other.later_.load()) {}
 
 void TypeRegistry::add(const Definition& definition) {
   const auto [known, is_new] = definitions_.emplace(definition.name, &definition);
@@ -41,17 +42,26 @@ void TypeRegistry::take_stubs(const Definition& definition) {
   }
 }
 
+template <class T>
+const T* TypeRegistry::find(Names<T> TypeRegistry::*names, std::string_view name) const {
+  for (const TypeRegistry* registry = this; registry != nullptr; registry = registry->later_) {
+    const Names<T>& known = registry->*names;
+    if (const auto found = known.find(name); found != known.end()) return found->second;
+  }
+  return nullptr;
+}
+
 const Definition* TypeRegistry::find_definition(std::string_view service) const {
-  return find_in(definitions_, service);
+  return find(&TypeRegistry::definitions_, service);
 }
 const RecordType* TypeRegistry::find_record(std::string_view name) const {
-  return find_in(records_, name);
+  return find(&TypeRegistry::records_, name);
 }
 const ObjectType* TypeRegistry::find_object(std::string_view name) const {
-  return find_in(objects_, name);
+  return find(&TypeRegistry::objects_, name);
 }
 const ExceptionType* TypeRegistry::find_exception(std::string_view name) const {
-  return find_in(exceptions_, name);
+  return find(&TypeRegistry::exceptions_, name);
 }
 bool TypeRegistry::knows_service(std::string_view service) const {
   return service == own_service || find_definition(service) != nullptr;

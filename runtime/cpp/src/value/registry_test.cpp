@@ -47,6 +47,16 @@ TEST(TypeRegistry, KnowsADefinitionAndItsImports) {
   EXPECT_EQ(types.find_exception("example.arm.Stuck"), &arm_exceptions[0]);
 }
 
+TEST(TypeRegistry, FindsInTheOneItContinuesIn) {
+  const TypeRegistry later(rr_definition);
+  TypeRegistry first;
+  EXPECT_EQ(first.find_definition(rr_definition.name), nullptr);
+  first.continue_in(later);
+  EXPECT_EQ(first.find_definition(rr_definition.name), &rr_definition);
+  const TypeRegistry copy = first;
+  EXPECT_EQ(copy.find_definition(rr_definition.name), &rr_definition);
+}
+
 TEST(TypeRegistry, FindsNothingElse) {
   const TypeRegistry types(arm);
   EXPECT_EQ(types.find_definition("example.leg"), nullptr);

@@ -95,7 +95,7 @@ bool read_named(Decoder& decoder, const Element& element, VarValue& value) {
   const RecordType* record = find_record(decoder, element);
   if (record == nullptr) return false;
   const RecordOperations& operations = record->operations();
-  const Type* type = record;
+  const Type* type = operations.held_type != nullptr ? operations.held_type : record;
   const ValueOperations* of_value = operations.value;
   if (element.type == ElementType::pod_array || element.type == ElementType::namedarray_array) {
     type = operations.array;

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <rr/dynamic.hpp>
+
+#include "conformance/harness/json.hpp"
+
+/// Values of types that are known at run time only, in the notation of the captures.
+namespace rr::conformance {
+
+/// Definitions are needed for what varvalues hold. Throws std::runtime_error for what is no such
+/// value; whether it fits the type in every respect is found out when it is sent.
+dynamic::Value value_of_json(const dynamic::Definitions& definitions,
+                             const dynamic::ValueType& type, const Json& json);
+/// The type decides how a value is spelled, where that leaves a choice.
+Json json_of_value(const dynamic::ValueType& type, const dynamic::Value& value);
+/// `{type, value}`, or null.
+Json json_of_any(const dynamic::Value& value);
+
+}  // namespace rr::conformance

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "rr/callbacks.hpp"
+#include "rr/client.hpp"
+#include "rr/dynamic_definitions.hpp"
+#include "rr/dynamic_value.hpp"
+#include "rr/function.hpp"
+#include "rr/generators.hpp"
+#include "rr/locks.hpp"
+#include "rr/memories.hpp"
+#include "rr/node.hpp"
+#include "rr/pipes.hpp"
+#include "rr/wires.hpp"
+
+/// A client that needs no generated code: members by name, with values of types that are known at
+/// run time only. Linked with robdef::dynamic.
+///
+///   auto arm = rr::dynamic::connect(node, "rr+tcp://host:6257/?service=arm");
+///   arm->set("speed", 0.5);
+///   rr::dynamic::Value pose = arm->call("move", {{1.0, 2.0}, "fast"});
+///   double x = pose["position"]["x"].as<double>();
+///
+/// Threads, time-outs, cancelling and what handlers may do are as with generated stubs
+/// (docs/threads.md). Everything throws rr::Error: member_not_found and member_format_mismatch for
+/// a name that is no such member, data_type_mismatch for a value that does not fit, all naming the
+/// member and the type that is expected, before anything is sent.
+namespace rr::dynamic {
+
+class DynamicStub;
+struct ObjectTable;
+struct MemberTable;
+
+/// What asynchronous calls end with: called once, on a thread of the node. The exception is null
+/// when the call has succeeded.
+template <class... Result>
+using Done = Function<void(std::exception_ptr, Result...)>;
+
+/// A generator on another node.
+class Generator : public GeneratorHandle {
+ public:
+  Generator() = default;
+  /// One step: `parameter` is for those that take values; null is given back where none is given.
+  /// Nothing at the end.
+  std::optional<Value> next(const Value& parameter = {});
+  void async_next(const Value& parameter, Done<std::optional<Value>> done);
+  void async_close(Done<> done);
+  void async_abort(Done<> done);
+
+  Generator(std::shared_ptr<GeneratorState> state, MemberDescription member);  // internal
+
+ private:
+  [[nodiscard]] Value convert(const Value& parameter) const;
+  MemberDescription member_;
+};
+
+/// A connected wire, with what rr::WireConnection has.
+class WireConnection : public rr::WireConnection<Value> {
+ public:
+  WireConnection() = default;
+  void set_out(const Value& value);
+
+  WireConnection(rr::WireConnection<Value> end, MemberDescription member);  // internal
+
+ private:
+  MemberDescription member_;
+};
+
+/// A wire of an object on another node.
+class Wire {
+ public:
+  WireConnection connect() const;
+  [[nodiscard]] Timed<Value> peek_in() const;
+  [[nodiscard]] Timed<Value> peek_out() const;
+  void poke_out(const Value& value) const;
+  void async_connect(Done<WireConnection> done) const;
+  void async_peek_in(Done<Timed<Value>> done) const;
+  void async_peek_out(Done<Timed<Value>> done) const;
+  void async_poke_out(const Value& value, Done<> done) const;
+
+  Wire(std::shared_ptr<DynamicStub> stub, const MemberTable& member);  // internal
+
+ private:
+  std::shared_ptr<DynamicStub> stub_;
+  const MemberTable* member_;
+};
+
+/// A connected pipe endpoint, with what rr::PipeEndpoint has.
+class PipeEndpoint : public rr::PipeEndpoint<Value> {
+ public:
+  PipeEndpoint() = default;
+  std::uint32_t send(const Value& packet);
+
+  PipeEndpoint(rr::PipeEndpoint<Value> end, MemberDescription member);  // internal
+
+ private:
+  MemberDescription member_;
+};
+
+/// A pipe of an object on another node.
+class Pipe {
+ public:
+  PipeEndpoint connect(const PipeOptions& options = {}) const;
+  void async_connect(Done<PipeEndpoint> done, const PipeOptions& options = {}) const;
+
+  Pipe(std::shared_ptr<DynamicStub> stub, const MemberTable& member);  // internal
+
+ private:
+  std::shared_ptr<DynamicStub> stub_;
+  const MemberTable* member_;
+};
+
+/// A memory of an object on another node. Positions and counts: one number for each dimension.
+class Memory {
+ public:
+  using Numbers = std::vector<std::uint64_t>;
+  [[nodiscard]] std::uint64_t length() const;
+  [[nodiscard]] Numbers dims() const;
+  [[nodiscard]] std::uint64_t dim_count() const;
+  /// An array; of several dimensions one with dims.
+  [[nodiscard]] Value read(const Numbers& position, const Numbers& count) const;
+  /// The counts are those of the array.
+  void write(const Numbers& position, const Value& items) const;
+  void async_read(const Numbers& position, const Numbers& count, Done<Value> done) const;
+  void async_write(const Numbers& position, const Value& items, Done<> done) const;
+
+  Memory(std::shared_ptr<DynamicStub> stub, const MemberTable& member);  // internal
+
+ private:
+  std::shared_ptr<DynamicStub> stub_;
+  const MemberTable* member_;
+};
+
+/// A callback of an object on another node.
+class Callback {
+ public:
+  /// The function gets the parameters in their order; what it returns is converted to the declared
+  /// type, and ignored for void.
+  void set(Function<Value(const List&)> function) const;
+  /// As rr::CallbackMember::clear().
+  void clear() const;
+
+  Callback(std::shared_ptr<DynamicStub> stub, const MemberTable& member);  // internal
+
+ private:
+  std::shared_ptr<DynamicStub> stub_;
+  const MemberTable* member_;
+};
+
+/// An object on another node: a handle that is copied freely. It keeps its session alive but does
+/// not hold the connection open.
+class Object {
+ public:
+  /// No object: not to be used.
+  Object() = default;
+
+  [[nodiscard]] const std::string& path() const;
+  /// Qualified.
+  [[nodiscard]] const std::string& type_name() const;
+  [[nodiscard]] const std::string& documentation() const;
+  /// In the order of the definition.
+  [[nodiscard]] std::vector<MemberDescription> members() const;
+  [[nodiscard]] MemberDescription member(std::string_view name) const;
+  /// The definitions that it was found by.
+  [[nodiscard]] Definitions types() const;
+
+  [[nodiscard]] Value get(std::string_view property) const;
+  void set(std::string_view property, const Value& value) const;
+  /// Null for a function that returns nothing.
+  Value call(std::string_view function, const List& arguments = {}) const;
+  Generator generate(std::string_view function, const List& arguments = {}) const;
+  [[nodiscard]] Object object(std::string_view objref) const;
+  [[nodiscard]] Object object(std::string_view objref, std::int32_t index) const;
+  [[nodiscard]] Object object(std::string_view objref, std::string_view index) const;
+  /// Calls `function` with the parameters of each event; see rr::Event::connect.
+  [[nodiscard]] Subscription on_event(std::string_view event,
+                                      Function<void(const List&)> function) const;
+  [[nodiscard]] Wire wire(std::string_view name) const;
+  [[nodiscard]] Pipe pipe(std::string_view name) const;
+  [[nodiscard]] Memory memory(std::string_view name) const;
+  [[nodiscard]] Callback callback(std::string_view name) const;
+
+  // Convert and send at once, so what is given need not live longer.
+  void async_get(std::string_view property, Done<Value> done) const;
+  void async_set(std::string_view property, const Value& value, Done<> done) const;
+  void async_call(std::string_view function, const List& arguments, Done<Value> done) const;
+  void async_generate(std::string_view function, const List& arguments, Done<Generator> done) const;
+  /// `index` is null, a number or a text, as the objref needs it.
+  void async_object(std::string_view objref, const Value& index, Done<Object> done) const;
+
+  /// For rr::lock, rr::enter_monitor, rr::MonitorLock, and time-outs.
+  [[nodiscard]] Stub& stub() const;
+  [[nodiscard]] std::shared_ptr<Stub> shared_stub() const;
+  /// The object of such a stub; throws rr::Error (invalid_argument) for one of generated code.
+  static Object of(const std::shared_ptr<Stub>& stub);
+
+  explicit Object(std::shared_ptr<DynamicStub> stub) : stub_(std::move(stub)) {}  // internal
+
+ private:
+  [[nodiscard]] const MemberTable& need(std::string_view name, MemberKind kind) const;
+  [[nodiscard]] const MemberTable& need_function(std::string_view name, bool is_generator) const;
+  std::shared_ptr<DynamicStub> stub_;
+};
+
+class DefinitionStore;
+
+/// A session with a service, which it closes when destroyed, and the service's root object.
+class Client : public ClientBase {
+ public:
+  Client() = default;
+
+  const Object* operator->() const { return &root_; }
+  const Object& operator*() const { return root_; }
+  [[nodiscard]] const Object& root() const { return root_; }
+  /// What the service has sent so far.
+  [[nodiscard]] Definitions types() const;
+  /// A varvalue of the service, as of an error's parameter.
+  [[nodiscard]] Value value(const VarValue& varvalue) const;
+  /// As the service gave them when connecting, which is before its definitions are read: empty when
+  /// one of them is of a named type.
+  [[nodiscard]] StringMap attributes() const;
+  /// As they are now, all of them.
+  [[nodiscard]] StringMap fetch_attributes() const;
+
+  Client(rr::Client<Stub> client, std::shared_ptr<DefinitionStore> store);  // internal
+
+ private:
+  std::shared_ptr<DefinitionStore> store_;
+  Object root_;
+};
+
+/// Connects to the service at a URL and reads its definitions. Throws rr::Error:
+/// service_definition_error for definitions with mistakes.
+Client connect(Node& node, std::string_view url, ConnectOptions options = {});
+/// The same without waiting: on a thread of its own, where `done` is called, too.
+void async_connect(Node& node, std::string url, ConnectOptions options, Done<Client> done);
+
+/// For credentials and parameters of errors. Throws rr::Error (data_type_error) for what no
+/// varvalue holds.
+VarValue to_varvalue(const Value& value);
+
+}  // namespace rr::dynamic

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rr/definition.hpp"
+#include "rr/dynamic_value.hpp"
+
+namespace rr {
+class TypeRegistry;
+}
+
+namespace rr::dynamic {
+
+class Tables;
+
+struct ParameterDescription {
+  std::string name;
+  ValueType type;
+};
+
+/// A member of an object, as its definition declares it.
+struct MemberDescription {
+  MemberKind kind{};
+  std::string name;
+  std::string declaration;    ///< its line: `function double scan(string axis) [urgent]`
+  std::string documentation;  ///< the comments before it, without their marks
+  ValueType type;             ///< as rr::Member::type; none for void
+  std::vector<ParameterDescription> parameters;  ///< without a generator's
+  GeneratorForm generator = GeneratorForm::none;
+  ValueType generator_parameter;
+  IndexForm index = IndexForm::none;
+  std::string object_type;  ///< objref: qualified, empty for varobject
+  std::uint8_t access = plain;
+};
+
+/// Service definitions that were read at run time, and their types. A handle: types and values of
+/// them keep alive what they need.
+class Definitions {
+ public:
+  /// Knows what needs no definition.
+  Definitions();
+  /// Reads definitions, in any order; what they import must be among them. Throws rr::Error
+  /// (service_definition_error) that says what is wrong, and where.
+  explicit Definitions(const std::vector<std::string>& texts);
+
+  /// A type as a definition spells it, named ones qualified: `example.t.Pose[3]{list}`. Throws
+  /// rr::Error (invalid_argument).
+  [[nodiscard]] ValueType type(std::string_view text) const;
+  /// The services, in the order of their names.
+  [[nodiscard]] std::vector<std::string> services() const;
+  /// An outline of one, for people. Throws rr::Error (key_not_found).
+  [[nodiscard]] std::string outline(std::string_view service) const;
+  /// The members of an object, in the order of its definition. Throws rr::Error (key_not_found).
+  [[nodiscard]] std::vector<MemberDescription> members(std::string_view object) const;
+  /// The comments before an object. Throws as members().
+  [[nodiscard]] std::string documentation(std::string_view object) const;
+
+  /// Where a Decoder finds the types of what is in varvalues. Lives as long as the definitions.
+  [[nodiscard]] const TypeRegistry& registry() const;
+
+  explicit Definitions(std::shared_ptr<const Tables> tables) : tables_(std::move(tables)) {}
+  [[nodiscard]] const std::shared_ptr<const Tables>& tables() const { return tables_; }  // internal
+
+ private:
+  std::shared_ptr<const Tables> tables_;
+};
+
+}  // namespace rr::dynamic
