@@ -14,7 +14,7 @@ std::string said(const Json& json) {
 // no set was accepted.
 Json value_set_before(const std::vector<Step>& steps, const Step& step) {
   Json got;
-  Json set;
+  std::optional<Json> set;  // which may be a null that was set
   for (const Step& earlier : steps) {
     if (earlier.index >= step.index) break;
     const Json& plan = earlier.plan;
@@ -23,7 +23,7 @@ Json value_set_before(const std::vector<Step>& steps, const Step& step) {
     if (plan.at("op") == "set" && plan.at("obj") == step.plan.at("obj")) set = plan.at("value");
     if (plan.at("op") == "get" && plan.contains("result")) got = plan.at("result");
   }
-  return set.is_null() ? got : set;
+  return set.value_or(got);
 }
 
 std::optional<std::string> fault_of_error(const Comparison& comparison, const Step& step,
