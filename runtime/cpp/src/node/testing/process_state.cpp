@@ -54,6 +54,14 @@ std::string ProcessState::text() const {
          " allocated " + std::to_string(allocated) + " resident " + std::to_string(resident);
 }
 
+bool keeps_freed_memory() {
+#if defined(__SANITIZE_ADDRESS__)
+  return true;
+#else
+  return false;
+#endif
+}
+
 int slowness() {
 #if defined(__SANITIZE_THREAD__)
   return 10;
