@@ -15,7 +15,7 @@ namespace rr::stress {
 namespace {
 
 constexpr std::uint32_t clients_of_a_process = 8;
-constexpr std::size_t largest_growth = std::size_t{512} * 1024;
+constexpr std::size_t largest_growth = std::size_t{2} * 1024 * 1024;  // threads keep buffers
 
 // The pairs of a name and a number in a line.
 std::map<std::string, std::size_t> numbers_of(const std::string& line) {
@@ -187,7 +187,7 @@ void Director::compare(const Process& process) {
   grows("descriptors", 0);
   grows("allocated", largest_growth);
   if (testing::keeps_freed_memory()) return;
-  grows("resident", 16 * largest_growth * static_cast<std::size_t>(testing::slowness()));
+  grows("resident", 4 * largest_growth * static_cast<std::size_t>(testing::slowness()));
 }
 
 void Director::end(Process& process) {
