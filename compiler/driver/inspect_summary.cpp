@@ -103,7 +103,7 @@ std::string Summary::text(std::chrono::system_clock::time_point start) const {
   const double seconds = span();
   std::string text = fmt::format(
       "recorded from {:%Y-%m-%d %H:%M:%S} UTC\n"
-      "{} connections, {} messages, {} bytes in {:.6f} s\n",
+      "connections: {}, messages: {}, bytes: {}, seconds: {:.6f}\n",
       fmt::gmtime(std::chrono::system_clock::to_time_t(start)), connections_, all_.count,
       all_.bytes, seconds);
   if (malformed_.count != 0) text += fmt::format("{} of them malformed\n", malformed_.count);

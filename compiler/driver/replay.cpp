@@ -28,10 +28,10 @@ ExitStatus replay(const Options& options, std::ostream& out, std::ostream& err) 
       out << fmt::format("{:>12} {:>4} {}\n", seconds_text(each.time),
                          fmt::format("#{}", each.connection), each.text);
     }
-    out << fmt::format("{} messages sent, {} entries compared, {} differences\n", report.sent,
+    out << fmt::format("messages sent: {}, entries compared: {}, differences: {}\n", report.sent,
                        report.compared, report.differences.size());
     if (report.left_out != 0) {
-      out << fmt::format("{} values of wires missing or too many\n", report.left_out);
+      out << fmt::format("values of wires missing or too many: {}\n", report.left_out);
     }
     return report.differences.empty() ? exit_fine : exit_errors;
   } catch (const rr::Error& error) {
