@@ -14,7 +14,8 @@ set(robdef_layers
   # Uses generated code, which stands on the runtime.
   "compiler/backends/cpp/generated_test.cpp: compiler/model runtime/cpp/include/rr"
   "compiler/backends/cpp/generated_members_test.cpp: runtime/cpp/include/rr"
-  "compiler/driver: compiler/diagnostics compiler/syntax compiler/model compiler/output compiler/backends"
+  "compiler/driver: compiler/diagnostics compiler/syntax compiler/model compiler/output compiler/backends runtime/cpp/include/rr runtime/cpp/src/replay"
+  "compiler/driver/recordings_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
 
   "runtime/cpp/include/rr:"
   "runtime/cpp/src/codec: runtime/cpp/include/rr"
@@ -27,11 +28,14 @@ set(robdef_layers
   "runtime/cpp/src/node: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/client runtime/cpp/src/service runtime/cpp/src/subscription"
   # The compiler's model reads definitions here too.
   "runtime/cpp/src/dynamic: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/client compiler/diagnostics compiler/syntax compiler/model"
+  "runtime/cpp/src/tap: runtime/cpp/include/rr"
+  "runtime/cpp/src/replay: runtime/cpp/include/rr runtime/cpp/src/channel/capabilities.hpp runtime/cpp/src/channel/socket.hpp"
+  "runtime/cpp/src/node/replay_test.cpp: runtime/cpp/include/rr runtime/cpp/src/node runtime/cpp/src/replay"
   "runtime/cpp/fuzz: runtime/cpp/include/rr runtime/cpp/src"
   "runtime/cpp/bench: runtime/cpp/include/rr runtime/cpp/src"
   "runtime/cpp/stress: runtime/cpp/include/rr runtime/cpp/src/node/testing"
 
-  "conformance: runtime/cpp/include/rr"
+  "conformance: runtime/cpp/include/rr runtime/cpp/src/replay"
   "benchmarks: runtime/cpp/include/rr compiler"
   "examples: runtime/cpp/include/rr")
 
@@ -41,7 +45,7 @@ set(robdef_outside_headers
   "^(antlr4|Robdef(Lexer|Parser))| compiler/syntax"
   "^boost/| runtime/cpp/include/rr/async.hpp"
   "^rr/async\\.hpp$| runtime/cpp/src runtime/cpp/stress examples conformance benchmarks compiler/backends"
-  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress conformance benchmarks"
+  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress conformance benchmarks"
   "^fmt/| compiler benchmarks"
   "^nlohmann/| runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"
   "^png\\.h$| examples")

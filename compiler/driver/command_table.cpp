@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/driver/command_table.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
+#include <optional>
 #include <vector>
 
 #include "compiler/backends/backend.hpp"
 #include "compiler/diagnostics/spelling.hpp"
+#include "runtime/cpp/src/replay/words.hpp"
 
 namespace robdef {
 
@@ -76,6 +80,50 @@ std::string take_import_folder(Options& options, const std::string& value) {
   return value.empty() ? "the value is empty" : "";
 }
 
+template <bool RecordingOptions::*member>
+std::string take_recording_switch(Options& options, const std::string&) {
+  options.recording.*member = true;
+  return "";
+}
+
+std::string take_entry_types(Options& options, const std::string& value) {
+  std::size_t begin = 0;
+  while (begin <= value.size()) {
+    const std::size_t end = std::min(value.find(',', begin), value.size());
+    const std::string name = value.substr(begin, end - begin);
+    const auto type = rr::replay::entry_type_of(name);
+    if (!type) return "`" + name + "` is no type of an entry";
+    options.recording.entry_types.insert(static_cast<std::uint16_t>(*type));
+    begin = end + 1;
+  }
+  return "";
+}
+
+template <std::string RecordingOptions::*member>
+std::string take_recording_text(Options& options, const std::string& value) {
+  options.recording.*member = value;
+  return value.empty() ? "the value is empty" : "";
+}
+
+template <class Number>
+std::optional<Number> number_in(std::string_view text) {
+  Number number = 0;
+  const char* const end = text.data() + text.size();
+  const auto result = std::from_chars(text.data(), end, number);
+  if (text.empty() || result.ec != std::errc() || result.ptr != end) return std::nullopt;
+  return number;
+}
+
+std::string take_connection(Options& options, const std::string& value) {
+  options.recording.connection = number_in<std::uint32_t>(value);
+  return options.recording.connection ? "" : "`" + value + "` is no number of a connection";
+}
+
+std::string take_port(Options& options, const std::string& value) {
+  options.recording.port = number_in<std::uint16_t>(value);
+  return options.recording.port ? "" : "`" + value + "` is no port";
+}
+
 constexpr CommandSet reading = {Command::generate, Command::check, Command::describe,
                                 Command::model, Command::view};
 
@@ -105,6 +153,25 @@ constexpr std::array commands = {
                "explain a code such as R0203, or list them all",
                "Explains codes (R0203), or all codes of a rule (V12) of the language\n"
                "description.\n"},
+    CommandRow{Command::inspect, "inspect", "[OPTION...] FILE...",
+               "print what a recording of messages holds",
+               "Prints a line for each message of a recording: the time since its beginning,\n"
+               "the connection, > to the service or < to the client, the entries with their\n"
+               "service path, member, request id and error, and the elements with the types\n"
+               "that they have on the wire. A file that is cut off is read up to there.\n"},
+    CommandRow{Command::record, "record", "--connect HOST:PORT --listen PORT -o FILE [OPTION...]",
+               "record the messages between clients and a service",
+               "Listens at a port, connects each client that comes there to a service, passes\n"
+               "on every byte as it is, and records the messages until it is interrupted.\n"
+               "Clients and services of any implementation will do. The recording has\n"
+               "everything that was sent, credentials too.\n"},
+    CommandRow{Command::replay, "replay", "FILE --connect HOST:PORT | --listen PORT [OPTION...]",
+               "play one side of a recording to a live other side",
+               "With --connect the recorded clients are played to a service, with --listen the\n"
+               "recorded service to the clients that come there. Prints what the other side\n"
+               "does otherwise than in the recording. Endpoints, node ids, message, request and\n"
+               "generator numbers, and the times of wire values may differ; values of wires may\n"
+               "be missing.\n"},
 };
 
 constexpr std::array options = {
@@ -168,7 +235,74 @@ constexpr std::array options = {
               {Command::explain},
               "print all codes with their rules",
               take_switch<&Options::lists_codes>},
-    OptionRow{"--json", "", "", {Command::explain}, "print JSON", take_switch<&Options::is_json>},
+    OptionRow{"--json",
+              "",
+              "",
+              {Command::explain, Command::inspect},
+              "print JSON; inspect: an object a line",
+              take_switch<&Options::is_json>},
+    OptionRow{"--entries",
+              "",
+              "TYPES",
+              {Command::inspect},
+              "only messages with entries of these types:\nnames such as PropertyGetReq, or"
+              " numbers,\nseparated by commas; may be repeated",
+              take_entry_types},
+    OptionRow{"--path",
+              "",
+              "PATH",
+              {Command::inspect},
+              "only messages to and from the object at this\nservice path, and those below it",
+              take_recording_text<&RecordingOptions::path>},
+    OptionRow{"--connection",
+              "",
+              "NUMBER",
+              {Command::inspect, Command::replay},
+              "only this connection",
+              take_connection},
+    OptionRow{"--summary",
+              "",
+              "",
+              {Command::inspect},
+              "print counts, bytes and rates of entries and\nthe times of requests instead",
+              take_recording_switch<&RecordingOptions::is_summary>},
+    OptionRow{"--connect",
+              "",
+              "HOST:PORT",
+              {Command::record, Command::replay},
+              "where the service is; a URL will do, too",
+              take_recording_text<&RecordingOptions::connect>},
+    OptionRow{"--listen",
+              "",
+              "PORT",
+              {Command::record, Command::replay},
+              "port to listen at; 0: any, which is printed",
+              take_port},
+    OptionRow{"--everywhere",
+              "",
+              "",
+              {Command::record, Command::replay},
+              "accept connections of other machines, too",
+              take_recording_switch<&RecordingOptions::listens_everywhere>},
+    OptionRow{"--output",
+              "-o",
+              "FILE",
+              {Command::record},
+              "file to write; one that is there is replaced",
+              take_recording_text<&RecordingOptions::output>},
+    OptionRow{"--drop",
+              "",
+              "",
+              {Command::record},
+              "leave messages out, and count them, when the\ndisk is too slow, instead of waiting"
+              " for it",
+              take_recording_switch<&RecordingOptions::drops>},
+    OptionRow{"--fast",
+              "",
+              "",
+              {Command::replay},
+              "send as soon as the answers before have come,\nnot at the recorded times",
+              take_recording_switch<&RecordingOptions::is_fast>},
 };
 
 /// `text` in a column that begins behind `indent` blanks; the first line stands there already.
@@ -255,8 +389,10 @@ std::string help_of(const CommandRow& command) {
   if (has_language) text += languages();
   if (reading.contains(command.command)) {
     text += environment_and_exit;
-  } else {
+  } else if (command.command == Command::explain) {
     text += "\nExit status: 0 fine, 2 no such code.\n";
+  } else {
+    text += "\nExit status: 0 fine, 1 errors, 2 used wrongly, 3 a fault of robdef itself.\n";
   }
   return text;
 }

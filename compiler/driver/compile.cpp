@@ -52,6 +52,9 @@ Product make_product(const Options& options, const model::Model& model, const So
       return {find_backend(options.language)->view(model, report), {}};
     case Command::check:
     case Command::explain:
+    case Command::inspect:
+    case Command::record:
+    case Command::replay:
       break;
   }
   return {};

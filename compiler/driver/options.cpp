@@ -129,11 +129,28 @@ class ArgumentReader {
     if (options_.inputs.empty() && command_.command == Command::explain && !options_.lists_codes) {
       return "no code given";
     }
+    if (command_.command == Command::record) return missing_to_record();
     if (options_.inputs.empty() && command_.command != Command::explain) return "no file given";
+    if (command_.command == Command::replay) return missing_to_replay();
     if (!options_.inputs.empty() && options_.lists_codes) return "`--list` takes no codes";
     if (!options_.depfile_target.empty() && options_.depfile.empty()) {
       return "`--depfile-target` needs `--depfile`";
     }
+    return "";
+  }
+
+  [[nodiscard]] std::string missing_to_record() const {
+    const RecordingOptions& wanted = options_.recording;
+    if (!options_.inputs.empty()) return "`robdef record` takes no files; name one with `-o`";
+    if (wanted.connect.empty()) return "`--connect` is missing";
+    if (!wanted.port) return "`--listen` is missing";
+    return wanted.output.empty() ? "`--output` is missing" : "";
+  }
+
+  [[nodiscard]] std::string missing_to_replay() const {
+    const RecordingOptions& wanted = options_.recording;
+    if (options_.inputs.size() != 1) return "one file at a time can be played";
+    if (wanted.connect.empty() == !wanted.port) return "give either `--connect` or `--listen`";
     return "";
   }
 

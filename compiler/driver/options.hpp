@@ -9,18 +9,19 @@
 
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/diagnostics/report.hpp"
+#include "compiler/driver/recording_options.hpp"
 #include "compiler/syntax/read.hpp"
 
 /// The command line of `robdef`: one table of commands, one of options, read by the parser and by
 /// `--help` alike.
 namespace robdef {
 
-enum class Command { generate, check, describe, model, view, explain };
+enum class Command { generate, check, describe, model, view, explain, inspect, record, replay };
 
 /// What the user asked for. Which parts mean something depends on the command.
 struct Options {
   Command command{};
-  /// Definition files; for explain: codes and rules.
+  /// Definition files; for explain: codes and rules; for inspect and replay: recordings.
   std::vector<std::string> inputs;
   /// Folders in which imports are looked for: those of `-I`, then those of the environment.
   ast::SearchPath search_path;
@@ -35,6 +36,7 @@ struct Options {
   bool lists_outputs = false;
   bool lists_codes = false;
   bool is_json = false;
+  RecordingOptions recording;
 };
 
 /// Text that answers the command line itself: help or the version.

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "compiler/driver/command_table.hpp"
 #include "compiler/driver/program.hpp"
 
@@ -94,8 +96,12 @@ TEST(Options, HelpOfACommandShowsEachOfItsOptions) {
       const bool is_shown =
           text.find("  " + std::string(option.title()) + " ") != std::string::npos ||
           text.find(", " + std::string(option.title()) + " ") != std::string::npos;
-      EXPECT_EQ(is_shown, option.commands.contains(command.command))
-          << command.name << " " << option.title();
+      // Two commands may have options of one name, each in a row of its own.
+      const bool is_expected =
+          std::any_of(option_rows().begin(), option_rows().end(), [&](const OptionRow& other) {
+            return other.title() == option.title() && other.commands.contains(command.command);
+          });
+      EXPECT_EQ(is_shown, is_expected) << command.name << " " << option.title();
     }
   }
 }

@@ -7,7 +7,7 @@ _robdef() {
   COMPREPLY=()
   if [ "$COMP_CWORD" = 1 ]; then
     mapfile -t COMPREPLY < <(compgen -W \
-      'generate check describe model view explain --help --version' -- "$word")
+      'generate check describe model view explain inspect record replay --help --version' -- "$word")
     return
   fi
   case $previous in
@@ -26,8 +26,20 @@ _robdef() {
         -- "$word")
       return
       ;;
+    --output | -o)
+      if [ "$command" = record ]; then
+        mapfile -t COMPREPLY < <(compgen -f -- "$word")
+        return
+      fi
+      ;;&
     --output | -o | --import-path | -I | --templates)
       mapfile -t COMPREPLY < <(compgen -d -- "$word")
+      return
+      ;;
+    --entries)
+      mapfile -t COMPREPLY < <(compgen -W 'PropertyGetReq PropertyGetRes PropertySetReq PropertySetRes FunctionCallReq
+        FunctionCallRes GeneratorNextReq GeneratorNextRes EventReq PipePacket PipePacketRet CallbackCallReq
+        CallbackCallRet WirePacket MemoryRead MemoryReadRet MemoryWrite' -- "$word")
       return
       ;;
     --depfile)
@@ -44,11 +56,16 @@ _robdef() {
       view) options="--lang $reading" ;;
       describe | model) options=$reading ;;
       explain) options='--list --json --help' ;;
+      inspect) options='--json --entries --path --connection --summary --help' ;;
+      record) options='--connect --listen --everywhere --output -o --drop --help' ;;
+      replay) options='--connect --listen --everywhere --connection --fast --help' ;;
     esac
     mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")
   elif [ "$command" = explain ]; then
     mapfile -t COMPREPLY < <(compgen -W \
       "$(robdef explain --list 2>/dev/null | cut -d ' ' -f 1)" -- "$word")
+  elif [ "$command" = inspect ] || [ "$command" = replay ]; then
+    mapfile -t COMPREPLY < <(compgen -f -- "$word")
   else
     mapfile -t COMPREPLY < <(
       compgen -f -X '!*.robdef' -- "$word"

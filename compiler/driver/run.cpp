@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compiler/driver/explain.hpp"
+#include "compiler/driver/recordings.hpp"
 
 namespace robdef {
 
@@ -43,8 +44,18 @@ ExitStatus answer(std::span<const std::string> arguments, std::string_view impor
     return exit_usage;
   }
   const auto& options = std::get<Options>(parsed);
-  return options.command == Command::explain ? explain(options, out, err)
-                                             : compile(options, out, err);
+  switch (options.command) {
+    case Command::explain:
+      return explain(options, out, err);
+    case Command::inspect:
+      return inspect(options, out, err);
+    case Command::record:
+      return record(options, out, err);
+    case Command::replay:
+      return replay(options, out, err);
+    default:
+      return compile(options, out, err);
+  }
 }
 
 }  // namespace

@@ -5,133 +5,55 @@
 #include <regex>
 
 #include "conformance/harness/decoded.hpp"
+#include "runtime/cpp/src/replay/words.hpp"
 
 namespace rr::conformance {
 namespace {
 
-constexpr unsigned meta_flag = 0x10;
+using replay::find_named;
+using replay::string_of;
 
-// Replaces the endpoint numbers of a header by what `names` says; others stay.
-void rename_endpoints(Json& header, const std::map<std::uint32_t, std::uint32_t>& names) {
-  for (const char* key : {"sender_endpoint", "receiver_endpoint"}) {
-    const auto endpoint = header.find(key);
-    if (endpoint == header.end()) continue;
-    const auto name = names.find(endpoint->get<std::uint32_t>());
-    if (name != names.end()) *endpoint = name->second;
-  }
-}
-
-std::uint32_t endpoint_of(const Json& header, const char* key) {
-  return header.value(key, std::uint32_t{0});
-}
-
-// The side that sends names its endpoint in the header: the first time it is seen, it is noted.
-void learn_endpoint(const Json& recorded, const Json& live, PlayedConnection& connection) {
-  const std::uint32_t before = endpoint_of(recorded, "sender_endpoint");
-  const std::uint32_t now = endpoint_of(live, "sender_endpoint");
-  if (before != 0 && now != 0) connection.live_endpoints.try_emplace(before, now);
-}
-
-int message_id(const Json& header) { return header.value("message_id", 0); }
+constexpr std::uint8_t meta_flag = 0x10;  // of a message of version 4 (02, section 2)
 
 // In version 4 a message id of 0 without metadata is not on the wire.
-void set_message_id(Json& header, int id) {
-  const bool flagged = header.at("version") == 4;
-  if (flagged && id == 0 && header.value("metadata", "").empty()) {
-    for (const char* key : {"metadata", "message_id", "message_res_id"}) header.erase(key);
-    header["flags"] = header["flags"].get<unsigned>() & ~meta_flag;
-    return;
-  }
-  if (flagged && !header.contains("message_id")) {
-    header["metadata"] = "";
-    header["message_res_id"] = 0;
-    header["flags"] = header["flags"].get<unsigned>() | meta_flag;
-  }
-  header["message_id"] = id;
+void set_message_id(rr::MessageTree& message, int id) {
+  message.message_id = static_cast<std::uint16_t>(id);
+  if (message.version == rr::MessageVersion::v2) return;
+  const bool is_left_out = id == 0 && message.metadata.empty();
+  if (is_left_out) message.message_res_id = 0;
+  message.flags = static_cast<std::uint8_t>(is_left_out ? message.flags & ~meta_flag
+                                                        : message.flags | meta_flag);
 }
 
-bool counts_messages(const Json& header) {
-  return header.at("version") == 2 || header.contains("message_id");
+bool counts_messages(const rr::MessageTree& message) {
+  return message.version == rr::MessageVersion::v2 || (message.flags & meta_flag) != 0;
 }
 
-void align_message_id(const Json& recorded, Json& live, PlayedConnection& connection) {
+void align_message_id(const rr::MessageTree& recorded, rr::MessageTree& live,
+                      PlayedConnection& connection) {
   if (connection.take_next_message_id && counts_messages(live) && counts_messages(recorded) &&
-      message_id(recorded) != 0) {
-    connection.message_id_lead = message_id(recorded) - message_id(live);
+      recorded.message_id != 0) {
+    connection.message_id_lead = recorded.message_id - live.message_id;
     connection.take_next_message_id = false;
   }
-  if (connection.left_out != 0 && counts_messages(live) && message_id(recorded) != 0) {
-    const int more = message_id(recorded) - message_id(live) - connection.message_id_lead;
+  if (connection.left_out != 0 && counts_messages(live) && recorded.message_id != 0) {
+    const int more = recorded.message_id - live.message_id - connection.message_id_lead;
     if (more > 0 && more <= connection.left_out) connection.message_id_lead += more;
     connection.left_out = 0;
   }
-  if (connection.message_id_lead == 0 || message_id(recorded) == 0) return;
-  set_message_id(live, (message_id(live) + connection.message_id_lead) & 0xFFFF);
+  if (connection.message_id_lead == 0 || recorded.message_id == 0) return;
+  set_message_id(live, (live.message_id + connection.message_id_lead) & 0xFFFF);
 }
 
-Json* find_named(Json& elements, const std::string& name) {
-  const auto found = std::find_if(elements.begin(), elements.end(), [&](const Json& element) {
-    return element.value("name", std::string()) == name;
-  });
-  return found == elements.end() ? nullptr : &*found;
-}
-
-void take_over_value(const Json& recorded, Json& live) {
-  live.erase("value");
-  live.erase("value_hex");
-  for (const char* key : {"value", "value_hex"}) {
-    if (recorded.contains(key)) live[key] = recorded[key];
-  }
-  live["count"] = recorded.at("count");
-}
-
-bool is_text(const Json& element) { return element.at("type") == 11; }
-
-// The version text of a library.
-void put_aside_client_version(const Json& recorded, Json& live) {
-  for (const Json& element : recorded) {
-    if (element.value("name", "") != "clientversion" || !is_text(element)) continue;
-    Json* other = find_named(live, "clientversion");
-    if (other != nullptr && is_text(*other)) take_over_value(element, *other);
-  }
-}
+bool is_text(const rr::ElementTree& element) { return element.type == rr::ElementType::string; }
 
 // The texts of a message's own string table come in any order.
-void put_aside_table_order(const Json& recorded, Json& live) {
-  if (!recorded.contains("string_table") || !live.contains("string_table")) return;
-  const auto sorted = [](std::vector<Json> table) {
+void put_aside_table_order(const rr::MessageTree& recorded, rr::MessageTree& live) {
+  const auto sorted = [](auto table) {
     std::sort(table.begin(), table.end());
     return table;
   };
-  if (sorted(recorded["string_table"]) == sorted(live["string_table"])) {
-    live["string_table"] = recorded["string_table"];
-  }
-}
-
-// The ports in connection URLs.
-void put_aside_ports(const Json& recorded, Json& live) {
-  static const std::regex url(R"((rr\+tcp://[^/:]*:)(\d+)(/.*))");
-  if (recorded.is_string() && live.is_string()) {
-    std::smatch before;
-    std::smatch now;
-    const std::string recorded_text = recorded;
-    const std::string live_text = live;
-    if (std::regex_match(recorded_text, before, url) && std::regex_match(live_text, now, url)) {
-      live = now[1].str() + before[2].str() + now[3].str();
-    }
-  } else if (recorded.is_array() && live.is_array()) {
-    for (std::size_t i = 0; i < std::min(recorded.size(), live.size()); ++i) {
-      put_aside_ports(recorded[i], live[i]);
-    }
-  } else if (recorded.is_object() && live.is_object()) {
-    for (auto& [key, value] : live.items()) {
-      if (recorded.contains(key)) put_aside_ports(recorded[key], value);
-    }
-    if (recorded.value("type", 0) == 11 && live.value("type", 0) == 11 &&
-        recorded.value("value", Json()) == live.value("value", Json())) {
-      live["count"] = recorded["count"];
-    }
-  }
+  if (sorted(recorded.strings) == sorted(live.strings)) live.strings = recorded.strings;
 }
 
 bool has_text(const Json& json, const std::string& text) {
@@ -157,15 +79,6 @@ void collect_messages(const Json& json, std::set<std::string>& texts, bool& echo
   for (const Json& item : json) collect_messages(item, texts, echoes);
 }
 
-// Elements of an error come in any order: those of `live` are put in the order of `recorded`.
-void put_in_order(const Json& recorded, Json& live) {
-  Json ordered = Json::array();
-  for (const Json& element : recorded) {
-    if (Json* found = find_named(live, element.value("name", ""))) ordered.push_back(*found);
-  }
-  if (ordered.size() == live.size()) live = std::move(ordered);
-}
-
 }  // namespace
 
 bool is_host_specific(const std::string& error_name) {
@@ -174,11 +87,14 @@ bool is_host_specific(const std::string& error_name) {
 }
 
 Bytes addressed(const Frame& frame, const PlayedConnection& connection) {
-  Json decoded = frame.decoded;
-  rename_endpoints(decoded.at("header"), connection.live_endpoints);
-  for (Json& entry : decoded.at("entries")) rename_generator(entry, connection.live_generators);
-  if (decoded == frame.decoded) return frame.bytes;
-  return rr::write_tree(message_of_json(decoded));
+  rr::MessageTree recorded;
+  if (!rr::read_tree(frame.bytes, recorded)) return frame.bytes;
+  rr::MessageTree message = recorded;
+  replay::rename_endpoints(message, connection.live_endpoints);
+  for (rr::EntryTree& entry : message.entries) {
+    replay::rename_generator(entry, connection.live_generators);
+  }
+  return message == recorded ? frame.bytes : rr::write_tree(message);
 }
 
 Comparison::Comparison(const Captures& captures) {
@@ -189,51 +105,48 @@ bool Comparison::is_scripted(const std::string& text, const Json& request) const
   return scripted_texts_.contains(text) || (echoes_texts_ && has_text(request, text));
 }
 
-void Comparison::put_aside_error_texts(const Json& recorded, Json& live,
+void Comparison::put_aside_error_texts(const rr::EntryTree& recorded, rr::EntryTree& live,
                                        const Json& request) const {
-  Json& elements = live.at("elements");
-  put_in_order(recorded.at("elements"), elements);
-  for (const Json& element : recorded.at("elements")) {
-    const std::string name = element.value("name", "");
-    Json* other = find_named(elements, name);
+  replay::put_in_order(recorded, live);
+  for (const rr::ElementTree& element : recorded.elements) {
+    rr::ElementTree* const other = find_named(live.elements, element.name);
     if (other == nullptr || !is_text(element) || !is_text(*other)) continue;
-    const std::string text = element.contains("value") ? element["value"].get<std::string>() : "";
-    const bool free = (name == "errorname" && is_host_specific(text)) ||
-                      (name == "errorstring" && !is_scripted(text, request));
-    if (free) take_over_value(element, *other);
+    const std::string text(string_of(element));
+    const bool free = (element.name == "errorname" && is_host_specific(text)) ||
+                      (element.name == "errorstring" && !is_scripted(text, request));
+    if (free) other->payload = element.payload;
   }
 }
 
-std::optional<std::string> Comparison::difference(const Frame& recorded,
-                                                  std::span<const std::byte> live,
+std::optional<std::string> Comparison::difference(const Frame& frame,
+                                                  std::span<const std::byte> bytes,
                                                   PlayedConnection& connection,
                                                   const Frame* request) const {
-  rr::MessageTree tree;
-  if (!rr::read_tree(live, tree))
-    return "not a message: " + hex_of_bytes(live.first(std::min<std::size_t>(live.size(), 40)));
-  Json decoded = json_of_message(tree);
-  Json& header = decoded.at("header");
-  learn_endpoint(recorded.header(), header, connection);
-  std::map<std::uint32_t, std::uint32_t> recorded_names;
+  rr::MessageTree recorded;
+  rr::MessageTree live;
+  if (!rr::read_tree(bytes, live))
+    return "not a message: " + hex_of_bytes(bytes.first(std::min<std::size_t>(bytes.size(), 40)));
+  if (!rr::read_tree(frame.bytes, recorded)) return "the recorded frame is not a message";
+  replay::learn_endpoint(recorded, live, connection.live_endpoints);
+  replay::Endpoints recorded_names;
   for (const auto& [before, now] : connection.live_endpoints) recorded_names[now] = before;
-  rename_endpoints(header, recorded_names);
-  align_message_id(recorded.header(), header, connection);
-  put_aside_table_order(recorded.header(), header);
+  replay::rename_endpoints(live, recorded_names);
+  align_message_id(recorded, live, connection);
+  put_aside_table_order(recorded, live);
   const Json nothing = Json::array();
-  Json& entries = decoded.at("entries");
-  for (std::size_t i = 0; i < std::min(entries.size(), recorded.entries().size()); ++i) {
-    const Json& before = recorded.entries()[i];
-    Json& now = entries[i];
-    if (before.at("error") != 0 && now.at("error") == before.at("error")) {
+  for (std::size_t i = 0; i < std::min(live.entries.size(), recorded.entries.size()); ++i) {
+    const rr::EntryTree& before = recorded.entries[i];
+    rr::EntryTree& now = live.entries[i];
+    if (before.error != 0 && now.error == before.error) {
       put_aside_error_texts(before, now, request == nullptr ? nothing : request->entries());
     }
-    put_aside_client_version(before.at("elements"), now.at("elements"));
-    put_aside_ports(before.at("elements"), now.at("elements"));
-    put_aside_packet_time(before, now);
-    put_aside_generator_index(before, now, connection.live_generators);
+    replay::put_aside_client_version(before, now);
+    replay::put_aside_ports(before, now);
+    replay::put_aside_packet_time(before, now);
+    replay::put_aside_generator_index(before, now, connection.live_generators);
   }
-  if (rr::write_tree(message_of_json(decoded)) == recorded.bytes) return std::nullopt;
-  return describe_difference(recorded.decoded, decoded);
+  if (rr::write_tree(live) == frame.bytes) return std::nullopt;
+  return describe_difference(frame.decoded, json_of_message(live));
 }
 
 std::string describe_difference(const Json& recorded, const Json& live) {

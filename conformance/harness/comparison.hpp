@@ -2,14 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
 
 #include "conformance/harness/captures.hpp"
-#include "conformance/harness/passing_parts.hpp"
+#include "runtime/cpp/src/replay/parts.hpp"
 
 /// Compares a frame that came with the recorded one, and prepares recorded ones for sending.
 namespace rr::conformance {
@@ -17,8 +16,8 @@ namespace rr::conformance {
 /// A recorded connection while it is played: what stands for what.
 struct PlayedConnection {
   /// Live endpoint numbers by recorded ones; filled when they are first seen.
-  std::map<std::uint32_t, std::uint32_t> live_endpoints;
-  Generators live_generators;
+  replay::Endpoints live_endpoints;
+  replay::Generators live_generators;
   /// How many messages more than the played side the recorded one had counted.
   int message_id_lead = 0;
   /// Answers that the played side leaves out as listed; it may count them or not.
@@ -46,7 +45,8 @@ class Comparison {
   [[nodiscard]] bool is_scripted(const std::string& text, const Json& request) const;
 
  private:
-  void put_aside_error_texts(const Json& recorded, Json& live, const Json& request) const;
+  void put_aside_error_texts(const rr::EntryTree& recorded, rr::EntryTree& live,
+                             const Json& request) const;
 
   std::set<std::string> scripted_texts_;
   bool echoes_texts_ = false;

@@ -3,6 +3,8 @@
 
 #include <rr/message_tree.hpp>
 
+#include "runtime/cpp/src/replay/parts.hpp"
+
 namespace rr::conformance {
 
 int entry_type_of(std::span<const std::byte> bytes) {
@@ -19,12 +21,7 @@ int error_of(std::span<const std::byte> bytes) {
 
 Bytes connection_test_answer(std::span<const std::byte> test) {
   rr::MessageTree tree;
-  if (!rr::read_tree(test, tree) || tree.entries.empty()) return {};
-  tree.entries.front().type = rr::EntryType::connection_test_ret;
-  std::swap(tree.sender_node, tree.receiver_node);
-  std::swap(tree.sender_name, tree.receiver_name);
-  std::swap(tree.sender_endpoint, tree.receiver_endpoint);
-  return rr::write_tree(tree);
+  return rr::read_tree(test, tree) ? replay::connection_test_answer(tree) : Bytes();
 }
 
 bool repeats_type_answer(const Scenario& scenario, const Frame& frame) {

@@ -3,13 +3,17 @@
 
 #include <chrono>
 #include <fstream>
+#include <memory>
+#include <mutex>
 #include <rr/message_tree.hpp>
+#include <rr/tap.hpp>
 #include <stdexcept>
 #include <thread>
 
 #include "conformance/harness/decoded.hpp"
 #include "conformance/harness/runner_client.hpp"
 #include "conformance/harness/service_replay.hpp"
+#include "runtime/cpp/src/replay/proxy.hpp"
 
 namespace rr::conformance {
 namespace {
@@ -46,63 +50,62 @@ Json with_blobs(Json json, const Blobs& blobs) {
   return json;
 }
 
-// Between client and service: passes on every message and keeps it.
-class Proxy {
+// Keeps what passes between client and service, as a scenario has it.
+class Frames final : public rr::Tap {
  public:
-  Proxy(int service_port, const Scenario& scenario, const Blobs& blobs)
-      : listener_(0), service_port_(service_port), scenario_(scenario), blobs_(blobs) {}
+  Frames(const Scenario& scenario, const Blobs& blobs) : scenario_(scenario), blobs_(blobs) {}
 
-  [[nodiscard]] int port() const { return listener_.port(); }
-  [[nodiscard]] const Json& frames() const { return frames_; }
-  [[nodiscard]] const Json& connections() const { return connections_; }
+  std::uint32_t opened(const rr::ConnectionOpened&) override {
+    const std::lock_guard lock(mutex_);
+    ++events_;
+    connections_.push_back(
+        {{"conn", connections_.size()}, {"opened_before_frame", frames_.size()}});
+    return static_cast<std::uint32_t>(connections_.size());
+  }
+  std::uint64_t message(std::uint32_t connection, rr::Direction direction,
+                        std::span<const rr::Piece> pieces) override {
+    Bytes bytes;
+    for (const rr::Piece& piece : pieces) {
+      bytes.insert(bytes.end(), piece.data, piece.data + piece.size);
+    }
+    const std::lock_guard lock(mutex_);
+    ++events_;
+    keep(connection - 1, bytes, direction == rr::Direction::to_service);
+    return frames_.size();
+  }
+  void closed(std::uint32_t connection, rr::ErrorCode, std::string_view reason) override {
+    const std::lock_guard lock(mutex_);
+    ++events_;
+    const bool by_client = reason == replay::closed_by_client;
+    if (!by_client && reason != replay::closed_by_service) return;
+    Json& entry = connections_[connection - 1];
+    entry["closed_after_frame"] = last_frame_of(connection - 1);
+    entry["closed_by"] = by_client ? "client" : "service";
+  }
+  void agreed(std::uint32_t, const rr::ConnectionAgreed&) override {}
+  void replaced(std::uint32_t, std::uint64_t) override {}
+  void definition(std::string_view) override {}
 
-  // True when anything moved.
-  bool pass_on() {
-    bool moved = false;
-    if (auto client = listener_.accept(Milliseconds(0))) {
-      lines_.push_back({std::move(*client), Stream::connect("127.0.0.1", service_port_)});
-      connections_.push_back(
-          {{"conn", lines_.size() - 1}, {"opened_before_frame", frames_.size()}});
-      moved = true;
-    }
-    for (std::size_t i = 0; i < lines_.size(); ++i) {
-      moved |= pass_on(i, lines_[i].client, lines_[i].service, true);
-      moved |= pass_on(i, lines_[i].service, lines_[i].client, false);
-    }
-    return moved;
+  /// Grows with everything that happens. Throws what went wrong.
+  std::size_t events() const {
+    const std::lock_guard lock(mutex_);
+    if (is_malformed_) throw std::runtime_error("a message that is none was sent");
+    return events_;
+  }
+  Json frames() const {
+    const std::lock_guard lock(mutex_);
+    return frames_;
+  }
+  std::size_t frame_count() const {
+    const std::lock_guard lock(mutex_);
+    return frames_.size();
+  }
+  Json connections() const {
+    const std::lock_guard lock(mutex_);
+    return connections_;
   }
 
  private:
-  struct Line {
-    Stream client;
-    Stream service;
-  };
-
-  bool pass_on(std::size_t line, Stream& from, Stream& to, bool from_client) {
-    Bytes message;
-    if (!from.is_open()) return false;
-    switch (from.receive(message, Milliseconds(0))) {
-      case Arrival::nothing:
-        return false;
-      case Arrival::closed:
-        note_end(line, from_client);
-        to.close();
-        return true;
-      case Arrival::message:
-        break;
-    }
-    keep(line, message, from_client);
-    to.send(message);
-    return true;
-  }
-
-  void note_end(std::size_t line, bool by_client) {
-    Json& connection = connections_[line];
-    if (connection.contains("closed_by")) return;
-    connection["closed_after_frame"] = last_frame_of(line);
-    connection["closed_by"] = by_client ? "client" : "service";
-  }
-
   [[nodiscard]] int last_frame_of(std::size_t line) const {
     int last = -1;
     for (const Json& frame : frames_) {
@@ -113,7 +116,10 @@ class Proxy {
 
   void keep(std::size_t line, const Bytes& message, bool from_client) {
     rr::MessageTree tree;
-    if (!rr::read_tree(message, tree)) throw std::runtime_error("a message that is none was sent");
+    if (!rr::read_tree(message, tree)) {
+      is_malformed_ = true;
+      return;
+    }
     frames_.push_back({{"n", frames_.size()},
                        {"conn", line},
                        {"dir", from_client ? "c2s" : "s2c"},
@@ -136,11 +142,11 @@ class Proxy {
     return decoded;
   }
 
-  Listener listener_;
-  int service_port_;
   const Scenario& scenario_;
   const Blobs& blobs_;
-  std::vector<Line> lines_;
+  mutable std::mutex mutex_;  // guards what follows
+  std::size_t events_ = 0;
+  bool is_malformed_ = false;
   Json frames_ = Json::array();
   Json connections_ = Json::array();
 };
@@ -161,7 +167,8 @@ Scenario blank_scenario(const Captures& captures, const Json& plan, const std::s
   return scenario;
 }
 
-void play_step(Json& planned, const Scenario& scenario, Proxy& proxy, RunnerClient& client) {
+void play_step(Json& planned, const Scenario& scenario, const replay::Proxy& proxy,
+               const Frames& frames, RunnerClient& client) {
   Step step;
   step.plan = planned;
   std::optional<Json> outcome;
@@ -172,8 +179,12 @@ void play_step(Json& planned, const Scenario& scenario, Proxy& proxy, RunnerClie
     client.start(told(step, scenario, proxy.port()));
   }
   const auto end = Clock::now() + step_limit;
+  std::size_t seen = 0;
   for (auto last = Clock::now(); !outcome || Clock::now() < last + settle;) {
-    if (proxy.pass_on()) last = Clock::now();
+    if (const std::size_t events = frames.events(); events != seen) {
+      seen = events;
+      last = Clock::now();
+    }
     if (!outcome && (outcome = client.outcome(Milliseconds(1)))) last = Clock::now();
     if (Clock::now() > end) throw std::runtime_error("a step did not end: " + planned.dump());
   }
@@ -218,16 +229,18 @@ void record(const fs::path& folder, const std::string& plan_name, const std::str
   const Scenario scenario = blank_scenario(captures, plan, version);
   Runner service(command, "serve");
   const Json served = service.order(serve_request(captures, scenario));
-  Proxy proxy(served.at("port"), scenario, captures.blobs);
+  const auto frames = std::make_shared<Frames>(scenario, captures.blobs);
+  replay::Proxy proxy(frames, {"127.0.0.1", served.at("port").get<std::uint16_t>()});
   RunnerClient client(command);
   client.begin(scenario, proxy.port());
   Json step_frames = Json::array();
   for (Json& step : plan.at("steps")) {
-    const std::size_t first = proxy.frames().size();
-    play_step(step, scenario, proxy, client);
-    const std::size_t next = proxy.frames().size();
+    const std::size_t first = frames->frame_count();
+    play_step(step, scenario, proxy, *frames, client);
+    const std::size_t next = frames->frame_count();
     step_frames.push_back(next == first ? Json() : Json::array({first, next - 1}));
   }
+  proxy.stop();
   write(folder / plan_file, written(plan, "steps"));
   const Json scenario_json = {
       {"scenario", scenario.name},
@@ -237,10 +250,10 @@ void record(const fs::path& folder, const std::string& plan_name, const std::str
       {"client", "robdef"},
       {"service", "service.json"},
       {"nodes", {{"service", node_json(scenario.service)}, {"client", node_json(scenario.client)}}},
-      {"connections", proxy.connections()},
+      {"connections", frames->connections()},
       {"plan", plan_file},
       {"step_frames", step_frames},
-      {"frames", proxy.frames()}};
+      {"frames", frames->frames()}};
   write(folder / "scenarios" / (scenario.name + "." + version + ".json"),
         written(scenario_json, "frames"));
 }

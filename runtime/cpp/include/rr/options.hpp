@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -12,6 +13,8 @@
 #include "rr/wire.hpp"
 
 namespace rr {
+
+class Tap;
 
 enum class LogLevel : std::uint8_t { debug, info, warning, error };
 
@@ -72,6 +75,9 @@ struct NodeOptions {
   std::size_t send_queue_limit = 64 * 1024 * 1024;
   /// Bytes of requests that wait for their handlers before a connection is read no further.
   std::size_t request_queue_limit = 1024 * 1024;
+
+  /// Hears every message that the node sends and receives (rr/tap.hpp); none by default.
+  std::shared_ptr<Tap> tap{};
 };
 
 }  // namespace rr

@@ -75,16 +75,18 @@ void Outbox::add(Writer& message, std::size_t sent) {
   }
 }
 
-void Outbox::add_newest(Writer& message, std::uint64_t stream, std::int64_t time) {
+Outbox::Queued Outbox::add_newest(Writer& message, std::uint64_t stream, std::int64_t time) {
   Replaceable* const old = find(stream);
   if (old == nullptr) {
     segments_.emplace_back().is_alone = true;
     fill(segments_.back(), message);
     replaceable_.push_back({stream, time, segments_.size() - 1});
-  } else if (time > old->time) {
-    old->time = time;
-    fill(segments_[old->segment], message);
+    return {&replaceable_.back().mark, false};
   }
+  if (time <= old->time) return {};
+  old->time = time;
+  fill(segments_[old->segment], message);
+  return {&old->mark, true};
 }
 
 // What waits of a stream; null when there is nothing that may be replaced. Forgets on the way what

@@ -23,9 +23,13 @@ class Outbox {
   /// borrows, and keeps what has an owner.
   void add(Writer& message, std::size_t sent);
   void add(std::span<const std::byte> bytes);
+  struct Queued {
+    std::uint64_t* mark = nullptr;  ///< the caller's, for this stream while it waits; null: dropped
+    bool is_replacement = false;
+  };
   /// Takes a whole message in place of one of the same stream that waits, unless it is the older of
   /// the two: then it is dropped.
-  void add_newest(Writer& message, std::uint64_t stream, std::int64_t time);
+  Queued add_newest(Writer& message, std::uint64_t stream, std::int64_t time);
   /// Takes over the first `size` bytes of a piece of memory.
   void add(Allocation memory, std::size_t size);
 
@@ -51,6 +55,7 @@ class Outbox {
     std::uint64_t stream = 0;
     std::int64_t time = 0;
     std::size_t segment = 0;
+    std::uint64_t mark = 0;
   };
 
   void drop(std::size_t bytes);

@@ -136,13 +136,35 @@ std::vector<Address> resolve_for_listening(const std::string& host, std::uint16_
   return addresses;
 }
 
-Address local_address(int descriptor) {
+std::string url_of(const Address& address) {
+  return address.size == 0 || address.family() == AF_UNIX ? std::string()
+                                                          : "rr+tcp://" + address.text();
+}
+
+namespace {
+
+// `ask` is getsockname or getpeername.
+Address address_of(int descriptor, int (*ask)(int, sockaddr*, socklen_t*)) {
   Address address;
   address.size = sizeof address.storage;
-  if (getsockname(descriptor, reinterpret_cast<sockaddr*>(&address.storage), &address.size) != 0) {
+  if (ask(descriptor, reinterpret_cast<sockaddr*>(&address.storage), &address.size) != 0) {
     address.size = 0;
   }
   return address;
+}
+
+}  // namespace
+
+Address local_address(int descriptor) {
+  return address_of(descriptor, [](int each, sockaddr* address, socklen_t* size) {
+    return getsockname(each, address, size);
+  });
+}
+
+Address remote_address(int descriptor) {
+  return address_of(descriptor, [](int each, sockaddr* address, socklen_t* size) {
+    return getpeername(each, address, size);
+  });
 }
 
 void set_stream_options(int descriptor) {

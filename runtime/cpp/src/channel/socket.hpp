@@ -45,6 +45,9 @@ struct Address {
   [[nodiscard]] std::string text() const;
 };
 
+/// As a URL of TCP; empty for what is none.
+std::string url_of(const Address& address);
+
 /// All addresses of a host: a name, or digits; IPv6 with an optional `%scope`. A link-local address
 /// without scope gives one address for each interface. Throws rr::Error (connection_error).
 std::vector<Address> resolve(const std::string& host, std::uint16_t port);
@@ -53,6 +56,7 @@ std::vector<Address> resolve(const std::string& host, std::uint16_t port);
 std::vector<Address> resolve_for_listening(const std::string& host, std::uint16_t port);
 
 Address local_address(int descriptor);
+Address remote_address(int descriptor);
 
 /// What every stream of ours has set: no delay of small segments (04, section 2).
 void set_stream_options(int descriptor);

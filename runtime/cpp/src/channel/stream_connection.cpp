@@ -18,10 +18,12 @@ StreamConnection::StreamConnection(Role role, Descriptor socket, std::shared_ptr
       socket_(std::move(socket)),
       reactor_(std::move(reactor)),
       options_(std::move(options)),
+      tap_(options_->tap.get()),
       last_sent_(coarse_now()),
       last_received_(coarse_now()),
       created_(coarse_now()) {
   set_stream_options(socket_.get());
+  if (tap_ != nullptr) open_tap();
 }
 
 StreamConnection::~StreamConnection() {
@@ -37,6 +39,16 @@ void StreamConnection::set_agreement(const NodeId& remote_node, std::string remo
   may_combine_ = agreement.combined_connect;
   has_local_strings_ = agreement.local_strings;
   has_standard_strings_ = agreement.standard_strings;
+  if (tap_ == nullptr) return;
+  const bool is_client = role_ == Role::client;
+  tap_->agreed(tap_number_, {.client_node = is_client ? options_->id : remote_node_,
+                             .service_node = is_client ? remote_node_ : options_->id,
+                             .client_name = is_client ? options_->name : remote_name_,
+                             .service_name = is_client ? remote_name_ : options_->name,
+                             .version = agreement.version,
+                             .combined_connect = agreement.combined_connect,
+                             .local_strings = agreement.local_strings,
+                             .standard_strings = agreement.standard_strings});
 }
 
 void StreamConnection::start(std::shared_ptr<Receiver> receiver) {
@@ -60,11 +72,7 @@ void StreamConnection::start(std::shared_ptr<Receiver> receiver) {
                      after(Clock::now(), std::min(soon, heartbeat_period())));
 }
 
-std::string StreamConnection::local_url() const {
-  const Address address = local_address(socket_.get());
-  return address.size == 0 || address.family() == AF_UNIX ? std::string()
-                                                          : "rr+tcp://" + address.text();
-}
+std::string StreamConnection::local_url() const { return url_of(local_address(socket_.get())); }
 
 std::uint32_t StreamConnection::largest_message() const {
   const std::uint32_t size = options_->limits.message_size;
@@ -140,6 +148,7 @@ void StreamConnection::finish_close() {
   reactor_->cancel(life_timer_);
   reactor_->cancel(park_timer_);
   Laters laters;
+  if (tap_ != nullptr) tap_->closed(tap_number_, why_closed_->code(), why_closed_->message());
   if (receiver_) receiver_->lost(*why_closed_, laters);  // receiver_ stays until closed() is due
   std::shared_ptr<StreamConnection> self;
   bool must_post = false;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "rr/options.hpp"
+#include "rr/tap.hpp"
 #include "runtime/cpp/src/channel/capabilities.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/channel/flusher.hpp"
@@ -52,6 +53,8 @@ class StreamConnection final : public Connection,
   /// Before start(): who the other side is and what was agreed with it.
   void set_agreement(const NodeId& remote_node, std::string remote_name,
                      const Agreement& agreement);
+  /// Before set_agreement(): the messages that did it, when the node has a tap.
+  void tell_handshake(std::span<const std::byte> request, std::span<const std::byte> answer);
   /// Before start(): called once when the connection has ended, on any thread.
   void set_on_gone(std::function<void(StreamConnection&)> on_gone) {
     on_gone_ = std::move(on_gone);
@@ -118,12 +121,19 @@ class StreamConnection final : public Connection,
   bool add_to_stream(Writer& message, bool& is_first);
   void stream_or_queue(Writer& message);
   void take_streamed();
+  void move_streamed();
   void note_waiting();
   [[nodiscard]] std::size_t waiting_bytes() const;
   [[noreturn]] void fail_sending();
   void flush();
   void watch_for_room();
   void send_own(Writer& message);  // of the connection itself; failures are ignored
+
+  // The tap (stream_tap.cpp): all of it only with one.
+  void open_tap();
+  std::uint64_t tell_tap(bool is_own, std::span<const Piece> message) const;
+  std::uint64_t take_streamed_and_tell(Writer& message);
+  void queue_newest_and_tell(Writer& message, const Newest& newest);
 
   // Reading (stream_reading.cpp)
   Received receive(Scratch& scratch, bool may_block, bool& is_full);
@@ -189,6 +199,8 @@ class StreamConnection final : public Connection,
   const Descriptor socket_;
   const std::shared_ptr<Reactor> reactor_;
   const std::shared_ptr<const NodeOptions> options_;
+  Tap* const tap_;  // of the options; null: none
+  std::uint32_t tap_number_ = 0;
   std::shared_ptr<Receiver> receiver_;
   std::shared_ptr<StreamConnection> self_;  // while the reactor may name this; guarded by turns_
   std::function<void(StreamConnection&)> on_gone_;

@@ -135,6 +135,10 @@ void StreamConnection::refuse_stream(const Scratch& scratch, std::size_t size) {
 
 // Reads a message and does with it what does not have to wait. False when it is none.
 bool StreamConnection::take(Scratch& scratch, const Frame& frame) {
+  if (tap_ != nullptr) {
+    const Piece piece{frame.bytes.data(), frame.bytes.size()};
+    tell_tap(false, {&piece, 1});
+  }
   Message& message = scratch.message;
   Entry& first = scratch.first;
   scratch.parsed = 0;

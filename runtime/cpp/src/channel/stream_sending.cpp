@@ -67,17 +67,27 @@ void StreamConnection::send_or_queue(Writer& message, Time now, const Newest* ne
 // Under sending_. False when the connection is broken or far too much waits.
 bool StreamConnection::send_under_lock(Writer& message, Time now, const Newest* newest,
                                        bool& has_rest) {
-  take_streamed();
+  const bool is_unsent = has_unsent_.load(std::memory_order_relaxed);
+  const bool may_replace = is_unsent && newest != nullptr;
+  std::uint64_t told = 0;
+  if (tap_ == nullptr || may_replace) {
+    take_streamed();
+  } else {
+    told = take_streamed_and_tell(message);
+  }
   std::ptrdiff_t sent = 0;
-  if (!has_unsent_.load(std::memory_order_relaxed)) {
+  if (!is_unsent) {
     sent = outbox_.send(socket_.get(), message.pieces());
   }
   last_sent_.store(now, std::memory_order_relaxed);
   bool is_broken = sent < 0;
   has_rest = !is_broken && sent != static_cast<std::ptrdiff_t>(message.size());
   if (has_rest) {
-    if (newest != nullptr && sent == 0) {
-      outbox_.add_newest(message, newest->stream, newest->time);
+    if (may_replace && tap_ != nullptr) {
+      queue_newest_and_tell(message, *newest);
+    } else if (newest != nullptr && sent == 0) {
+      const Outbox::Queued queued = outbox_.add_newest(message, newest->stream, newest->time);
+      if (queued.mark != nullptr) *queued.mark = told;
     } else {
       outbox_.add(message, static_cast<std::size_t>(sent));
     }
@@ -108,7 +118,11 @@ void StreamConnection::reply(Writer& message) {
     if (holds_back_answers_ && message.size() < Writer::attach_threshold && !has_strings()) {
       check_size(message);
       const std::lock_guard lock(sending_);
-      take_streamed();
+      if (tap_ == nullptr) {
+        take_streamed();
+      } else {
+        take_streamed_and_tell(message);
+      }
       outbox_.add(message, 0);
       note_waiting();
     } else {

@@ -49,16 +49,17 @@ void StreamConnection::note_waiting() {
 // Under sending_: what streams have left behind is next.
 void StreamConnection::take_streamed() {
   if (streamed_bytes_.load(std::memory_order_relaxed) == 0) return;
-  Allocation memory;
-  std::size_t size = 0;
-  {
-    const std::lock_guard lock(streaming_);
-    memory = std::exchange(streamed_, {});
-    size = std::exchange(streamed_size_, 0);
-    streamed_bytes_.store(0, std::memory_order_relaxed);
-    if (size != 0) outbox_.add(std::move(memory), size);
-    note_waiting();
-  }
+  const std::lock_guard lock(streaming_);
+  move_streamed();
+}
+
+// Under sending_ and streaming_.
+void StreamConnection::move_streamed() {
+  Allocation memory = std::exchange(streamed_, {});
+  const std::size_t size = std::exchange(streamed_size_, 0);
+  streamed_bytes_.store(0, std::memory_order_relaxed);
+  if (size != 0) outbox_.add(std::move(memory), size);
+  note_waiting();
 }
 
 // Leaves a message to the flusher if it is one of many; false when it is to be sent now.
@@ -79,6 +80,7 @@ bool StreamConnection::add_to_stream(Writer& message, bool& is_first) {
     streamed_size_ += piece.size;
   }
   streamed_bytes_.store(streamed_size_, std::memory_order_relaxed);
+  if (tap_ != nullptr) tell_tap(true, message.pieces());
   return true;
 }
 

@@ -19,6 +19,7 @@ class TcpChannel final : public Channel {
     Agreed agreed = connect_stream(url, *ground_.options, deadline);
     auto connection = std::make_shared<StreamConnection>(
         StreamConnection::Role::client, std::move(agreed.socket), ground_.reactor, ground_.options);
+    connection->tell_handshake(agreed.request, agreed.answer);
     connection->set_agreement(agreed.remote_node, std::move(agreed.remote_name), agreed.agreement);
     connection->start(make_receiver(connection));
     return connection;

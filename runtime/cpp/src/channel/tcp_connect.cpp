@@ -96,6 +96,7 @@ class Attempt {
                              .sender_name = options_.name,
                              .receiver_name = url_.node_name},
                             offered_codes(options_.client_offer));
+    request_ = writer.copy();
     for (const Piece& piece : writer.pieces()) {
       // A new socket has room for one small message.
       if (::send(socket_.get(), piece.data, piece.size, MSG_DONTWAIT | MSG_NOSIGNAL) !=
@@ -156,7 +157,8 @@ class Attempt {
       if (!agreed) fail(ErrorCode::protocol_error, text_ + " agreed to what was not offered");
       agreement = *agreed;
     }
-    return {std::move(socket_), message->sender_node, std::string(message->sender_name), agreement};
+    return {std::move(socket_), message->sender_node, std::string(message->sender_name),
+            agreement,          std::move(request_),  bytes_};
   }
 
   const Url& url_;
@@ -164,6 +166,7 @@ class Attempt {
   Descriptor socket_;
   std::string text_;
   bool is_connected_ = false;
+  std::vector<std::byte> request_;
   std::vector<std::byte> bytes_;
   std::size_t size_ = 0;  // of the answer, once known
 };

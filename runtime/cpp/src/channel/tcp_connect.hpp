@@ -20,6 +20,9 @@ struct Agreed {
   NodeId remote_node;
   std::string remote_name;
   Agreement agreement;
+  // The two messages that did it.
+  std::vector<std::byte> request;
+  std::vector<std::byte> answer;
 };
 
 /// Tries all addresses of the URL's host, a new one every few milliseconds; the first with which

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/tap.hpp"
 #include "rr/type.hpp"
 #include "rr/varvalue.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
@@ -297,6 +298,7 @@ void Session::pull_imports(Milliseconds timeout) {
 }
 
 void Session::keep_definition(std::string_view text) {
+  if (core_->options().tap) core_->options().tap->definition(text);
   client::DefinitionOutline outline = client::outline(text);
   const std::lock_guard lock(mutex_);
   texts_[outline.name] = text;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/tap.hpp"
 #include "rr/url.hpp"
 
 namespace rr::endpoint {
@@ -97,11 +98,18 @@ void Core::log(LogLevel level, std::string_view text) const {
 }
 
 void Core::add_definition(const Definition& definition) {
+  tell_tap(definition);
   const std::lock_guard lock(mutex_);
   if (types_->find_definition(definition.name) == &definition) return;
   auto types = std::make_shared<TypeRegistry>(*types_);
   types->add(definition);
   types_ = std::move(types);
+}
+
+void Core::tell_tap(const Definition& definition) const {
+  if (!options_->tap) return;
+  options_->tap->definition(definition.text);
+  for (const Definition* import : definition.imports) tell_tap(*import);
 }
 
 std::shared_ptr<const TypeRegistry> Core::types() const {

@@ -62,6 +62,8 @@ class Core : public std::enable_shared_from_this<Core> {
   void attend(std::weak_ptr<Attended> endpoint);
 
  private:
+  void tell_tap(const Definition& definition) const;
+
   class Rounds;  // the timer of those that are attended
 
   const SenderClock clock_;

@@ -20,7 +20,7 @@ extern const Definition rr_pipe_board_definition;
 extern const ObjectType rr_PipeBoard;
 extern const Member board_members[];
 
-enum BoardPlace : std::size_t {
+enum PipeBoardPlace : std::size_t {
   numbers_place,
   readings_place,
   blobs_place,

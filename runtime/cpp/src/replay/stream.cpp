@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/harness/stream.hpp"
+#include "runtime/cpp/src/replay/stream.hpp"
 
 #include <arpa/inet.h>
 #include <netdb.h>
@@ -14,7 +14,7 @@
 #include <memory>
 #include <stdexcept>
 
-namespace rr::conformance {
+namespace rr::replay {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -61,7 +61,12 @@ Stream Stream::connect(const std::string& host, int port) {
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> owner(list, ::freeaddrinfo);
   for (const addrinfo* each = list; each != nullptr; each = each->ai_next) {
     Descriptor socket(::socket(each->ai_family, each->ai_socktype | SOCK_CLOEXEC, 0));
+    // What is not there may not answer for minutes.
+    const timeval limit{5, 0};
+    ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
     if (socket.is_open() && ::connect(socket.get(), each->ai_addr, each->ai_addrlen) == 0) {
+      const timeval none{};
+      ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &none, sizeof none);
       return Stream(std::move(socket));
     }
   }
@@ -132,4 +137,4 @@ std::optional<Stream> Listener::accept(Milliseconds limit) {
   return Stream(std::move(accepted));
 }
 
-}  // namespace rr::conformance
+}  // namespace rr::replay

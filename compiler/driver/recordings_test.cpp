@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// The commands about recordings, as a user runs them.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <functional>
+#include <rr/recording.hpp>
+#include <rr/tap.hpp>
+#include <utility>
+
+#include "compiler/driver/program.hpp"
+#include "runtime/cpp/src/node/testing/pair.hpp"
+
+namespace robdef {
+namespace {
+
+using rr::testing::CounterStub;
+using rr::testing::eventually;
+using testing::AllOf;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+const std::string golden = ROBDEF_DRIVER_GOLDEN;
+
+// The program while it runs, until it is interrupted.
+class Running {
+ public:
+  Running(const TemporaryFolder& folder, std::vector<std::string> arguments)
+      : out_(folder / "running.out") {
+    arguments.insert(arguments.begin(), ROBDEF_PROGRAM);
+    std::vector<char*> words;
+    for (std::string& argument : arguments) words.push_back(argument.data());
+    words.push_back(nullptr);
+    const int out = ::open(out_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    process_ = ::fork();
+    if (process_ != 0) {
+      ::close(out);
+      return;
+    }
+    ::dup2(out, STDOUT_FILENO);
+    if (::chdir(folder.path().c_str()) == 0) ::execv(words[0], words.data());
+    ::_exit(127);
+  }
+  ~Running() {
+    if (process_ > 0) end();
+  }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  // The number behind the last blank of the first line, which names the port.
+  [[nodiscard]] std::uint16_t port() const {
+    std::string line;
+    eventually([&] {
+      const std::string text = read_text(out_);
+      line = text.substr(0, text.find('\n'));
+      return text.find('\n') != std::string::npos;
+    });
+    return static_cast<std::uint16_t>(std::stoi(line.substr(line.rfind(' ') + 1)));
+  }
+  // Waits for its end, and asks for it if `signal` is not 0; its exit status.
+  int end(int signal = SIGINT) {
+    if (signal != 0) ::kill(process_, signal);
+    int status = 0;
+    ::waitpid(std::exchange(process_, -1), &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  [[nodiscard]] std::string out() const { return read_text(out_); }
+
+ private:
+  const std::string out_;
+  pid_t process_ = -1;
+};
+
+std::string url(std::uint16_t port) {
+  return "rr+tcp://127.0.0.1:" + std::to_string(port) + "/?service=counter";
+}
+
+class Recordings : public testing::Test {
+ protected:
+  Ended run(const std::vector<std::string>& arguments) { return run_robdef(folder_, arguments); }
+  std::string record(const std::function<void(CounterStub&)>& what) {
+    std::string path = folder_ / "tape";
+    rr::testing::Pair pair({}, {.tap = std::make_shared<rr::Recorder>(path)});
+    auto counter = pair.connect();
+    what(*counter);
+    return path;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Recordings, AreInspectedLineByLine) {
+  const Ended ended = run({"inspect", golden + "/counter.rrtape"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(ended.out, read_text(golden + "/counter.txt"));
+}
+
+TEST_F(Recordings, OrAsJson) {
+  const Ended ended = run({"inspect", "--json", golden + "/counter.rrtape"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(ended.out, read_text(golden + "/counter.json_lines"));
+}
+
+TEST_F(Recordings, OrSummedUp) {
+  const Ended ended = run({"inspect", "--summary", golden + "/counter.rrtape"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(ended.out, read_text(golden + "/counter.summary"));
+  const Ended json = run({"inspect", "--summary", "--json", golden + "/counter.rrtape"});
+  EXPECT_THAT(json.out, AllOf(StartsWith("{"), HasSubstr("\"p99_ms\"")));
+}
+
+TEST_F(Recordings, CanBeFiltered) {
+  const std::string tape = golden + "/counter.rrtape";
+  const std::string all = run({"inspect", tape}).out;
+  const auto count = [](const std::string& text) {
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  const std::string sets = run({"inspect", "--entries=PropertySetReq,1114", tape}).out;
+  EXPECT_GE(count(sets), 2);
+  EXPECT_LT(count(sets), count(all));
+  EXPECT_THAT(sets, Not(HasSubstr("FunctionCall")));
+  EXPECT_EQ(run({"inspect", "--connection", "1", tape}).out.find("definition"), std::string::npos);
+  EXPECT_EQ(run({"inspect", "--connection", "77", tape}).out, "");
+  const std::string child = run({"inspect", "--path", "counter.child", tape}).out;
+  EXPECT_THAT(child, HasSubstr("counter.child"));
+  EXPECT_THAT(child, Not(HasSubstr("counter.value")));
+  EXPECT_EQ(run({"inspect", "--path", "coun", tape}).out, "");
+  const Ended wrong = run({"inspect", "--entries=Nothing", tape});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("`Nothing` is no type of an entry"));
+}
+
+TEST_F(Recordings, ThatAreCutOffArePrintedUpToThere) {
+  const std::string bytes = read_text(golden + "/counter.rrtape");
+  folder_.write("cut", bytes.substr(0, bytes.size() - 30));
+  const Ended ended = run({"inspect", "cut"});
+  EXPECT_EQ(ended.status, 1);
+  const std::string all = read_text(golden + "/counter.txt");
+  EXPECT_EQ(ended.out, all.substr(0, all.rfind('\n', all.size() - 2) + 1));
+  EXPECT_THAT(ended.err, ContainsRegex("^robdef: cut: cut off in the record at byte [0-9]+\n$"));
+  folder_.write("other", "no recording at all, but long enough to hold a header");
+  const Ended other = run({"inspect", "other", "nowhere"});
+  EXPECT_EQ(other.status, 1);
+  EXPECT_THAT(other.err, AllOf(HasSubstr("other is no recording"), HasSubstr("nowhere")));
+}
+
+TEST_F(Recordings, AreMadeOfConnectionsThatPassThrough) {
+  rr::testing::Pair pair;
+  Running recording(folder_, {"record", "--connect", "127.0.0.1:" + std::to_string(pair.port),
+                              "--listen", "0", "-o", "tape"});
+  {
+    auto counter = pair.client.connect<CounterStub>(url(recording.port()));
+    EXPECT_EQ(counter->add(1, 2), 3);
+  }
+  EXPECT_EQ(recording.end(), 0);
+  EXPECT_THAT(recording.out(), ContainsRegex("\ntape: [0-9]+ messages\n"));
+  const Ended ended = run({"inspect", "tape"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("FunctionCallReq counter.add"),
+                               HasSubstr("return: double 3"), HasSubstr("closed")));
+}
+
+TEST_F(Recordings, ArePlayedToAServiceAndToAClient) {
+  const std::string path = record([](CounterStub& counter) {
+    counter.set_value(2);
+    counter.add(1, 2);
+  });
+  rr::testing::Pair pair;
+  const std::string address = "127.0.0.1:" + std::to_string(pair.port);
+  const Ended same = run({"replay", "tape", "--connect", address, "--fast"});
+  EXPECT_EQ(same.status, 0) << same.out << same.err;
+  EXPECT_THAT(same.out,
+              ContainsRegex("^messages sent: [0-9]+, entries compared: [0-9]+, differences: 0\n$"));
+  EXPECT_EQ(pair.object->get_value(), 2);
+
+  Running playing(folder_, {"replay", "tape", "--listen", "0"});
+  {
+    auto counter = pair.client.connect<CounterStub>(url(playing.port()));
+    counter->set_value(2);
+    EXPECT_EQ(counter->add(10, 20), 3);  // the recorded answer
+  }
+  EXPECT_EQ(playing.end(0), 1);
+  EXPECT_THAT(playing.out(), AllOf(HasSubstr("FunctionCallReq counter.add"),
+                                   HasSubstr("`a`: double 1 recorded, double 10 came"),
+                                   HasSubstr("differences: 1\n")));
+}
+
+TEST_F(Recordings, WrongUseIsExplained) {
+  EXPECT_THAT(run({"record", "-o", "x", "--listen", "0"}).err, HasSubstr("`--connect` is missing"));
+  EXPECT_THAT(run({"record", "--connect", "a:1", "--listen", "x"}).err, HasSubstr("is no port"));
+  EXPECT_THAT(run({"replay", "x"}).err, HasSubstr("give either `--connect` or `--listen`"));
+  EXPECT_EQ(run({"replay", "x", "--listen", "0", "--connect", "a:1"}).status, 2);
+  EXPECT_EQ(run({"inspect"}).status, 2);
+  const Ended nowhere = run({"record", "--connect", "nothing", "--listen", "0", "-o", "x"});
+  EXPECT_EQ(nowhere.status, 1);
+  EXPECT_THAT(nowhere.err, HasSubstr("`nothing` is not HOST:PORT"));
+}
+
+}  // namespace
+}  // namespace robdef

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "rr/tap.hpp"
+
+/// Reads what a Recorder has written (docs/recording.md).
+namespace rr {
+
+struct RecordedMessage {
+  Direction direction = Direction::to_service;
+  std::uint64_t number = 0;  ///< in the file, from 1
+  std::vector<std::byte> bytes;
+  bool operator==(const RecordedMessage&) const = default;
+};
+
+/// The next message of the connection took the place of message `number`, which was never sent.
+struct MessageReplaced {
+  std::uint64_t number = 0;
+  bool operator==(const MessageReplaced&) const = default;
+};
+
+struct ConnectionClosed {
+  ErrorCode code = ErrorCode::none;
+  std::string reason;
+  bool operator==(const ConnectionClosed&) const = default;
+};
+
+struct DefinitionText {
+  std::string text;
+  bool operator==(const DefinitionText&) const = default;
+};
+
+/// Messages that were left out here, of whatever connection, because the buffer was full.
+struct MessagesLost {
+  std::uint64_t count = 0;
+  std::uint64_t bytes = 0;
+  bool operator==(const MessagesLost&) const = default;
+};
+
+struct Record {
+  std::chrono::nanoseconds time{};  ///< since the recording began, by a steady clock
+  std::uint32_t connection = 0;     ///< 0 for definitions and lost messages
+  std::variant<RecordedMessage, ConnectionOpened, ConnectionAgreed, ConnectionClosed,
+               MessageReplaced, DefinitionText, MessagesLost>
+      what;
+  bool operator==(const Record&) const = default;
+};
+
+/// How a file ends.
+enum class RecordingEnd : std::uint8_t {
+  complete,  ///< the recorder was closed
+  open,      ///< behind a whole record: the recorder was killed, or still writes
+  cut_off,   ///< inside of a record
+  damaged,   ///< a record is not as it was written; what follows is not read
+};
+
+/// A recording, read from front to back. Every length is checked against the file before it is
+/// believed; kinds of records that are unknown are skipped.
+class Recording {
+ public:
+  /// Throws rr::Error: io_error when the file cannot be read, data_type_error when it is no
+  /// recording, or one of a version that is not known.
+  explicit Recording(const std::filesystem::path& path);
+  ~Recording();
+  Recording(Recording&&) noexcept;
+  Recording& operator=(Recording&&) noexcept;
+
+  /// When it began.
+  [[nodiscard]] std::chrono::system_clock::time_point start() const;
+  /// False at the end, of which end() then tells. Throws rr::Error (io_error) when reading fails.
+  bool next(Record& record);
+  [[nodiscard]] RecordingEnd end() const;
+  /// Bytes of the file that were understood.
+  [[nodiscard]] std::uint64_t position() const;
+
+ private:
+  class File;
+  std::unique_ptr<File> file_;
+};
+
+}  // namespace rr

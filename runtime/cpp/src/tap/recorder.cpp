@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <cstring>
+#include <limits>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "rr/tap.hpp"
+#include "runtime/cpp/src/tap/format.hpp"
+
+namespace rr {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Bytes = std::vector<std::byte>;
+
+Error cannot_write(const std::string& path, int error) {
+  return {ErrorCode::io_error, "cannot write " + path + ": " + std::strerror(error)};
+}
+
+std::span<const std::byte> bytes_of_text(std::string_view text) {
+  return std::as_bytes(std::span(text.data(), text.size()));
+}
+
+}  // namespace
+
+Tap::~Tap() = default;
+
+// The file, the buffer in front of it, and the thread between them.
+class Recorder::Tape {
+ public:
+  Tape(const std::filesystem::path& path, RecorderOptions options)
+      : path_(path.string()),
+        options_(options),
+        file_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)),
+        start_(Clock::now()) {
+    if (file_ < 0) throw cannot_write(path_, errno);
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    const auto header = tap::bytes_of(tap::FileHeader{
+        .start = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()});
+    if (const int error = write_all(header)) {
+      ::close(file_);
+      throw cannot_write(path_, error);
+    }
+    thread_ = std::thread([this] { write_on(); });
+  }
+  ~Tape() {
+    close();
+    ::close(file_);
+  }
+  Tape(const Tape&) = delete;
+  Tape& operator=(const Tape&) = delete;
+
+  std::uint32_t next_connection() {
+    const std::lock_guard lock(mutex_);
+    return ++connections_;
+  }
+
+  // A record that is never left out for want of room: there are few, and they are small.
+  void add(tap::Kind kind, std::uint32_t connection, std::span<const std::byte> body) {
+    const std::lock_guard lock(mutex_);
+    if (!is_closed_ && failure_.empty()) append(kind, 0, connection, body);
+  }
+
+  std::uint64_t add_message(std::uint32_t connection, Direction direction,
+                            std::span<const Piece> message) {
+    std::size_t size = 0;
+    for (const Piece& piece : message) size += piece.size;
+    std::unique_lock lock(mutex_);
+    if (is_closed_) return 0;
+    if (!wait_for_room(lock, size)) {
+      ++lost_;
+      ++lost_here_.count;
+      lost_here_.bytes += size;
+      return 0;
+    }
+    note_lost();
+    begin_record(tap::Kind::message, static_cast<std::uint8_t>(direction), connection, size);
+    for (const Piece& piece : message) add_bytes({piece.data, piece.size});
+    return ++messages_;
+  }
+
+  void add_definition(std::string_view text) {
+    const std::lock_guard lock(mutex_);
+    if (is_closed_ || !failure_.empty() || !definitions_.insert(std::string(text)).second) return;
+    append(tap::Kind::definition, 0, 0, bytes_of_text(text));
+  }
+
+  void flush() {
+    std::unique_lock lock(mutex_);
+    const std::uint64_t wanted = told_;
+    has_written_.wait(lock, [&] { return written_ >= wanted || !failure_.empty(); });
+  }
+
+  void close() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (is_closed_) return;
+      note_lost();
+      if (failure_.empty()) append(tap::Kind::end, 0, 0, {});
+      is_closed_ = true;
+    }
+    has_work_.notify_one();
+    has_written_.notify_all();
+    thread_.join();
+  }
+
+  [[nodiscard]] std::uint64_t messages() const {
+    const std::lock_guard lock(mutex_);
+    return messages_;
+  }
+  [[nodiscard]] std::uint64_t lost() const {
+    const std::lock_guard lock(mutex_);
+    return lost_;
+  }
+  [[nodiscard]] std::string failure() const {
+    const std::lock_guard lock(mutex_);
+    return failure_;
+  }
+
+ private:
+  struct Lost {
+    std::uint64_t count = 0;
+    std::uint64_t bytes = 0;
+  };
+
+  [[nodiscard]] std::size_t waiting() const { return filling_.size() + writing_size_; }
+
+  bool wait_for_room(std::unique_lock<std::mutex>& lock, std::size_t size) {
+    if (size > std::numeric_limits<std::uint32_t>::max()) return false;
+    const std::size_t whole = size + tap::RecordHeader::size;
+    const auto has_room = [&] {
+      return waiting() == 0 || waiting() + whole <= options_.buffer_size;
+    };
+    if (options_.when_full == RecorderOptions::WhenFull::wait) {
+      has_written_.wait(lock, [&] { return has_room() || is_closed_ || !failure_.empty(); });
+    }
+    return has_room() && !is_closed_ && failure_.empty();
+  }
+
+  // Under the mutex, as the next two: what was left out stands where it would have been.
+  void note_lost() {
+    if (lost_here_.count == 0 || !failure_.empty()) return;
+    tap::BodyWriter body;
+    body.number(lost_here_.count);
+    body.number(lost_here_.bytes);
+    lost_here_ = {};
+    append(tap::Kind::lost, 0, 0, body.bytes());
+  }
+
+  void append(tap::Kind kind, std::uint8_t direction, std::uint32_t connection,
+              std::span<const std::byte> body) {
+    begin_record(kind, direction, connection, body.size());
+    add_bytes(body);
+  }
+
+  // The header of a record, whose body follows. The sum is left to the thread that writes.
+  void begin_record(tap::Kind kind, std::uint8_t direction, std::uint32_t connection,
+                    std::size_t size) {
+    const auto time = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start_);
+    const auto header =
+        tap::bytes_of(tap::RecordHeader{.body_size = static_cast<std::uint32_t>(size),
+                                        .kind = kind,
+                                        .direction = direction,
+                                        .connection = connection,
+                                        .time = static_cast<std::uint64_t>(time.count())});
+    if (filling_.empty() && is_idle_) has_work_.notify_one();
+    add_bytes(header);
+    told_ += header.size() + size;
+  }
+
+  void add_bytes(std::span<const std::byte> bytes) {
+    filling_.insert(filling_.end(), bytes.begin(), bytes.end());
+  }
+
+  void write_on() {
+    // Signals are for the program's own threads, and a pipe that nobody reads is an error here.
+    sigset_t signals;
+    sigfillset(&signals);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    Bytes writing;
+    std::unique_lock lock(mutex_);
+    while (true) {
+      is_idle_ = true;
+      has_work_.wait(lock, [&] { return !filling_.empty() || is_closed_; });
+      is_idle_ = false;
+      if (filling_.empty()) return;
+      writing.clear();
+      writing.swap(filling_);
+      writing_size_ = writing.size();
+      const bool is_well = failure_.empty();
+      lock.unlock();
+      sum_up(writing);
+      const int error = is_well ? write_all(writing) : 0;
+      shrink(writing);
+      lock.lock();
+      written_ += std::exchange(writing_size_, 0);
+      if (error != 0) failure_ = cannot_write(path_, error).message();
+      has_written_.notify_all();
+    }
+  }
+
+  static void sum_up(std::span<std::byte> records) {
+    while (!records.empty()) {
+      tap::RecordHeader header;
+      tap::read(records, header);
+      const std::span<std::byte> record = records.first(tap::RecordHeader::size + header.body_size);
+      const std::uint32_t sum = tap::record_sum(record);
+      std::memcpy(record.data() + tap::RecordHeader::sum_at, &sum, sizeof sum);
+      records = records.subspan(record.size());
+    }
+  }
+
+  // After one large message the buffer is not to stay so large.
+  void shrink(Bytes& buffer) const {
+    if (buffer.capacity() > options_.buffer_size) Bytes().swap(buffer);
+  }
+
+  // 0, or what errno says.
+  int write_all(std::span<const std::byte> bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t size = ::write(file_, bytes.data(), bytes.size());
+      if (size < 0 && errno == EINTR) continue;
+      if (size < 0) return errno;
+      bytes = bytes.subspan(static_cast<std::size_t>(size));
+    }
+    return 0;
+  }
+
+  const std::string path_;
+  const RecorderOptions options_;
+  const int file_;
+  const Clock::time_point start_;
+
+  mutable std::mutex mutex_;  // guards what follows
+  std::condition_variable has_work_;
+  std::condition_variable has_written_;
+  Bytes filling_;
+  std::size_t writing_size_ = 0;  // of what the thread writes now
+  std::uint64_t told_ = 0;        // bytes, as the next one
+  std::uint64_t written_ = 0;
+  std::uint64_t messages_ = 0;
+  std::uint64_t lost_ = 0;
+  Lost lost_here_;  // since the last record
+  std::uint32_t connections_ = 0;
+  std::set<std::string, std::less<>> definitions_;
+  std::string failure_;
+  bool is_idle_ = false;
+  bool is_closed_ = false;
+
+  std::thread thread_;
+};
+
+Recorder::Recorder(const std::filesystem::path& path, RecorderOptions options)
+    : tape_(std::make_unique<Tape>(path, options)) {}
+Recorder::~Recorder() = default;
+
+std::uint32_t Recorder::opened(const ConnectionOpened& connection) {
+  const std::uint32_t number = tape_->next_connection();
+  tap::BodyWriter body;
+  body.number(static_cast<std::uint8_t>(connection.side));
+  body.text(connection.client_url);
+  body.text(connection.service_url);
+  tape_->add(tap::Kind::opened, number, body.bytes());
+  return number;
+}
+
+void Recorder::agreed(std::uint32_t connection, const ConnectionAgreed& agreement) {
+  tap::BodyWriter body;
+  body.number(static_cast<std::uint8_t>(agreement.version));
+  std::uint8_t flags = 0;
+  if (agreement.combined_connect) flags |= tap::agreed_flag::combined;
+  if (agreement.local_strings) flags |= tap::agreed_flag::local_strings;
+  if (agreement.standard_strings) flags |= tap::agreed_flag::standard_strings;
+  body.number(flags);
+  body.raw(std::as_bytes(std::span(agreement.client_node.bytes)));
+  body.raw(std::as_bytes(std::span(agreement.service_node.bytes)));
+  body.text(agreement.client_name);
+  body.text(agreement.service_name);
+  tape_->add(tap::Kind::agreed, connection, body.bytes());
+}
+
+std::uint64_t Recorder::message(std::uint32_t connection, Direction direction,
+                                std::span<const Piece> message) {
+  return tape_->add_message(connection, direction, message);
+}
+
+void Recorder::replaced(std::uint32_t connection, std::uint64_t message) {
+  if (message == 0) return;
+  tap::BodyWriter body;
+  body.number(message);
+  tape_->add(tap::Kind::replaced, connection, body.bytes());
+}
+
+void Recorder::closed(std::uint32_t connection, ErrorCode code, std::string_view reason) {
+  tap::BodyWriter body;
+  body.number(static_cast<std::uint16_t>(code));
+  body.text(reason);
+  tape_->add(tap::Kind::closed, connection, body.bytes());
+}
+
+void Recorder::definition(std::string_view text) { tape_->add_definition(text); }
+
+void Recorder::flush() { tape_->flush(); }
+void Recorder::close() { tape_->close(); }
+std::uint64_t Recorder::messages() const { return tape_->messages(); }
+std::uint64_t Recorder::lost() const { return tape_->lost(); }
+std::string Recorder::failure() const { return tape_->failure(); }
+
+}  // namespace rr
