@@ -8,6 +8,7 @@
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/client/session.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
+#include "runtime/cpp/src/endpoint/requests.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
 
 namespace rr {
@@ -127,7 +128,7 @@ void Session::send_numbered(const Outgoing& request, Writer& writer, const Numbe
     header.receiver_name = remote_name_;
   }
   writer.message(header, 1);
-  connection_->send(writer, now);
+  connection_->send(writer, now, endpoint::priority_of(request.type, request.is_urgent));
 }
 
 void Session::send_newest(Writer& writer, const EntryHeader& header, std::uint32_t element_count,
