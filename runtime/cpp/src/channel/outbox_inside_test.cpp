@@ -103,8 +103,9 @@ class UrgentTest : public OutboxTest {
       Allocation memory = allocate(filling);
       std::memset(memory.bytes, 'x', filling);
       writer.prepend_array({memory.bytes, filling}, memory.owner);
+      writer.element("f", ElementType::uint8, {}, static_cast<std::uint32_t>(filling), 0);
     }
-    writer.entry({.type = EntryType::event_req, .member = name}, 0, 0);
+    writer.entry({.type = EntryType::event_req, .member = name}, filling == 0 ? 0 : 1, 0);
     writer.message({}, 1);
   }
   void add_message(std::string_view name, std::size_t filling = 0) {
