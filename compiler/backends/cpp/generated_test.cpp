@@ -174,14 +174,15 @@ TEST(Generated, ExceptionsAreThrownByTheirTable) {
 
 TEST(Generated, MemberTablesSayWhatTheDefinitionSays) {
   const rr::ObjectType& board = experimental::properties::rr_object_Board;
-  EXPECT_EQ(board.members.size(), 18U);
-  const rr::Member& shared = board.members.back();
+  EXPECT_EQ(board.members.size(), 21U);
+  const rr::Member& shared = board.members[17];
   EXPECT_EQ(shared.name, "shared");
   EXPECT_EQ(shared.kind, rr::MemberKind::property);
   EXPECT_EQ(shared.access, rr::nolock | rr::urgent);
   EXPECT_EQ(shared.type, &rr::type_of<double>);
   EXPECT_EQ(board.members[15].access, rr::readonly);
   EXPECT_EQ(board.members[16].access, rr::writeonly);
+  EXPECT_EQ(board.members[20].access, rr::readonly | rr::perclient);
 
   const rr::Member& depth = experimental::big_arrays::rr_object_Store.members[3];
   ASSERT_EQ(depth.parameters.size(), 1U);
@@ -257,6 +258,8 @@ TEST(Generated, DefaultClassesStoreProperties) {
   EXPECT_EQ(board.get_settings()->at("depth"), rr::VarValue(3.0));
   EXPECT_EQ(board.get_serial_number(), 0);
   EXPECT_FALSE(board.get_names().has_value());
+  board.set_page(3);  // outside of a request: what clients start with
+  EXPECT_EQ(board.get_page(), 3);
   EXPECT_EQ(experimental::big_arrays::StoreDefault().get_exact().size(), 100000U);
 }
 

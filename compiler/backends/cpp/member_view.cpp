@@ -194,9 +194,9 @@ class MemberMaker {
 
   void make_stored(MemberView& view, const CppType& type) {
     const std::string initial = type.made.empty() ? "" : "{" + type.made + "}";
-    view.stored =
-        variable({.text = "::rr::Stored<" + type.text + ">", .descriptor = {}, .initial = initial},
-                 stored_name(view), in_class);
+    const std::string stored = view.is_perclient ? "::rr::StoredPerClient<" : "::rr::Stored<";
+    view.stored = variable({.text = stored + type.text + ">", .descriptor = {}, .initial = initial},
+                           stored_name(view), in_class);
   }
 
   void make_item(MemberView& view, const Member& member) {

@@ -57,9 +57,13 @@ class ServiceContext {
   [[nodiscard]] virtual std::map<std::string, VarValue> attributes() const = 0;
   virtual void set_attributes(std::map<std::string, VarValue> attributes) = 0;
   /// Forgets the object at a path and those below it, and tells all clients; a later request to the
-  /// path finds the object anew. Throws rr::Error: service_error for a path where no object is
+  /// path finds the object anew. Objects of clients' own (per_client()) are released for all of
+  /// them. Throws rr::Error: service_error for a path where no object is
   /// known, invalid_operation for the root.
   virtual void release_path(const std::string& path) = 0;
+  /// The same for one client and an object of its own (per_client()), or one below such an object:
+  /// nobody else is concerned. Throws rr::Error: service_error when this client has none there.
+  virtual void release_path(const std::string& path, std::uint32_t client) = 0;
   [[nodiscard]] virtual std::vector<ServiceClient> clients() const = 0;
   /// Ends the session of a client, if it has one.
   virtual void disconnect(std::uint32_t endpoint) = 0;

@@ -119,6 +119,10 @@ class Skeleton {
   /// Called by the service when the object is first reached, before any member is: `path` is where.
   /// An object may be reached by several paths. The context lives until the service is closed.
   virtual void rr_attached(ServiceContext& context, const std::string& path);
+  /// Called when the service has forgotten the object at a path: that was released, the service is
+  /// closed, or the object was a client's own (per_client()) and the client has gone. On a thread
+  /// of the node; a client's own object is told behind the last request of that client.
+  virtual void rr_released(const std::string& /*path*/) {}
 
   // Implemented by generated code. `member` counts in rr_object_type().members.
   virtual void rr_dispatch(std::size_t member, Request& request) = 0;
@@ -136,6 +140,9 @@ class Skeleton {
   virtual void rr_monitor_exit() {}
 
   struct Places;  // internal: where the object is attached
+
+  /// What per_client() does.
+  void rr_set_per_client() const;
 
  protected:
   /// Sends an event to every client of each service that offers this object. Throws rr::Error for
@@ -178,5 +185,22 @@ class Skeleton {
 
   const std::shared_ptr<Places> rr_places_;
 };
+
+/// Makes what an objref gives an object of the asking client's own: every client that follows the
+/// objref is given one for itself, so the function is called once for each of them.
+///
+///   std::shared_ptr<SessionSkeleton> get_session() override {
+///     return rr::per_client(std::make_shared<MySession>(rr::ServiceContext::current_client()));
+///   }
+///
+/// The path is the same for all clients, and none of them can tell (an extension; 08, S76).
+/// Everything below the object is that client's own, too. Events go to the client alone; locks and
+/// monitors of the object concern nobody else. It is released when the client leaves, or by
+/// ServiceContext::release_path().
+template <class T>
+std::shared_ptr<T> per_client(std::shared_ptr<T> object) {
+  if (object) object->rr_set_per_client();
+  return object;
+}
 
 }  // namespace rr

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -30,6 +32,63 @@ class Stored {
  private:
   mutable std::mutex mutex_;
   T value_{};
+};
+
+/// What is kept for clients. Forgets what it keeps for one when that leaves.
+class ClientValues {
+ public:
+  virtual ~ClientValues() = default;
+  /// A session that was current has ended. On a thread of the node.
+  virtual void forget(const void* session) = 0;
+
+  /// The session whose request this thread handles; null outside of handlers.
+  static const void* current_session();
+  /// Has forget() called for the current session when that ends. False when it has ended.
+  static bool keep_for_current(const std::shared_ptr<ClientValues>& values);
+};
+
+/// The values of a `perclient` property. In a handler this is the value of the client whose request
+/// it is; what a client has set is forgotten when it leaves. Outside of handlers it is the initial
+/// value, which all clients get that have set none. May be read and set from any threads at once.
+template <class T>
+class StoredPerClient {
+ public:
+  StoredPerClient() : StoredPerClient(T{}) {}
+  explicit StoredPerClient(T initial) : values_(std::make_shared<Values>(std::move(initial))) {}
+
+  [[nodiscard]] T get() const {
+    const void* const session = ClientValues::current_session();
+    const std::lock_guard lock(values_->mutex);
+    const auto found = values_->own.find(session);
+    return found != values_->own.end() ? found->second : values_->initial;
+  }
+  void set(T value) {
+    const void* const session = ClientValues::current_session();
+    const std::lock_guard lock(values_->mutex);
+    if (session == nullptr) {
+      std::swap(values_->initial, value);
+    } else if (const auto found = values_->own.find(session); found != values_->own.end()) {
+      std::swap(found->second, value);
+    } else if (ClientValues::keep_for_current(values_)) {
+      values_->own.emplace(session, std::move(value));
+    }
+  }
+
+ private:
+  struct Values final : ClientValues {
+    explicit Values(T first) : initial(std::move(first)) {}
+    void forget(const void* session) override {
+      typename std::map<const void*, T>::node_type forgotten;  // goes when the lock has
+      const std::lock_guard lock(mutex);
+      forgotten = own.extract(session);
+    }
+
+    std::mutex mutex;
+    T initial;
+    std::map<const void*, T> own;
+  };
+
+  const std::shared_ptr<Values> values_;
 };
 
 /// Throws the error of a function that a Default class does not have (not_implemented_error).

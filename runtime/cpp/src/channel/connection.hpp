@@ -62,6 +62,13 @@ struct Newest {
   std::int64_t time = 0;     ///< grows
 };
 
+/// What a message may overtake of those that wait to be sent, which none does before it waits.
+enum class Priority : std::uint8_t {
+  usual,   ///< nothing
+  urgent,  ///< usual ones, but for one of which a part has been sent
+  fixed,   ///< nothing, and nothing overtakes it or what waits before it
+};
+
 /// Carries messages to and from one other node. Any thread may send.
 ///
 /// Reading has no thread of its own: a thread that waits for an answer reads the connection itself
@@ -96,7 +103,8 @@ class Connection {
   /// Sends a finished message now, or as soon as the other side takes it; never blocks. The writer
   /// can be used again at once. Throws rr::Error: protocol_error for one that is too large,
   /// connection_error when the connection is gone. `now` need not be exact.
-  virtual void send(Writer& message, Time now) = 0;
+  virtual void send(Writer& message, Time now, Priority priority) = 0;
+  void send(Writer& message, Time now) { send(message, now, Priority::usual); }
   void send(Writer& message) { send(message, coarse_now()); }
   /// The same for a message of which only the newest counts.
   virtual void send_newest(Writer& message, const Newest& newest, Time now) = 0;
@@ -112,7 +120,8 @@ class Connection {
   virtual bool wait_sent(std::size_t bytes, Time deadline) = 0;
   /// The same for an answer, from Receiver::handle(): it leaves together with other answers to what
   /// one receive has brought. Throws only when it is too large.
-  virtual void reply(Writer& message) = 0;
+  virtual void reply(Writer& message, Priority priority) = 0;
+  void reply(Writer& message) { reply(message, Priority::usual); }
 
   /// Makes the calling thread the reader if there is none; to be called before the request is sent.
   virtual void claim(Waiter& waiter) = 0;

@@ -8,7 +8,11 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
+#include <limits>
 #include <utility>
+
+#include "rr/reader.hpp"
 
 namespace rr::channel {
 namespace {
@@ -17,6 +21,8 @@ namespace {
 constexpr std::size_t smallest_segment = 4096;
 constexpr std::size_t largest_segment = 64 * 1024;
 constexpr std::size_t pieces_at_once = 64;
+// Messages were checked before they came here.
+constexpr Limits any_size{.message_size = std::numeric_limits<std::uint32_t>::max()};
 
 iovec as_iovec(const std::byte* data, std::size_t size) {
   return {const_cast<std::byte*>(data), size};
@@ -37,8 +43,8 @@ std::ptrdiff_t send_pieces(int socket, std::span<iovec> pieces) {
 
 }  // namespace
 
-void Outbox::add(std::span<const std::byte> bytes) {
-  if (bytes.empty()) return;
+// A part of a message whose next one begins `lead` bytes on, or, for none, whole messages.
+void Outbox::append(std::span<const std::byte> bytes, std::size_t lead) {
   const std::size_t waiting = std::exchange(size_, size_ + bytes.size());
   if (!empty() && !segments_.back().is_alone && segments_.back().room >= bytes.size()) {
     Segment& last = segments_.back();
@@ -49,30 +55,109 @@ void Outbox::add(std::span<const std::byte> bytes) {
   }
   const std::size_t capacity =
       std::max(std::clamp(waiting, smallest_segment, largest_segment), bytes.size());
+  segments_.push_back(copied(bytes, capacity, lead));
+}
+
+Outbox::Segment Outbox::copied(std::span<const std::byte> bytes, std::size_t capacity,
+                               std::size_t lead) {
   Allocation memory = allocate(capacity);
   std::memcpy(memory.bytes, bytes.data(), bytes.size());
-  segments_.push_back(
-      {std::move(memory.owner), memory.bytes, bytes.size(), capacity - bytes.size()});
+  Segment segment;
+  segment.owner = std::move(memory.owner);
+  segment.data = memory.bytes;
+  segment.size = bytes.size();
+  segment.room = capacity - bytes.size();
+  segment.lead = lead;
+  return segment;
+}
+
+Outbox::Segment Outbox::kept(MemoryRef owner, std::span<const std::byte> bytes, std::size_t lead) {
+  Segment segment;
+  segment.owner = std::move(owner);
+  segment.data = bytes.data();
+  segment.size = bytes.size();
+  segment.lead = lead;
+  return segment;
 }
 
 void Outbox::add(Allocation memory, std::size_t size) {
-  segments_.push_back({std::move(memory.owner), memory.bytes, size, 0});
+  segments_.push_back(kept(std::move(memory.owner), {memory.bytes, size}, 0));
   size_ += size;
 }
 
 void Outbox::add(Writer& message, std::size_t sent) {
+  std::size_t left = message.size();  // of the message, from the piece on
   for (const Piece& piece : message.pieces()) {
     const std::size_t skipped = std::min(sent, piece.size);
     sent -= skipped;
+    left -= skipped;
     const std::span rest(piece.data + skipped, piece.size - skipped);
     if (rest.empty()) continue;
+    const std::size_t lead = left == message.size() ? 0 : left;
+    left -= rest.size();
     if (MemoryRef owner = message.owner(piece)) {
-      segments_.push_back({std::move(owner), rest.data(), rest.size(), 0});
+      segments_.push_back(kept(std::move(owner), rest, lead));
       size_ += rest.size();
     } else {
-      add(rest);
+      append(rest, lead);
     }
   }
+}
+
+// The position is that of a message, so no segment that may be replaced is cut.
+void Outbox::add_urgent(Writer& message) {
+  const std::size_t offset = std::max(fixed_, rest_of_begun());
+  const std::size_t place = split(offset);
+  std::vector<Segment> added;
+  std::size_t left = message.size();
+  for (const Piece& piece : message.pieces()) {
+    const std::size_t lead = left == message.size() ? 0 : left;
+    const std::span bytes(piece.data, piece.size);
+    MemoryRef owner = message.owner(piece);
+    added.push_back(owner ? kept(std::move(owner), bytes, lead) : copied(bytes, piece.size, lead));
+    left -= piece.size;
+  }
+  for (Replaceable& item : replaceable_) {
+    if (item.segment >= place) item.segment += added.size();
+  }
+  segments_.insert(segments_.begin() + static_cast<std::ptrdiff_t>(place),
+                   std::make_move_iterator(added.begin()), std::make_move_iterator(added.end()));
+  size_ += message.size();
+  fixed_ = offset + message.size();
+}
+
+// How many of the bytes that wait belong to a message of which others have been sent. Found by
+// reading the sizes of the messages in the first segment, of which nothing is gone yet.
+std::size_t Outbox::rest_of_begun() const {
+  if (empty()) return 0;
+  const Segment& segment = segments_[first_];
+  const std::span all(segment.data - segment.sent, segment.sent + segment.size);
+  std::size_t at = segment.lead;
+  while (at < segment.sent) {
+    const std::size_t size = message_size(all.subspan(at), any_size);
+    if (size == 0) return size_;  // not what we know: nothing is overtaken
+    at += size;
+  }
+  return at - segment.sent;
+}
+
+// Makes a segment begin so many bytes on in what waits; returns its place.
+std::size_t Outbox::split(std::size_t offset) {
+  std::size_t place = first_;
+  while (place < segments_.size() && offset >= segments_[place].size) {
+    offset -= segments_[place++].size;
+  }
+  if (offset == 0) return place;
+  Segment& first = segments_[place];
+  Segment second = kept(first.owner, {first.data + offset, first.size - offset}, 0);
+  second.room = std::exchange(first.room, 0);
+  first.size = offset;
+  ++place;
+  for (Replaceable& item : replaceable_) {
+    if (item.segment >= place) ++item.segment;
+  }
+  segments_.insert(segments_.begin() + static_cast<std::ptrdiff_t>(place), std::move(second));
+  return place;
 }
 
 Outbox::Queued Outbox::add_newest(Writer& message, std::uint64_t stream, std::int64_t time) {
@@ -85,8 +170,18 @@ Outbox::Queued Outbox::add_newest(Writer& message, std::uint64_t stream, std::in
   }
   if (time <= old->time) return {};
   old->time = time;
+  const bool is_fixed = fixed_ != 0 && offset_of(old->segment) < fixed_;
+  if (is_fixed) fixed_ -= segments_[old->segment].size;
   fill(segments_[old->segment], message);
+  if (is_fixed) fixed_ += message.size();
   return {&old->mark, true};
+}
+
+// Bytes that wait before a segment.
+std::size_t Outbox::offset_of(std::size_t segment) const {
+  std::size_t offset = 0;
+  for (std::size_t i = first_; i < segment; ++i) offset += segments_[i].size;
+  return offset;
 }
 
 // What waits of a stream; null when there is nothing that may be replaced. Forgets on the way what
@@ -166,10 +261,12 @@ std::ptrdiff_t Outbox::send(int socket, std::span<const Piece> more) {
 
 void Outbox::drop(std::size_t bytes) {
   size_ -= bytes;
+  fixed_ -= std::min(fixed_, bytes);
   while (bytes != 0) {
     Segment& segment = segments_[first_];
     const std::size_t dropped = std::min(bytes, segment.size);
     segment.data += dropped;
+    segment.sent += dropped;
     segment.size -= dropped;
     bytes -= dropped;
     segment.is_begun = true;
@@ -199,6 +296,7 @@ void Outbox::clear() {
   std::vector<Replaceable>().swap(replaceable_);
   first_ = 0;
   size_ = 0;
+  fixed_ = 0;
 }
 
 }  // namespace rr::channel

@@ -64,12 +64,13 @@ class StreamConnection final : public Connection,
 
   [[nodiscard]] std::string local_url() const override;
   void check_size(const Writer& message) const override;
+  using Connection::reply;
   using Connection::send;
-  void send(Writer& message, Time now) override;
+  void send(Writer& message, Time now, Priority priority) override;
   void send_newest(Writer& message, const Newest& newest, Time now) override;
   void stream(Writer& message) override;
   bool wait_sent(std::size_t bytes, Time deadline) override;
-  void reply(Writer& message) override;
+  void reply(Writer& message, Priority priority) override;
   void claim(Waiter& waiter) override;
   void wait(Waiter& waiter, Time deadline, Time now) override;
   void resign(Waiter& waiter) override;
@@ -113,11 +114,19 @@ class StreamConnection final : public Connection,
   };
 
   // Sending (stream_sending.cpp, stream_streaming.cpp)
-  void send(Writer& message, Time now, const Newest* newest);
-  void send_or_queue(Writer& message, Time now, const Newest* newest);
+  // What is known of a message that is to be sent.
+  struct Sending {
+    Time now;
+    Priority priority = Priority::usual;
+    const Newest* newest = nullptr;
+  };
+  void send(Writer& message, const Sending& how);
+  void send_or_queue(Writer& message, const Sending& how);
   [[nodiscard]] bool has_strings() const;
   [[nodiscard]] std::vector<std::byte> with_strings(Writer& message) const;
-  bool send_under_lock(Writer& message, Time now, const Newest* newest, bool& has_rest);
+  bool send_under_lock(Writer& message, const Sending& how, bool& has_rest);
+  void queue_rest(Writer& message, std::size_t sent, const Sending& how,
+                  std::optional<std::uint64_t> told);
   bool add_to_stream(Writer& message, bool& is_first);
   void stream_or_queue(Writer& message);
   void take_streamed();

@@ -2,6 +2,8 @@
 // How messages leave a connection.
 #include <sys/epoll.h>
 
+#include <optional>
+
 #include "rr/error.hpp"
 #include "rr/reader.hpp"
 #include "runtime/cpp/src/channel/stream_connection.hpp"
@@ -22,26 +24,28 @@ void StreamConnection::check_size(const Writer& message) const {
   }
 }
 
-void StreamConnection::send(Writer& message, Time now) { send(message, now, nullptr); }
-
-void StreamConnection::send_newest(Writer& message, const Newest& newest, Time now) {
-  send(message, now, &newest);
+void StreamConnection::send(Writer& message, Time now, Priority priority) {
+  send(message, {.now = now, .priority = priority});
 }
 
-void StreamConnection::send(Writer& message, Time now, const Newest* newest) {
+void StreamConnection::send_newest(Writer& message, const Newest& newest, Time now) {
+  send(message, {.now = now, .newest = &newest});
+}
+
+void StreamConnection::send(Writer& message, const Sending& how) {
   check_size(message);
   if (message.version() == MessageVersion::v4 && has_strings()) {
     const std::vector<std::byte> coded = with_strings(message);
     Writer writer;
     writer.prepend_bytes(coded.data(), coded.size());
-    send_or_queue(writer, now, newest);
+    send_or_queue(writer, how);
   } else {
-    send_or_queue(message, now, newest);
+    send_or_queue(message, how);
   }
 }
 
 // Sends what was held back and the message, and queues what the socket does not take.
-void StreamConnection::send_or_queue(Writer& message, Time now, const Newest* newest) {
+void StreamConnection::send_or_queue(Writer& message, const Sending& how) {
   if (is_closing_.load(std::memory_order_relaxed)) {
     throw Error(ErrorCode::connection_error, "the connection is closed");
   }
@@ -52,7 +56,7 @@ void StreamConnection::send_or_queue(Writer& message, Time now, const Newest* ne
   {
     const std::lock_guard lock(sending_);
     had_rest = has_unsent_.load(std::memory_order_relaxed);
-    is_broken = !send_under_lock(message, now, newest, has_rest);
+    is_broken = !send_under_lock(message, how, has_rest);
   }
   // A large array is not to be kept until this thread sends again.
   if (size >= Writer::attach_threshold) message.reset(message.version());
@@ -65,37 +69,46 @@ void StreamConnection::send_or_queue(Writer& message, Time now, const Newest* ne
 }
 
 // Under sending_. False when the connection is broken or far too much waits.
-bool StreamConnection::send_under_lock(Writer& message, Time now, const Newest* newest,
-                                       bool& has_rest) {
+bool StreamConnection::send_under_lock(Writer& message, const Sending& how, bool& has_rest) {
   const bool is_unsent = has_unsent_.load(std::memory_order_relaxed);
-  const bool may_replace = is_unsent && newest != nullptr;
-  std::uint64_t told = 0;
+  const bool may_replace = is_unsent && how.newest != nullptr;
+  std::optional<std::uint64_t> told;
   if (tap_ == nullptr || may_replace) {
     take_streamed();
   } else {
     told = take_streamed_and_tell(message);
   }
+  const bool overtakes = how.priority == Priority::urgent && !outbox_.empty();
+  if (overtakes) outbox_.add_urgent(message);
+  const std::span<const Piece> rest = overtakes ? std::span<const Piece>() : message.pieces();
   std::ptrdiff_t sent = 0;
-  if (!is_unsent) {
-    sent = outbox_.send(socket_.get(), message.pieces());
-  }
-  last_sent_.store(now, std::memory_order_relaxed);
+  if (!is_unsent) sent = outbox_.send(socket_.get(), rest);
+  last_sent_.store(how.now, std::memory_order_relaxed);
   bool is_broken = sent < 0;
-  has_rest = !is_broken && sent != static_cast<std::ptrdiff_t>(message.size());
+  const bool is_left = !overtakes && sent != static_cast<std::ptrdiff_t>(message.size());
+  if (is_left && !is_broken) queue_rest(message, static_cast<std::size_t>(sent), how, told);
+  has_rest = !is_broken && (is_left || (overtakes && !outbox_.empty()));
   if (has_rest) {
-    if (may_replace && tap_ != nullptr) {
-      queue_newest_and_tell(message, *newest);
-    } else if (newest != nullptr && sent == 0) {
-      const Outbox::Queued queued = outbox_.add_newest(message, newest->stream, newest->time);
-      if (queued.mark != nullptr) *queued.mark = told;
-    } else {
-      outbox_.add(message, static_cast<std::size_t>(sent));
-    }
     is_broken = outbox_.size() > options_->send_queue_limit;
     has_unsent_ = true;
   }
   note_waiting();
   return !is_broken;
+}
+
+// Under sending_.
+void StreamConnection::queue_rest(Writer& message, std::size_t sent, const Sending& how,
+                                  std::optional<std::uint64_t> told) {
+  if (how.newest != nullptr && tap_ != nullptr && !told) {
+    queue_newest_and_tell(message, *how.newest);
+  } else if (how.newest != nullptr && sent == 0) {
+    const Outbox::Queued queued =
+        outbox_.add_newest(message, how.newest->stream, how.newest->time);
+    if (queued.mark != nullptr) *queued.mark = told.value_or(0);
+  } else {
+    outbox_.add(message, sent);
+  }
+  if (how.priority != Priority::usual) outbox_.fix_order();
 }
 
 void StreamConnection::fail_sending() {
@@ -113,7 +126,7 @@ std::vector<std::byte> StreamConnection::with_strings(Writer& message) const {
   return apply_string_table(message.copy(), has_local_strings_, has_standard_strings_);
 }
 
-void StreamConnection::reply(Writer& message) {
+void StreamConnection::reply(Writer& message, Priority priority) {
   try {
     if (holds_back_answers_ && message.size() < Writer::attach_threshold && !has_strings()) {
       check_size(message);
@@ -123,11 +136,16 @@ void StreamConnection::reply(Writer& message) {
       } else {
         take_streamed_and_tell(message);
       }
-      outbox_.add(message, 0);
+      if (priority == Priority::urgent) {
+        outbox_.add_urgent(message);
+      } else {
+        outbox_.add(message, 0);
+        if (priority == Priority::fixed) outbox_.fix_order();
+      }
       note_waiting();
     } else {
       // The request came a moment ago.
-      send(message, last_received_.load(std::memory_order_relaxed));
+      send(message, last_received_.load(std::memory_order_relaxed), priority);
     }
   } catch (const Error& error) {
     // When the client is gone nobody is left that could be told.

@@ -106,7 +106,7 @@ void StreamConnection::stream_or_queue(Writer& message) {
   {
     const std::lock_guard lock(sending_);
     had_rest = has_unsent_;
-    is_broken = !send_under_lock(message, coarse_now(), nullptr, has_rest);
+    is_broken = !send_under_lock(message, {.now = coarse_now()}, has_rest);
   }
   if (size >= Writer::attach_threshold) message.reset(message.version());
   if (is_broken) {

@@ -145,10 +145,12 @@ std::shared_ptr<client::CallbackSlot> Session::find_callback(const Entry& entry)
 void Session::answer_callback(const Message& message, const Entry& entry, const MemoryRef& owner) {
   std::shared_ptr<const void> result;
   const Member* member = nullptr;
+  bool is_urgent = false;
   std::exception_ptr failure;
   try {
     const auto slot = find_callback(entry);
     member = slot->member;
+    is_urgent = (member->access & urgent) != 0;
     const Arguments::Source source{message, entry, owner, *types()};
     result = slot->call(Arguments(source));
     if (member->type != nullptr && !result) {
@@ -158,7 +160,7 @@ void Session::answer_callback(const Message& message, const Entry& entry, const 
     failure = std::current_exception();
   }
   if (failure) {
-    send_callback_error(message, entry, endpoint::describe(failure));
+    send_callback_error(message, entry, endpoint::describe(failure), is_urgent);
     return;
   }
   try {
@@ -169,18 +171,19 @@ void Session::answer_callback(const Message& message, const Entry& entry, const 
     type.write(writer, "return", member->type != nullptr ? result.get() : &nothing);
     if (writer.failed()) throw endpoint::latched(writer);
     writer.entry(endpoint::answer_header(entry), 1, 0);
-    send_answer(writer, message, entry, false);
+    send_answer(writer, message, entry, false, is_urgent);
   } catch (const Error& error) {
-    if (!connection_->is_closed()) send_callback_error(message, entry, error);
+    if (!connection_->is_closed()) send_callback_error(message, entry, error, is_urgent);
   }
 }
 
-void Session::send_callback_error(const Message& message, const Entry& entry, const Error& error) {
+void Session::send_callback_error(const Message& message, const Entry& entry, const Error& error,
+                                  bool is_urgent) {
   Writer& writer = channel::thread_writer();
   writer.reset(connection_->version());
   endpoint::write_error_answer(writer, entry, error);
   try {
-    send_answer(writer, message, entry, false);
+    send_answer(writer, message, entry, false, is_urgent);
   } catch (const Error& why) {
     if (why.code() != ErrorCode::connection_error) throw;  // else nobody is left to be told
   }

@@ -25,7 +25,8 @@ class StepRequest {
                  .path = path,
                  .member = member.name,
                  .parameters = std::span(parameters_).first(parameter != nullptr ? 2 : 1),
-                 .values = values_.data()} {}
+                 .values = values_.data(),
+                 .is_urgent = (member.access & urgent) != 0} {}
   StepRequest(const StepRequest&) = delete;
   StepRequest& operator=(const StepRequest&) = delete;
 
@@ -36,6 +37,16 @@ class StepRequest {
   const std::array<const void*, 2> values_;
   const Outgoing request_;
 };
+
+// The request that makes a generator.
+Outgoing call_request(const std::string& path, const Member& member, const void* const* arguments) {
+  return {.type = EntryType::function_call_req,
+          .path = path,
+          .member = member.name,
+          .parameters = member.parameters,
+          .values = arguments,
+          .is_urgent = (member.access & urgent) != 0};
+}
 
 // The request that ends a generator: an error that a request carries.
 class EndRequest {
@@ -50,7 +61,8 @@ class EndRequest {
                  .member = member.name,
                  .parameters = parameters,
                  .values = values_.data(),
-                 .error = code_} {}
+                 .error = code_,
+                 .is_urgent = (member.access & urgent) != 0} {}
   EndRequest(const EndRequest&) = delete;
   EndRequest& operator=(const EndRequest&) = delete;
 
@@ -216,9 +228,8 @@ std::shared_ptr<GeneratorState> Stub::rr_open_generator(const Member& member,
     throw Error(ErrorCode::invalid_operation, "the stub is not attached to a session");
   }
   std::int32_t index = 0;
-  rr_session_->call(
-      {EntryType::function_call_req, rr_path_, member.name, member.parameters, arguments},
-      {"index", &type_of<std::int32_t>, &index}, rr_timeout_);
+  rr_session_->call(call_request(rr_path_, member, arguments),
+                    {"index", &type_of<std::int32_t>, &index}, rr_timeout_);
   return std::make_shared<GeneratorState>(rr_session_, rr_path_, member, rr_timeout_, index);
 }
 
@@ -230,7 +241,7 @@ void Stub::rr_start_generator(const Member& member, const void* const* arguments
   std::shared_ptr<Completion> shared = std::move(completion);
   auto* const place = static_cast<std::shared_ptr<GeneratorState>*>(shared->result());
   rr_session_->start(
-      {EntryType::function_call_req, rr_path_, member.name, member.parameters, arguments},
+      call_request(rr_path_, member, arguments),
       [place, session = rr_session_, path = rr_path_, function = &member, timeout = rr_timeout_](
           Decoder& decoder, const Message&, const Entry& entry) {
         std::int32_t index = 0;

@@ -45,6 +45,7 @@ struct Outgoing {
   std::span<const Parameter> parameters{};
   const void* const* values = nullptr;
   ErrorCode error = ErrorCode::none;  ///< tells the requests of a generator apart
+  bool is_urgent = false;
 };
 
 /// What is read of its answer: one element, or nothing when the type is null.
@@ -203,8 +204,10 @@ class Session final : public channel::Receiver,
   void answer_request(const Message& message, const Entry& entry);
   std::shared_ptr<client::CallbackSlot> find_callback(const Entry& entry);
   void answer_callback(const Message& message, const Entry& entry, const MemoryRef& owner);
-  void send_callback_error(const Message& message, const Entry& entry, const Error& error);
-  void send_answer(Writer& writer, const Message& message, const Entry& entry, bool is_reply);
+  void send_callback_error(const Message& message, const Entry& entry, const Error& error,
+                           bool is_urgent);
+  void send_answer(Writer& writer, const Message& message, const Entry& entry, bool is_reply,
+                   bool is_urgent = false);
   void give_up(const Error& why);
 
   const std::shared_ptr<endpoint::Core> core_;

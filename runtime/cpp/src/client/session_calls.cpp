@@ -8,6 +8,7 @@
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/client/session.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
+#include "runtime/cpp/src/endpoint/requests.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
 
 namespace rr {
@@ -49,7 +50,7 @@ void Session::perform(const Outgoing& request, endpoint::BlockingCall& call, Mil
   Writer& writer = write(request);
   call.perform(terms, deadline, now, [&](endpoint::Pending& open) {
     number(request, writer, draw(&open, true));
-    connection_->send(writer, now);
+    connection_->send(writer, now, endpoint::priority_of(request.type, request.is_urgent));
   });
 }
 
@@ -74,14 +75,20 @@ void Session::start(const Outgoing& request, AnswerReader read, Milliseconds tim
       timeout_for(timeout, terms), terms, [&]() -> Writer& { return write(request); },
       [&](endpoint::Pending& open, Writer& writer) {
         number(request, writer, draw(&open, true));
-        connection_->stream(writer);  // it may be one of many
+        const auto priority = endpoint::priority_of(request.type, request.is_urgent);
+        if (priority == channel::Priority::usual) {
+          connection_->stream(writer);  // it may be one of many
+        } else {
+          connection_->send(writer, channel::coarse_now(), priority);
+        }
       });
 }
 
 void Session::send(const Outgoing& request, bool has_number) {
   Writer& writer = write(request);
   number(request, writer, draw(nullptr, has_number));
-  connection_->send(writer);
+  connection_->send(writer, channel::coarse_now(),
+                    endpoint::priority_of(request.type, request.is_urgent));
 }
 
 namespace {

@@ -268,8 +268,8 @@ void Session::answer_request(const Message& message, const Entry& entry) {
 }
 
 // Ends the message of an answer with its header. As a reply only with the dispatch turn.
-void Session::send_answer(Writer& writer, const Message& message, const Entry& entry,
-                          bool is_reply) {
+void Session::send_answer(Writer& writer, const Message& message, const Entry& entry, bool is_reply,
+                          bool is_urgent) {
   MessageHeader header{.sender_node = core_->options().id,
                        .receiver_node = message.sender_node,
                        .sender_endpoint = message.receiver_endpoint,
@@ -284,10 +284,11 @@ void Session::send_answer(Writer& writer, const Message& message, const Entry& e
     header.message_id = next_message_id_++;
   }
   writer.message(header, 1);
+  const channel::Priority priority = endpoint::priority_of(entry.type, is_urgent);
   if (is_reply) {
-    connection_->reply(writer);
+    connection_->reply(writer, priority);
   } else {
-    connection_->send(writer);
+    connection_->send(writer, channel::coarse_now(), priority);
   }
 }
 

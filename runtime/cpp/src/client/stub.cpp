@@ -17,11 +17,16 @@ Session& need(const std::shared_ptr<Session>& session) {
   return *session;
 }
 
+bool is_urgent(const Member& member) { return (member.access & urgent) != 0; }
+
 Outgoing get_request(const std::string& path, const Member& member) {
   if ((member.access & writeonly) != 0) {
     throw Error(ErrorCode::write_only_member, "Write only property");
   }
-  return {EntryType::property_get_req, path, member.name};
+  return {.type = EntryType::property_get_req,
+          .path = path,
+          .member = member.name,
+          .is_urgent = is_urgent(member)};
 }
 
 // The value of a property as if it were a parameter.
@@ -30,7 +35,12 @@ class SetRequest {
   SetRequest(const std::string& path, const Member& member, const void* value)
       : parameter_{"value", member.type},
         value_(value),
-        request_{EntryType::property_set_req, path, member.name, {&parameter_, 1}, &value_} {
+        request_{.type = EntryType::property_set_req,
+                 .path = path,
+                 .member = member.name,
+                 .parameters = {&parameter_, 1},
+                 .values = &value_,
+                 .is_urgent = is_urgent(member)} {
     if ((member.access & readonly) != 0) {
       throw Error(ErrorCode::read_only_member, "Read only property");
     }
@@ -48,7 +58,12 @@ class SetRequest {
 
 Outgoing function_request(const std::string& path, const Member& member,
                           const void* const* arguments) {
-  return {EntryType::function_call_req, path, member.name, member.parameters, arguments};
+  return {.type = EntryType::function_call_req,
+          .path = path,
+          .member = member.name,
+          .parameters = member.parameters,
+          .values = arguments,
+          .is_urgent = is_urgent(member)};
 }
 
 std::string child_path(const std::string& parent, const Member& member) {

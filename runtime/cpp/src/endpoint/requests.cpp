@@ -15,6 +15,18 @@ EntryHeader answer_header(const Entry& request, ErrorCode error) {
           .error = static_cast<std::uint16_t>(error)};
 }
 
+channel::Priority priority_of(EntryType type, bool is_urgent) {
+  switch (type) {
+    case EntryType::client_session_op_req:
+    case EntryType::client_session_op_ret:
+    case EntryType::service_path_released_req:
+      return channel::Priority::fixed;
+    default:
+      if (static_cast<std::uint16_t>(type) < 500) return channel::Priority::fixed;
+      return is_urgent ? channel::Priority::urgent : channel::Priority::usual;
+  }
+}
+
 void write_empty_answer(Writer& writer, const Entry& request) {
   writer.entry(answer_header(request), 0, writer.position());
 }

@@ -73,8 +73,8 @@ void ServerEndpoint::check_access(const Question& question) {
   const auto object = find_object(question.entry.service_path);
   const std::uint8_t access = access_of(*object, question.entry.member);
   if ((access & nolock) != 0 || ((access & nolockread) != 0 && is_reading(type))) return;
-  host.locks().check(object->path, user().get(), client_.endpoint);
-  host.monitors().check(object->path, client_.endpoint);
+  host.locks().check(*object, user().get(), client_.endpoint);
+  host.monitors().check(*object, client_.endpoint);
 }
 
 // Throws what the authenticator throws.
@@ -122,7 +122,7 @@ void ServerEndpoint::answer_user_operation(const Question& question) {
     user_.reset();
   } else if (operation == "ReleaseObjectLock") {
     const auto user = need_user();
-    host_->locks().release(find_object(question.entry.service_path)->path, *user);
+    host_->locks().release(*find_object(question.entry.service_path), *user);
   } else if (operation == "ReleaseClientObjectLock") {
     throw Error(ErrorCode::invalid_operation, "Invalid command");
   } else {
@@ -130,7 +130,7 @@ void ServerEndpoint::answer_user_operation(const Question& question) {
     if (!user->has(lock_privilege) && !user->has(override_lock_privilege)) {
       throw Error(ErrorCode::object_locked_error, "The user may not lock objects");
     }
-    host_->locks().request(find_object(question.entry.service_path)->path, *user, client_.endpoint,
+    host_->locks().request(*find_object(question.entry.service_path), *user, client_.endpoint,
                            operation == "RequestClientObjectLock");
   }
 }
@@ -149,7 +149,7 @@ void ServerEndpoint::answer_monitor_operation(const Question& question) {
   Monitors& monitors = host_->monitors();
   if (entry.member == "MonitorExit") {
     const std::string done = "OK";
-    if (monitors.exit(object->path, client_.endpoint)) {
+    if (monitors.exit(*object, client_.endpoint)) {
       answer_value(question, "return", type_of<std::string>, &done);
     } else {
       answer_empty(question);  // what existing services say of an object that nobody ever entered
@@ -168,13 +168,13 @@ void ServerEndpoint::answer_monitor_operation(const Question& question) {
     }
   };
   if (entry.member == "MonitorContinueEnter") {
-    monitors.go_on(object->path, client_.endpoint, std::move(reply));
+    monitors.go_on(*object, client_.endpoint, std::move(reply));
     return;
   }
   Decoder decoder(question.message.version, &question.message.strings);
   std::int32_t timeout = 0;
   endpoint::read_value(decoder, entry, "timeout", type_of<std::int32_t>, &timeout);
-  host_->locks().check(object->path, user().get(), client_.endpoint);
+  host_->locks().check(*object, user().get(), client_.endpoint);
   monitors.enter(*object, client_.endpoint, channel::Milliseconds(timeout), std::move(reply));
 }
 

@@ -85,7 +85,7 @@ void Callbacks::send(const CallbackRequest& request, Writer& writer, endpoint::P
                 .member = request.member.name,
                 .request_id = number},
                static_cast<std::uint32_t>(request.member.parameters.size()), 0);
-  endpoint_.send_request(writer, type);
+  endpoint_.send_request(writer, type, (request.member.access & urgent) != 0);
 }
 
 void Callbacks::call(const CallbackRequest& request, void* result) {
@@ -149,7 +149,8 @@ struct Target {
 // used.
 Target target_of(Skeleton::Places& places, std::uint32_t client) {
   Target found;
-  for (auto& [host, path] : places.all()) {
+  for (auto& [host, path, owner] : places.all()) {
+    if (owner != 0 && owner != client) continue;
     auto endpoint = host->find_client(client);
     if (!endpoint) continue;
     const bool is_current =

@@ -133,7 +133,7 @@ void Generators::drop_unused(channel::Time now, channel::Milliseconds timeout,
 }
 
 // In a request an error is a wish (07, section 8); any answer with an error is the last.
-void ServerEndpoint::answer_generator_step(const Question& question) {
+void ServerEndpoint::answer_generator_step(Question& question) {
   const Entry& entry = question.entry;
   const auto object = find_object(entry.service_path);
   Decoder decoder(question.message.version, &question.message.strings, question.owner,
@@ -141,6 +141,7 @@ void ServerEndpoint::answer_generator_step(const Question& question) {
   std::int32_t index = 0;
   endpoint::read_value(decoder, entry, "index", type_of<std::int32_t>, &index);
   Generators::Use generator(generators_, *object, index, *connection_);
+  question.is_urgent = (generator->member->access & urgent) != 0;
   try {
     if (generator.state() == ClientGenerator::State::ended) throw invalid_generator();
     if (entry.error == 0) {

@@ -6,10 +6,20 @@
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/endpoint/service_path.hpp"
+#include "runtime/cpp/src/service/object_tree.hpp"
 
 namespace rr::service {
 
 using endpoint::is_at_or_below;
+
+// An object of all has clients' own ones below it, never above.
+bool Locks::Lock::holds_for(const ServedObject& object) const {
+  return (owner == 0 || owner == object.owner) && is_at_or_below(object.path, path);
+}
+bool Locks::Lock::is_above_or_below(const ServedObject& object) const {
+  return holds_for(object) ||
+         ((object.owner == 0 || owner == object.owner) && is_at_or_below(path, object.path));
+}
 
 template <class Condition>
 void Locks::remove_if(Condition condition) {
@@ -42,29 +52,29 @@ void Locks::leave(std::uint32_t endpoint) {
   });
 }
 
-void Locks::request(std::string_view path, const User& user, std::uint32_t endpoint,
+void Locks::request(const ServedObject& object, const User& user, std::uint32_t endpoint,
                     bool for_session) {
   const std::lock_guard lock(mutex_);
   for (const Lock& held : locks_) {
-    if (is_at_or_below(held.path, path) || is_at_or_below(path, held.path)) {
+    if (held.is_above_or_below(object)) {
       throw Error(ErrorCode::object_locked_error, "Object already locked");
     }
   }
   if (!sessions_.contains(endpoint)) {
     throw Error(ErrorCode::connection_error, "the session has ended");
   }
-  locks_.push_back({std::string(path), user.name, for_session ? endpoint : 0});
+  locks_.push_back({object.path, object.owner, user.name, for_session ? endpoint : 0});
   are_held_.store(true, std::memory_order_release);
 }
 
-void Locks::release(std::string_view path, const User& user) {
+void Locks::release(const ServedObject& object, const User& user) {
   const std::lock_guard lock(mutex_);
   for (const Lock& held : locks_) {
-    if (!is_at_or_below(path, held.path)) continue;
+    if (!held.holds_for(object)) continue;
     if (held.user != user.name && !user.has(override_lock_privilege)) {
       throw Error(ErrorCode::object_locked_error, "Service locked by user " + held.user);
     }
-    if (held.path != path) {
+    if (held.path != object.path) {
       throw Error(ErrorCode::object_locked_error, "The lock is at the object " + held.path);
     }
     remove_if([&](const Lock& other) { return &other == &held; });
@@ -72,15 +82,16 @@ void Locks::release(std::string_view path, const User& user) {
   }
 }
 
-void Locks::forget(std::string_view path) {
+void Locks::forget(const ServedObject& object) {
   const std::lock_guard lock(mutex_);
-  remove_if([&](const Lock& held) { return held.path == path; });
+  remove_if(
+      [&](const Lock& held) { return held.path == object.path && held.owner == object.owner; });
 }
 
-void Locks::check(std::string_view path, const User* user, std::uint32_t endpoint) const {
+void Locks::check(const ServedObject& object, const User* user, std::uint32_t endpoint) const {
   const std::lock_guard lock(mutex_);
   for (const Lock& held : locks_) {
-    if (!is_at_or_below(path, held.path)) continue;
+    if (!held.holds_for(object)) continue;
     const bool may_pass = user != nullptr && user->name == held.user &&
                           (held.endpoint == 0 || held.endpoint == endpoint);
     if (!may_pass) throw Error(ErrorCode::object_locked_error, "Object locked by " + held.user);

@@ -6,14 +6,16 @@
 #include <map>
 #include <mutex>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "rr/users.hpp"
 
 namespace rr::service {
 
-/// Which objects of a service are locked for whom (07, section 6). Paths are canonical.
+struct ServedObject;
+
+/// Which objects of a service are locked for whom (07, section 6). What a client's own object is
+/// locked for concerns no other client's at the same path.
 class Locks {
  public:
   /// A session begins; before it, and after leave(), it can lock nothing.
@@ -24,24 +26,29 @@ class Locks {
   void leave(std::uint32_t endpoint);
 
   /// Throws rr::Error (object_locked_error) when the object, or one above or below, is locked.
-  void request(std::string_view path, const User& user, std::uint32_t endpoint, bool for_session);
+  void request(const ServedObject& object, const User& user, std::uint32_t endpoint,
+               bool for_session);
   /// Throws rr::Error (object_locked_error) unless the lock is at this object and the user's, or
   /// may be overridden.
-  void release(std::string_view path, const User& user);
+  void release(const ServedObject& object, const User& user);
   /// The object goes away.
-  void forget(std::string_view path);
+  void forget(const ServedObject& object);
 
   /// Whether there is any.
   [[nodiscard]] bool are_held() const { return are_held_.load(std::memory_order_acquire); }
   /// Throws rr::Error (object_locked_error) for an object that is locked for others. `user` is null
   /// for nobody.
-  void check(std::string_view path, const User* user, std::uint32_t endpoint) const;
+  void check(const ServedObject& object, const User* user, std::uint32_t endpoint) const;
 
  private:
   struct Lock {
     std::string path;
+    std::uint32_t owner;  // of the object
     std::string user;
     std::uint32_t endpoint;  // 0: of the user
+
+    [[nodiscard]] bool holds_for(const ServedObject& object) const;
+    [[nodiscard]] bool is_above_or_below(const ServedObject& object) const;
   };
   template <class Condition>
   void remove_if(Condition condition);

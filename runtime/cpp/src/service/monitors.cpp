@@ -66,8 +66,8 @@ std::shared_ptr<Monitors::Attempt> Monitors::find_attempt(const Monitor& monitor
   return nullptr;
 }
 
-std::shared_ptr<Monitors::Monitor> Monitors::find(std::string_view path) {
-  const auto found = monitors_.find(path);
+std::shared_ptr<Monitors::Monitor> Monitors::find(const ServedObject& object) {
+  const auto found = monitors_.find({object.path, object.owner});
   return found == monitors_.end() ? nullptr : found->second;
 }
 
@@ -76,7 +76,7 @@ void Monitors::enter(const ServedObject& object, std::uint32_t endpoint,
   std::shared_ptr<Monitor> monitor;
   {
     const std::lock_guard lock(mutex_);
-    std::shared_ptr<Monitor>& place = monitors_[object.path];
+    std::shared_ptr<Monitor>& place = monitors_[{object.path, object.owner}];
     if (!place) {
       place = std::make_shared<Monitor>();
       place->skeleton = object.skeleton;
@@ -102,10 +102,10 @@ void Monitors::await(const std::shared_ptr<Attempt>& attempt, Reply reply) {
   core_->reactor().schedule(*attempt, attempt, std::min(step_end, attempt->deadline));
 }
 
-void Monitors::go_on(std::string_view path, std::uint32_t endpoint, Reply reply) {
+void Monitors::go_on(const ServedObject& object, std::uint32_t endpoint, Reply reply) {
   {
     const std::lock_guard lock(mutex_);
-    const auto monitor = find(path);
+    const auto monitor = find(object);
     if (!monitor) throw not_in_line();
     if (monitor->holder != endpoint) {
       const std::shared_ptr<Attempt> attempt = find_attempt(*monitor, endpoint);
@@ -255,12 +255,12 @@ void Monitors::leave_object(const Monitor& monitor) {
   }
 }
 
-bool Monitors::exit(std::string_view path, std::uint32_t endpoint) {
+bool Monitors::exit(const ServedObject& object, std::uint32_t endpoint) {
   std::shared_ptr<Monitor> monitor;
   Replies replies;
   {
     const std::lock_guard lock(mutex_);
-    monitor = find(path);
+    monitor = find(object);
     if (!monitor) return false;
     if (!begin_exit(*monitor, endpoint)) {
       const std::shared_ptr<Attempt> attempt = find_attempt(*monitor, endpoint);
@@ -288,15 +288,15 @@ void Monitors::leave(std::uint32_t endpoint) {
   for (const auto& monitor : held) give_back(monitor);
 }
 
-void Monitors::forget(std::string_view path) {
+void Monitors::forget(const ServedObject& object) {
   std::shared_ptr<Monitor> monitor;
   bool is_held = false;
   Replies replies;
   {
     const std::lock_guard lock(mutex_);
-    monitor = find(path);
+    monitor = find(object);
     if (!monitor) return;
-    monitors_.erase(monitors_.find(path));
+    monitors_.erase({object.path, object.owner});
     while (!monitor->line.empty()) {
       const std::shared_ptr<Attempt> attempt = monitor->line.front();
       fail(*monitor, *attempt, Error(ErrorCode::object_not_found, "the object was released"),
@@ -308,9 +308,9 @@ void Monitors::forget(std::string_view path) {
   if (is_held) give_back(monitor);
 }
 
-void Monitors::check(std::string_view path, std::uint32_t endpoint) {
+void Monitors::check(const ServedObject& object, std::uint32_t endpoint) {
   const std::lock_guard lock(mutex_);
-  const auto monitor = find(path);
+  const auto monitor = find(object);
   if (!monitor || monitor->holder == 0) return;
   if (monitor->holder != endpoint) {
     throw Error(ErrorCode::invalid_operation, "Monitor lock is held by another client");

@@ -10,7 +10,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "rr/error.hpp"
@@ -40,20 +40,20 @@ class Monitors final : public channel::Timer, public std::enable_shared_from_thi
   void enter(const ServedObject& object, std::uint32_t endpoint, channel::Milliseconds timeout,
              Reply reply);
   /// Throws rr::Error (invalid_operation) when the session is neither in nor in line.
-  void go_on(std::string_view path, std::uint32_t endpoint, Reply reply);
+  void go_on(const ServedObject& object, std::uint32_t endpoint, Reply reply);
   /// Leaves, or gets out of the line. False when nobody ever was in. Throws rr::Error
   /// (invalid_operation) when the session is neither.
-  bool exit(std::string_view path, std::uint32_t endpoint);
+  bool exit(const ServedObject& object, std::uint32_t endpoint);
 
   /// A session ends. Runs user code, as do exit() and forget().
   void leave(std::uint32_t endpoint);
   /// An object goes away.
-  void forget(std::string_view path);
+  void forget(const ServedObject& object);
 
   /// Whether anybody is in any.
   [[nodiscard]] bool are_held() const { return held_.load(std::memory_order_acquire) != 0; }
   /// Throws rr::Error (invalid_operation) when another session is in. Notes that it is used.
-  void check(std::string_view path, std::uint32_t endpoint);
+  void check(const ServedObject& object, std::uint32_t endpoint);
 
  private:
   class Attempt;
@@ -80,14 +80,16 @@ class Monitors final : public channel::Timer, public std::enable_shared_from_thi
   void leave_object(const Monitor& monitor);
   void schedule_drop();
   static std::shared_ptr<Attempt> find_attempt(const Monitor& monitor, std::uint32_t endpoint);
-  std::shared_ptr<Monitor> find(std::string_view path);
+  std::shared_ptr<Monitor> find(const ServedObject& object);
   void post(std::function<void()> work);
 
   const std::shared_ptr<endpoint::Core> core_;
   const channel::Milliseconds patience_;
   std::atomic<int> held_{0};
   std::mutex mutex_;
-  std::map<std::string, std::shared_ptr<Monitor>, std::less<>> monitors_;  // by path
+  // By path, and by the client whose own the object is.
+  using Place = std::pair<std::string, std::uint32_t>;
+  std::map<Place, std::shared_ptr<Monitor>> monitors_;
 };
 
 }  // namespace rr::service

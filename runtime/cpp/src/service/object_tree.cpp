@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/service/object_tree.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <optional>
 #include <utility>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/service/places.hpp"
 
 namespace rr::service {
 namespace {
@@ -47,87 +50,108 @@ std::string spelled_index(const ServedObject& parent, const endpoint::PathSegmen
 
 }  // namespace
 
-ObjectTree::ObjectTree(std::string root_name, std::shared_ptr<Skeleton> root, Notice attach,
-                       Notice detach)
-    : attach_(std::move(attach)), detach_(std::move(detach)) {
+ObjectTree::ObjectTree(std::string root_name, std::shared_ptr<Skeleton> root, Notice attach)
+    : attach_(std::move(attach)) {
   const ObjectType& type = root->rr_object_type();
   root_ = std::make_shared<const ServedObject>(
       ServedObject{std::move(root_name), std::move(root), &type, &members_of(type)});
 }
 
-std::shared_ptr<const ServedObject> ObjectTree::find(std::string_view path) {
+ObjectTree::Object ObjectTree::find(std::string_view path, std::uint32_t client) {
   if (path == root_->path) return root_;
   const auto segments = endpoint::parse_path(path);
   if (!segments) throw Error(ErrorCode::service_error, "Invalid service path specified");
   if (segments->front().name != root_->path) {
     throw Error(ErrorCode::object_not_found, "the path does not belong to this service");
   }
-  std::shared_ptr<const ServedObject> object = root_;
+  Object object = root_;
   for (std::size_t i = 1; i < segments->size(); ++i) {
     const endpoint::PathSegment& segment = (*segments)[i];
     std::string child_path = object->path + "." + segment.name;
     if (segment.index) {
       child_path += "[" + endpoint::escape_index(spelled_index(*object, segment)) + "]";
     }
-    bool must_look = false;
-    auto child = find_known(child_path, must_look);
-    if (must_look) child = look_up(*object, segment, child_path);
-    object = std::move(child);
+    Known known = find_known(child_path, client, object->owner != 0);
+    if (known.must_look) {
+      known.object = look_up(*object, segment, child_path, client, known.is_own);
+    }
+    object = std::move(known.object);
   }
   return object;
 }
 
-// When nobody knows the object and nobody looks for it, the caller must.
-std::shared_ptr<const ServedObject> ObjectTree::find_known(const std::string& path,
-                                                           bool& must_look) {
+// When nobody knows the object and nobody looks for it, the caller must. What is found to be a
+// client's own says nothing to others, who then look for theirs.
+ObjectTree::Known ObjectTree::find_known(const std::string& path, std::uint32_t client,
+                                         bool is_below_own) {
   std::unique_lock lock(mutex_);
   while (true) {
-    const auto [place, is_new] = places_.try_emplace(path);
-    if (is_new) {
-      must_look = true;
-      return nullptr;
+    const auto [found, is_new] = places_.try_emplace(path);
+    Place& place = found->second;
+    if (is_below_own || !place.own.empty()) {
+      if (client == 0) throw Error(ErrorCode::object_not_found, "this object is for clients only");
+      const auto [own, is_first] = place.own.try_emplace(client);
+      if (is_first) return {nullptr, true, true};
+      if (own->second) return {own->second, false, true};
+    } else if (is_new) {
+      return {nullptr, true, false};
+    } else if (place.object) {
+      return {place.object, false, false};
     }
-    if (place->second.object) return place->second.object;
     settled_.wait(lock);
   }
 }
 
-std::shared_ptr<const ServedObject> ObjectTree::look_up(const ServedObject& parent,
-                                                        const endpoint::PathSegment& segment,
-                                                        const std::string& path) {
+ObjectTree::Object ObjectTree::look_up(const ServedObject& parent,
+                                       const endpoint::PathSegment& segment,
+                                       const std::string& path, std::uint32_t client, bool is_own) {
   try {
-    const auto place = parent.members->find(segment.name);
-    if (!place || parent.type->members[*place].kind != MemberKind::objref) {
-      throw Error(ErrorCode::member_not_found, "Member not found");
+    const std::shared_ptr<ServedObject> object = make(parent, segment, path);
+    const bool is_for_client =
+        is_own || Skeleton::Places::of(*object->skeleton).is_per_client.load();
+    if (is_for_client && client == 0) {
+      throw Error(ErrorCode::object_not_found, "this object is for clients only");
     }
-    const ObjectIndex index = read_index(parent.type->members[*place], segment.index);
-    std::shared_ptr<Skeleton> skeleton = parent.skeleton->rr_child(*place, index);
-    if (!skeleton) throw Error(ErrorCode::service_error, "there is no object at this path");
-    const ObjectType& type = skeleton->rr_object_type();
-    auto object = std::make_shared<ServedObject>();
-    object->path = path;
-    object->skeleton = std::move(skeleton);
-    object->type = &type;
-    {
-      const std::lock_guard lock(mutex_);
-      object->members = &members_of(type);
-    }
+    if (is_for_client) object->owner = client;
     attach_(*object);
-    settle(path, object);
+    settle(path, client, is_own, object);
     return object;
   } catch (...) {
-    settle(path, nullptr);
+    settle(path, client, is_own, nullptr);
     throw;
   }
 }
 
-void ObjectTree::settle(const std::string& path, std::shared_ptr<const ServedObject> object) {
+// Asks the parent.
+std::shared_ptr<ServedObject> ObjectTree::make(const ServedObject& parent,
+                                               const endpoint::PathSegment& segment,
+                                               const std::string& path) {
+  const auto place = parent.members->find(segment.name);
+  if (!place || parent.type->members[*place].kind != MemberKind::objref) {
+    throw Error(ErrorCode::member_not_found, "Member not found");
+  }
+  const ObjectIndex index = read_index(parent.type->members[*place], segment.index);
+  std::shared_ptr<Skeleton> skeleton = parent.skeleton->rr_child(*place, index);
+  if (!skeleton) throw Error(ErrorCode::service_error, "there is no object at this path");
+  const ObjectType& type = skeleton->rr_object_type();
+  const std::lock_guard lock(mutex_);
+  return std::make_shared<ServedObject>(
+      ServedObject{path, std::move(skeleton), &type, &members_of(type)});
+}
+
+// Ends what find_known() has begun: `is_own` as it said then.
+void ObjectTree::settle(const std::string& path, std::uint32_t client, bool is_own, Object object) {
   {
     const std::lock_guard lock(mutex_);
-    if (object) {
-      places_[path].object = std::move(object);
+    Place& place = places_[path];
+    if (object && object->owner != 0) {
+      place.own[client] = std::move(object);
+      own_paths_[client].insert(path);
+    } else if (object) {
+      place.object = std::move(object);
     } else {
-      places_.erase(path);
+      if (is_own) place.own.erase(client);
+      if (place.own.empty() && !place.object) places_.erase(path);
     }
   }
   settled_.notify_all();
@@ -139,34 +163,82 @@ const MemberIndex& ObjectTree::members_of(const ObjectType& type) {
   return *index;
 }
 
-bool ObjectTree::release(std::string_view path) {
-  std::vector<std::shared_ptr<const ServedObject>> released;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto found = places_.find(std::string(path));
-    if (found == places_.end() || !found->second.object) return false;
-    std::erase_if(places_, [&](const auto& place) {
-      if (!place.second.object || !endpoint::is_at_or_below(place.first, path)) return false;
-      released.push_back(place.second.object);
-      return true;
-    });
-    generation_.fetch_add(1, std::memory_order_release);
+// Under the lock, as the next.
+void ObjectTree::take(Object& object, Released& released) {
+  if (object->owner != 0) {
+    const auto paths = own_paths_.find(object->owner);
+    paths->second.erase(object->path);
+    if (paths->second.empty()) own_paths_.erase(paths);
   }
-  for (const auto& object : released) detach_(*object);
-  return true;
+  released.push_back(std::move(object));
 }
 
-void ObjectTree::clear() {
-  std::vector<std::shared_ptr<const ServedObject>> released = {root_};
-  {
-    const std::lock_guard lock(mutex_);
-    std::erase_if(places_, [&](const auto& place) {
-      if (place.second.object) released.push_back(place.second.object);
-      return place.second.object != nullptr;
-    });
-    generation_.fetch_add(1, std::memory_order_release);
+// What a thread looks for just now stays.
+template <class Condition>
+ObjectTree::Released ObjectTree::release_if(Condition condition) {
+  Released released;
+  const auto is_released = [&](Object& object) {
+    if (!object || !condition(*object)) return false;
+    take(object, released);
+    return true;
+  };
+  for (auto place = places_.begin(); place != places_.end();) {
+    auto& [object, own] = place->second;
+    const std::size_t count = released.size();
+    is_released(object);
+    for (auto one = own.begin(); one != own.end();) {
+      one = is_released(one->second) ? own.erase(one) : std::next(one);
+    }
+    const bool is_empty = released.size() != count && !object && own.empty();
+    place = is_empty ? places_.erase(place) : std::next(place);
   }
-  for (const auto& object : released) detach_(*object);
+  if (!released.empty()) generation_.fetch_add(1, std::memory_order_release);
+  return released;
+}
+
+ObjectTree::Released ObjectTree::release(std::string_view path) {
+  const std::lock_guard lock(mutex_);
+  const auto found = places_.find(std::string(path));
+  if (found == places_.end()) return {};
+  const Place& place = found->second;
+  const bool has_own =
+      std::any_of(place.own.begin(), place.own.end(), [](const auto& own) { return own.second; });
+  if (!place.object && !has_own) return {};
+  return release_if(
+      [&](const ServedObject& object) { return endpoint::is_at_or_below(object.path, path); });
+}
+
+ObjectTree::Released ObjectTree::release(std::string_view path, std::uint32_t client) {
+  const std::lock_guard lock(mutex_);
+  const auto found = places_.find(std::string(path));
+  if (found == places_.end()) return {};
+  const auto own = found->second.own.find(client);
+  if (own == found->second.own.end() || !own->second) return {};
+  return release_if([&](const ServedObject& object) {
+    return object.owner == client && endpoint::is_at_or_below(object.path, path);
+  });
+}
+
+ObjectTree::Released ObjectTree::release_all_of(std::uint32_t client) {
+  Released released;
+  const std::lock_guard lock(mutex_);
+  const auto paths = own_paths_.extract(client);
+  if (paths.empty()) return released;
+  for (const std::string& path : paths.mapped()) {
+    const auto found = places_.find(path);
+    released.push_back(std::move(found->second.own.extract(client).mapped()));
+    if (found->second.own.empty() && !found->second.object) places_.erase(found);
+  }
+  generation_.fetch_add(1, std::memory_order_release);
+  return released;
+}
+
+ObjectTree::Released ObjectTree::clear() {
+  const std::lock_guard lock(mutex_);
+  Released released = release_if([](const ServedObject& object) { return object.owner == 0; });
+  released.push_back(root_);
+  generation_.fetch_add(1, std::memory_order_release);
+  return released;
 }
 
 }  // namespace rr::service

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -26,24 +27,35 @@ struct ServedObject {
   std::shared_ptr<Skeleton> skeleton;
   const ObjectType* type = nullptr;
   const MemberIndex* members = nullptr;
+  std::uint32_t owner = 0;  ///< the client whose own it is (per_client()); 0: of all
 };
 
 /// The objects of a service by their paths. They are found when first asked for, each through its
-/// parent's objref, and kept until released. No user code runs under the lock.
+/// parent's objref, and kept until released. At one path there is an object of all clients, or one
+/// for each of them; below a client's own object everything is that client's. No user code runs
+/// under the lock.
 class ObjectTree {
  public:
-  /// `attach` is called for each object that joins, `detach` when it goes.
+  using Object = std::shared_ptr<const ServedObject>;
+  using Released = std::vector<Object>;
+  /// `attach` is called for each object that joins.
   using Notice = std::function<void(const ServedObject&)>;
-  ObjectTree(std::string root_name, std::shared_ptr<Skeleton> root, Notice attach, Notice detach);
+  ObjectTree(std::string root_name, std::shared_ptr<Skeleton> root, Notice attach);
 
-  /// Finds the object, perhaps by asking its ancestors, which is user code. Throws rr::Error, and
-  /// what user code throws.
-  std::shared_ptr<const ServedObject> find(std::string_view path);
-  [[nodiscard]] const std::shared_ptr<const ServedObject>& root() const { return root_; }
+  /// Finds the object as a client sees it, perhaps by asking its ancestors, which is user code.
+  /// Whoever is no client (0) finds objects of all only. Throws rr::Error, and what user code
+  /// throws.
+  Object find(std::string_view path, std::uint32_t client);
+  [[nodiscard]] const Object& root() const { return root_; }
 
-  /// Forgets the object and those below. False when none is known there.
-  bool release(std::string_view path);
-  void clear();
+  // What is forgotten is returned, for the caller to let go of.
+  /// The objects at a path and below, of whomever they are; nothing when none is known there.
+  Released release(std::string_view path);
+  /// A client's own; nothing when it has none at the path.
+  Released release(std::string_view path, std::uint32_t client);
+  Released release_all_of(std::uint32_t client);
+  /// All, the root too, but not what is a client's own: that is released when the client has gone.
+  Released clear();
 
   /// Changes when an object is forgotten: what was found before may be used while it stays.
   [[nodiscard]] std::uint32_t generation() const {
@@ -51,24 +63,37 @@ class ObjectTree {
   }
 
  private:
+  // Either an object of all, or what is clients' own; null while a thread looks for it.
   struct Place {
-    std::shared_ptr<const ServedObject> object;  // null while a thread looks for it
+    Object object;
+    std::map<std::uint32_t, Object> own;
+  };
+  // What find_known() has found: an object, or that the caller has to look for it, as one of all or
+  // as one of the client's own.
+  struct Known {
+    Object object;
+    bool must_look = false;
+    bool is_own = false;
   };
 
-  std::shared_ptr<const ServedObject> find_known(const std::string& path, bool& must_look);
-  std::shared_ptr<const ServedObject> look_up(const ServedObject& parent,
-                                              const endpoint::PathSegment& segment,
-                                              const std::string& path);
-  void settle(const std::string& path, std::shared_ptr<const ServedObject> object);
+  Known find_known(const std::string& path, std::uint32_t client, bool is_below_own);
+  Object look_up(const ServedObject& parent, const endpoint::PathSegment& segment,
+                 const std::string& path, std::uint32_t client, bool is_own);
+  std::shared_ptr<ServedObject> make(const ServedObject& parent,
+                                     const endpoint::PathSegment& segment, const std::string& path);
+  void settle(const std::string& path, std::uint32_t client, bool is_own, Object object);
+  template <class Condition>
+  Released release_if(Condition condition);
+  void take(Object& object, Released& released);
   const MemberIndex& members_of(const ObjectType& type);
 
-  std::shared_ptr<const ServedObject> root_;
+  Object root_;
   const Notice attach_;
-  const Notice detach_;
   std::atomic<std::uint32_t> generation_{0};
   std::mutex mutex_;
   std::condition_variable settled_;
-  std::unordered_map<std::string, Place> places_;  // all but the root
+  std::unordered_map<std::string, Place> places_;                       // all but the root
+  std::unordered_map<std::uint32_t, std::set<std::string>> own_paths_;  // of clients' own
   std::map<const ObjectType*, std::unique_ptr<MemberIndex>> indexes_;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -17,24 +19,36 @@ namespace service {
 class OfferedWire;
 class PipePlace;
 class ServiceHost;
+struct ServedObject;
 }  // namespace service
 
 /// Where an object can be reached: its events go to the clients of each service.
 struct Skeleton::Places {
   static Places& of(const Skeleton& skeleton) { return *skeleton.rr_places_; }
 
-  void add(std::weak_ptr<service::ServiceHost> host, std::string path);
-  void remove(const service::ServiceHost& host, const std::string& path);
-  [[nodiscard]] std::vector<std::pair<std::shared_ptr<service::ServiceHost>, std::string>> all();
+  /// One of them.
+  template <class Host>
+  struct Place {
+    Host host;
+    std::string path;
+    std::uint32_t owner;  ///< the client whose own it is there; 0: of all
+  };
+
+  void add(std::weak_ptr<service::ServiceHost> host, const service::ServedObject& object);
+  void remove(const service::ServiceHost& host, const service::ServedObject& object);
+  [[nodiscard]] std::vector<Place<std::shared_ptr<service::ServiceHost>>> all();
   /// What all clients' endpoints of a pipe have in common.
   std::shared_ptr<service::PipePlace> pipe(std::string_view name);
 
   /// One of the object's wires, by its name.
   std::shared_ptr<service::OfferedWire> wire(const Member& member);
 
+  /// Whether each client is to have one of its own.
+  std::atomic<bool> is_per_client{false};
+
  private:
   std::mutex mutex_;
-  std::vector<std::pair<std::weak_ptr<service::ServiceHost>, std::string>> places_;
+  std::vector<Place<std::weak_ptr<service::ServiceHost>>> places_;
   std::map<std::string_view, std::shared_ptr<service::OfferedWire>> wires_;
   std::map<std::string, std::shared_ptr<service::PipePlace>, std::less<>> pipes_;
 };

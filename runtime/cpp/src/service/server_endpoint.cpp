@@ -32,7 +32,7 @@ ServerEndpoint::~ServerEndpoint() {
 
 // Ends a message of answers, or of one packet, with its header, and sends it.
 void ServerEndpoint::send_answer(Writer& writer, std::uint32_t entry_count, EntryType single_type,
-                                 Way way, std::string_view metadata) {
+                                 Way way, std::string_view metadata, bool is_urgent) {
   const endpoint::Core& core = *directory_->core();
   const auto type = static_cast<std::uint16_t>(single_type);
   const bool is_single = entry_count == 1;
@@ -51,12 +51,13 @@ void ServerEndpoint::send_answer(Writer& writer, std::uint32_t entry_count, Entr
     header.sender_name = core.options().name;
   }
   writer.message(header, entry_count);
+  const channel::Priority priority = endpoint::priority_of(single_type, is_urgent);
   switch (way) {
     case Way::reply:
-      connection_->reply(writer);
+      connection_->reply(writer, priority);
       break;
     case Way::send:
-      connection_->send(writer);
+      connection_->send(writer, channel::coarse_now(), priority);
       break;
     case Way::stream:
       connection_->stream(writer);
@@ -71,14 +72,14 @@ void ServerEndpoint::stream_packet(Writer& writer, const EntryHeader& header,
 }
 
 void ServerEndpoint::send_packet(const EntryHeader& header, std::span<const Parameter> parameters,
-                                 const void* const* values) {
+                                 const void* const* values, bool is_urgent) {
   Writer& writer = channel::thread_writer();
   writer.reset(connection_->version());
   endpoint::write_values(writer, parameters, values);
   if (writer.failed()) throw endpoint::latched(writer);
   writer.entry(header, static_cast<std::uint32_t>(parameters.size()), 0);
   try {
-    send_answer(writer, 1, header.type, Way::send);
+    send_answer(writer, 1, header.type, Way::send, {}, is_urgent);
   } catch (const Error& error) {
     // When the client is gone or does not listen, its connection ends and with it the session.
     if (connection_->is_closed() || error.code() == ErrorCode::connection_error) return;
@@ -88,8 +89,8 @@ void ServerEndpoint::send_packet(const EntryHeader& header, std::span<const Para
   }
 }
 
-void ServerEndpoint::send_request(Writer& entry, EntryType type) {
-  send_answer(entry, 1, type, Way::send);
+void ServerEndpoint::send_request(Writer& entry, EntryType type, bool is_urgent) {
+  send_answer(entry, 1, type, Way::send, {}, is_urgent);
 }
 
 void ServerEndpoint::send_marked(Writer& writer, std::string_view metadata,
@@ -125,7 +126,8 @@ void ServerEndpoint::finish(const Question& question, Writer& writer, std::strin
     connection_->check_size(writer);
     question.gathering->put(question.place, writer.copy());
   } else {
-    send_answer(writer, 1, endpoint::answer_header(question.entry).type, Way::reply, metadata);
+    send_answer(writer, 1, endpoint::answer_header(question.entry).type, Way::reply, metadata,
+                question.is_urgent);
   }
 }
 
@@ -233,7 +235,9 @@ void ServerEndpoint::finish_late(const LateAnswer& late, Writer& writer) {
       late.gathering->put(late.place, writer.copy(), true);
       return;
     }
-    send_answer(writer, 1, endpoint::answer_header(question_of(late)).type, Way::send);
+    const bool is_urgent = late.member != nullptr && (late.member->access & urgent) != 0;
+    send_answer(writer, 1, endpoint::answer_header(question_of(late)).type, Way::send, {},
+                is_urgent);
   } catch (const Error& error) {
     if (connection_->is_closed() || error.code() == ErrorCode::connection_error) return;
     answer_late(late, error);  // the answer was too large
@@ -286,8 +290,12 @@ void ServerEndpoint::lost(const Error& why, channel::Laters& laters) {
 void ServerEndpoint::closed() {
   if (is_member_.exchange(false)) host_->remove_client(*this);
   end_members();
-  if (std::exchange(is_announced_, false)) host_->announce_end(*this);
   last_object_.reset();
+  belongings_.end(this);
+  if (std::exchange(is_announced_, false)) {
+    host_->release_objects_of(client_.endpoint);
+    host_->announce_end(*this);
+  }
 }
 
 // The client has gone: what it has begun ends with it.
@@ -300,10 +308,12 @@ void ServerEndpoint::end_members() {
   generators_.end();
 }
 
-void ServerEndpoint::release_path(std::string_view path) {
+void ServerEndpoint::release_path(const std::string& path, bool is_told) {
   wires_.release(path);
   pipes_.release(path);
   generators_.release_path(path);
+  if (!is_told) return;
+  send_packet({.type = EntryType::service_path_released_req, .service_path = path}, {}, nullptr);
 }
 
 void ServerEndpoint::attend(channel::Time now) {

@@ -19,6 +19,7 @@
 #include "rr/writer.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/service/belongings.hpp"
 #include "runtime/cpp/src/service/callbacks.hpp"
 #include "runtime/cpp/src/service/generators.hpp"
 #include "runtime/cpp/src/service/object_tree.hpp"
@@ -39,6 +40,7 @@ struct Question {
   const MemoryRef& owner;
   std::shared_ptr<Gathering> gathering;  ///< null for a single one
   std::size_t place = 0;                 ///< in the gathering
+  bool is_urgent = false;                ///< the member is; known once that is found
 };
 
 /// The service's end of a connection: answers special requests, and holds the session once a client
@@ -55,6 +57,7 @@ class ServerEndpoint final : public channel::Receiver,
   [[nodiscard]] channel::Connection& connection() const { return *connection_; }
   [[nodiscard]] Callbacks& callbacks() { return callbacks_; }
   [[nodiscard]] Generators& generators() { return generators_; }
+  [[nodiscard]] Belongings& belongings() { return belongings_; }
   /// The endpoint whose request this thread handles; null outside of handlers.
   static ServerEndpoint* current();
   /// The path of the object that it asks.
@@ -66,12 +69,13 @@ class ServerEndpoint final : public channel::Receiver,
   /// Sends something that is not answered. Throws rr::Error for values that cannot be written; what
   /// cannot be sent is reported to the node's log, unless the client is gone.
   void send_packet(const EntryHeader& header, std::span<const Parameter> parameters,
-                   const void* const* values);
+                   const void* const* values, bool is_urgent = false);
   /// Puts the header of a message before an entry of the service's own, and sends it. Throws
   /// rr::Error.
-  void send_request(Writer& entry, EntryType type);
-  /// The service has released the object at a path and those below.
-  void release_path(std::string_view path);
+  void send_request(Writer& entry, EntryType type, bool is_urgent);
+  /// The service has released the object at a path and those below, for this client at least; who
+  /// may hear of it is told.
+  void release_path(const std::string& path, bool is_told);
   /// Sends an entry that is not answered, with metadata in the message header; of which only the
   /// newest counts, unless `newest` is null. Throws rr::Error.
   void send_marked(Writer& writer, std::string_view metadata, const channel::Newest* newest);
@@ -140,12 +144,12 @@ class ServerEndpoint final : public channel::Receiver,
 
   // Session requests (session_requests.cpp)
   void handle_session(const Message& message, const Entry& first, const MemoryRef& owner);
-  void handle_question(const Question& question);
-  void answer_question(const Question& question);
+  void handle_question(Question question);
+  void answer_question(Question& question);
   void answer_session_object_type(const Question& question);
-  void answer_member(const Question& question, MemberKind kind);
+  void answer_member(Question& question, MemberKind kind);
   // Generators (generators.cpp)
-  void answer_generator_step(const Question& question);
+  void answer_generator_step(Question& question);
   void step_generator(const Question& question, Decoder& decoder, Generators::Use& generator);
   static void end_generator(ErrorCode wish, Generators::Use& generator);
   void answer_void(const Question& question);
@@ -170,7 +174,7 @@ class ServerEndpoint final : public channel::Receiver,
   void finish_late(const LateAnswer& late, Writer& writer);
   enum class Way : std::uint8_t { reply, send, stream };
   void send_answer(Writer& writer, std::uint32_t entry_count, EntryType single_type, Way way,
-                   std::string_view metadata = {});
+                   std::string_view metadata = {}, bool is_urgent = false);
   std::uint16_t draw_message_id(std::uint16_t count = 1) {
     return next_message_id_.fetch_add(count, std::memory_order_relaxed);
   }
@@ -188,6 +192,7 @@ class ServerEndpoint final : public channel::Receiver,
 
   Callbacks callbacks_{*this};
   Generators generators_;
+  Belongings belongings_;
   mutable std::mutex user_mutex_;
   std::shared_ptr<const User> user_;
 

@@ -13,27 +13,32 @@
 
 namespace rr {
 
-void Skeleton::Places::add(std::weak_ptr<service::ServiceHost> host, std::string path) {
+void Skeleton::Places::add(std::weak_ptr<service::ServiceHost> host,
+                           const service::ServedObject& object) {
   const std::lock_guard lock(mutex_);
-  places_.emplace_back(std::move(host), std::move(path));
+  places_.push_back({std::move(host), object.path, object.owner});
 }
 
-void Skeleton::Places::remove(const service::ServiceHost& host, const std::string& path) {
+void Skeleton::Places::remove(const service::ServiceHost& host,
+                              const service::ServedObject& object) {
   const std::weak_ptr<const service::ServiceHost> self = host.weak_from_this();
   const std::lock_guard lock(mutex_);
   // Compared without taking hold of any: letting go of the last one would destroy it under the
   // lock.
   std::erase_if(places_, [&](const auto& place) {
-    const bool is_same = !place.first.owner_before(self) && !self.owner_before(place.first);
-    return place.first.expired() || (is_same && place.second == path);
+    const bool is_same = !place.host.owner_before(self) && !self.owner_before(place.host) &&
+                         place.owner == object.owner && place.path == object.path;
+    return is_same || place.host.expired();
   });
 }
 
-std::vector<std::pair<std::shared_ptr<service::ServiceHost>, std::string>> Skeleton::Places::all() {
-  std::vector<std::pair<std::shared_ptr<service::ServiceHost>, std::string>> result;
+auto Skeleton::Places::all() -> std::vector<Place<std::shared_ptr<service::ServiceHost>>> {
+  std::vector<Place<std::shared_ptr<service::ServiceHost>>> result;
   const std::lock_guard lock(mutex_);
-  for (const auto& [host, path] : places_) {
-    if (auto alive = host.lock()) result.emplace_back(std::move(alive), path);
+  for (const auto& place : places_) {
+    if (auto alive = place.host.lock()) {
+      result.push_back({std::move(alive), place.path, place.owner});
+    }
   }
   return result;
 }
@@ -49,8 +54,12 @@ Skeleton::Skeleton() : rr_places_(std::make_shared<Places>()) {}
 Skeleton::~Skeleton() = default;
 void Skeleton::rr_attached(ServiceContext& /*context*/, const std::string& /*path*/) {}
 
+void Skeleton::rr_set_per_client() const { rr_places_->is_per_client = true; }
+
 void Skeleton::rr_fire(const Member& member, const void* const* arguments) const {
-  for (const auto& [host, path] : rr_places_->all()) host->fire(path, member, arguments);
+  for (const auto& [host, path, owner] : rr_places_->all()) {
+    host->fire(path, owner, member, arguments);
+  }
 }
 
 namespace service {
@@ -73,9 +82,7 @@ ServiceHost::ServiceHost(std::shared_ptr<endpoint::Core> core, std::weak_ptr<Dir
       options_(std::move(options)),
       types_(core_->types()),
       definitions_(all_definitions(*root, options_)),
-      objects_(
-          name_, std::move(root), [this](const ServedObject& object) { attach(object); },
-          [this](const ServedObject& object) { detach(object); }),
+      objects_(name_, std::move(root), [this](const ServedObject& object) { attach(object); }),
       monitors_(std::make_shared<Monitors>(core_, options_.monitor_patience)),
       clients_(std::make_shared<const Clients>()) {}
 
@@ -90,14 +97,36 @@ void ServiceHost::start() {
 }
 
 void ServiceHost::attach(const ServedObject& object) {
-  Skeleton::Places::of(*object.skeleton).add(weak_from_this(), object.path);
+  Skeleton::Places::of(*object.skeleton).add(weak_from_this(), object);
   object.skeleton->rr_attached(*this, object.path);
 }
 
-void ServiceHost::detach(const ServedObject& object) {
-  Skeleton::Places::of(*object.skeleton).remove(*this, object.path);
-  locks_.forget(object.path);
-  monitors_->forget(object.path);
+// What belongs to objects that are forgotten ends.
+void ServiceHost::detach(const ObjectTree::Released& released) {
+  for (const auto& object : released) {
+    Skeleton::Places::of(*object->skeleton).remove(*this, *object);
+    locks_.forget(*object);
+    monitors_->forget(*object);
+  }
+}
+
+// The objects may go with this. On a thread of the node.
+void ServiceHost::tell_released(const endpoint::Core& core, ObjectTree::Released released) {
+  for (auto& object : released) {
+    try {
+      object->skeleton->rr_released(object->path);
+    } catch (const std::exception& error) {
+      core.log(LogLevel::error,
+               "rr_released of `" + object->path + "` has thrown: " + error.what());
+    }
+    object.reset();
+  }
+}
+
+void ServiceHost::tell_released_later(ObjectTree::Released released) const {
+  core_->reactor().post([core = core_, released = std::move(released)]() mutable {
+    tell_released(*core, std::move(released));
+  });
 }
 
 std::map<std::string, VarValue> ServiceHost::attributes() const {
@@ -190,33 +219,57 @@ void ServiceHost::disconnect(std::uint32_t endpoint) {
   }
 }
 
-void ServiceHost::release_path(const std::string& path) {
+std::string ServiceHost::releasable(const std::string& path) const {
   const auto segments = endpoint::parse_path(path);
   if (!segments) throw Error(ErrorCode::service_error, "Invalid service path specified");
-  const std::string canonical = endpoint::canonical_path(*segments);
+  std::string canonical = endpoint::canonical_path(*segments);
   if (canonical == name_) {
     throw Error(ErrorCode::invalid_operation, "Root object cannot be released");
   }
-  if (!objects_.release(canonical)) {
-    throw Error(ErrorCode::service_error, "Unknown service path");
-  }
-  const auto clients = connected();
-  for (const auto& client : *clients) {
-    client->release_path(canonical);
-    if (!may_hear(*client)) continue;
-    client->send_packet({.type = EntryType::service_path_released_req, .service_path = canonical},
-                        {}, nullptr);
-  }
+  return canonical;
 }
 
-void ServiceHost::fire(const std::string& path, const Member& member,
+void ServiceHost::release_path(const std::string& path) {
+  const std::string canonical = releasable(path);
+  ObjectTree::Released released = objects_.release(canonical);
+  if (released.empty()) throw Error(ErrorCode::service_error, "Unknown service path");
+  detach(released);
+  const auto clients = connected();
+  for (const auto& client : *clients) client->release_path(canonical, may_hear(*client));
+  tell_released_later(std::move(released));
+}
+
+void ServiceHost::release_path(const std::string& path, std::uint32_t client) {
+  const std::string canonical = releasable(path);
+  ObjectTree::Released released = objects_.release(canonical, client);
+  if (released.empty()) {
+    throw Error(ErrorCode::service_error, "the client has no object of its own at this path");
+  }
+  detach(released);
+  if (const auto found = find_client(client)) found->release_path(canonical, may_hear(*found));
+  tell_released_later(std::move(released));
+}
+
+void ServiceHost::release_objects_of(std::uint32_t client) {
+  ObjectTree::Released released = objects_.release_all_of(client);
+  detach(released);
+  tell_released(*core_, std::move(released));
+}
+
+void ServiceHost::fire(const std::string& path, std::uint32_t owner, const Member& member,
                        const void* const* arguments) {
   const EntryHeader header{
       .type = EntryType::event_req, .service_path = path, .member = member.name};
-  const auto clients = connected();
-  for (const auto& client : *clients) {
-    if (may_hear(*client)) client->send_packet(header, member.parameters, arguments);
+  const bool is_urgent = (member.access & urgent) != 0;
+  const auto send = [&](ServerEndpoint& client) {
+    if (may_hear(client)) client.send_packet(header, member.parameters, arguments, is_urgent);
+  };
+  if (owner != 0) {
+    if (const auto client = find_client(owner)) send(*client);
+    return;
   }
+  const auto clients = connected();
+  for (const auto& client : *clients) send(*client);
 }
 
 void ServiceHost::close() {
@@ -231,7 +284,9 @@ void ServiceHost::close() {
     if (may_hear(*client)) client->send_packet({.type = EntryType::service_closed}, {}, nullptr);
   }
   for (const auto& client : *clients) client->leave();
-  objects_.clear();
+  ObjectTree::Released released = objects_.clear();
+  detach(released);
+  tell_released_later(std::move(released));
 }
 
 }  // namespace service

@@ -37,6 +37,7 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   [[nodiscard]] std::map<std::string, VarValue> attributes() const override;
   void set_attributes(std::map<std::string, VarValue> attributes) override;
   void release_path(const std::string& path) override;
+  void release_path(const std::string& path, std::uint32_t client) override;
   [[nodiscard]] std::vector<ServiceClient> clients() const override;
   void disconnect(std::uint32_t endpoint) override;
   void close() override;
@@ -65,10 +66,13 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   void remove_client(const ServerEndpoint& client);
   /// The client of this number; null when there is none.
   [[nodiscard]] std::shared_ptr<ServerEndpoint> find_client(std::uint32_t endpoint) const;
-  /// Tells that a client has gone: on a thread of the node, behind its last request.
+  /// Releases what was a client's own: on a thread of the node, behind its last request.
+  void release_objects_of(std::uint32_t client);
+  /// Tells that a client has gone: likewise.
   void announce_end(const ServerEndpoint& client) const;
-  /// Sends an event to all clients.
-  void fire(const std::string& path, const Member& member, const void* const* arguments);
+  /// Sends an event of the object at a path to all clients, or to the one whose own it is.
+  void fire(const std::string& path, std::uint32_t owner, const Member& member,
+            const void* const* arguments);
 
  private:
   using Clients = std::vector<std::shared_ptr<ServerEndpoint>>;
@@ -76,8 +80,11 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   // Whether a client is sent what the service sends to all: not before it has logged in where it
   // has to.
   [[nodiscard]] bool may_hear(const ServerEndpoint& client) const;
+  [[nodiscard]] std::string releasable(const std::string& path) const;
   void attach(const ServedObject& object);
-  void detach(const ServedObject& object);
+  void detach(const ObjectTree::Released& released);
+  static void tell_released(const endpoint::Core& core, ObjectTree::Released released);
+  void tell_released_later(ObjectTree::Released released) const;
   void notify(const std::function<void(const ServiceClient&)>& function,
               const ServiceClient& client) const;
 

@@ -91,7 +91,7 @@ void ServerEndpoint::handle_session(const Message& message, const Entry& first,
   }
 }
 
-void ServerEndpoint::handle_question(const Question& question) {
+void ServerEndpoint::handle_question(Question question) {
   const Entry& entry = question.entry;
   const bool is_answered =
       is_odd(entry.type) && static_cast<ErrorCode>(entry.error) != ErrorCode::invalid_endpoint;
@@ -116,7 +116,7 @@ void ServerEndpoint::handle_question(const Question& question) {
   }
 }
 
-void ServerEndpoint::answer_question(const Question& question) {
+void ServerEndpoint::answer_question(Question& question) {
   check_access(question);
   switch (question.entry.type) {
     case EntryType::property_get_req:
@@ -192,7 +192,7 @@ std::shared_ptr<const ServedObject> ServerEndpoint::find_object(std::string_view
   ObjectTree& objects = host_->objects();
   const std::uint32_t generation = objects.generation();
   if (last_object_ && last_path_ == path && last_generation_ == generation) return last_object_;
-  auto object = objects.find(path);
+  auto object = objects.find(path, client_.endpoint);
   last_path_ = path;
   last_object_ = object;
   last_member_ = nullptr;
@@ -213,9 +213,10 @@ const Member& ServerEndpoint::find_member(const ServedObject& object, std::strin
   return *last_member_;
 }
 
-void ServerEndpoint::answer_member(const Question& question, MemberKind kind) {
+void ServerEndpoint::answer_member(Question& question, MemberKind kind) {
   const auto object = find_object(question.entry.service_path);
   const Member& member = find_member(*object, question.entry.member, kind);
+  question.is_urgent = (member.access & urgent) != 0;
   const bool is_set = question.entry.type == EntryType::property_set_req;
   if (is_set && (member.access & readonly) != 0) {
     throw Error(ErrorCode::read_only_member, "Read only property");

@@ -91,7 +91,7 @@ void ServerEndpoint::handle_special(const Message& message) {
                   .receiver_endpoint = message.sender_endpoint},
                  static_cast<std::uint32_t>(answers.size()));
   try {
-    connection_->reply(writer);
+    connection_->reply(writer, channel::Priority::fixed);
   } catch (const Error& error) {
     directory_->core()->log(LogLevel::error, error.what());
   }
@@ -186,7 +186,7 @@ std::uint32_t ServerEndpoint::write_object_type(Writer& writer, Decoder& decoder
   if (!host) throw object_not_found();
   // Objects other than the root are for users only, and here nobody is one yet.
   if (host->requires_user() && path != host->name()) throw object_not_found();
-  const auto object = host->objects().find(path);
+  const auto object = host->objects().find(path, 0);
   const auto type = type_for(*object->type, client_version(decoder, entry));
   if (!type) throw object_not_found();
   const std::uint32_t count = write_texts(writer, "objectimplements", object->type->implements);

@@ -31,6 +31,9 @@ object Board
     property int32 serial_number [readonly]
     property string password [writeonly]
     property double shared [nolock, urgent]
+    property int32 page [perclient]
+    property string{list} notes [perclient]
+    property Mode view [perclient, readonly]
 end
 )robdef";
 
@@ -54,6 +57,9 @@ constinit const ::rr::Member rr_members_Board[] = {
     ::rr::property<::std::int32_t>("serial_number", ::rr::readonly),
     ::rr::property<::std::string>("password", ::rr::writeonly),
     ::rr::property<double>("shared", ::rr::nolock | ::rr::urgent),
+    ::rr::property<::std::int32_t>("page", ::rr::perclient),
+    ::rr::property<::std::optional<::std::vector<::std::string>>>("notes", ::rr::perclient),
+    ::rr::property<Mode>("view", ::rr::readonly | ::rr::perclient),
 };
 constinit const ::rr::ObjectType rr_object_Board{
     .name = "experimental.properties.Board",
@@ -237,6 +243,30 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
         return rr_request.answer(nullptr);
       }
       const auto value = get_shared();
+      return rr_request.answer(&value);
+    }
+    case 18: {  // property page
+      if (rr_request.is_set()) {
+        ::std::int32_t value = 0;
+        rr_request.read_value(&value);
+        set_page(value);
+        return rr_request.answer(nullptr);
+      }
+      const auto value = get_page();
+      return rr_request.answer(&value);
+    }
+    case 19: {  // property notes
+      if (rr_request.is_set()) {
+        ::std::optional<::std::vector<::std::string>> value{};
+        rr_request.read_value(&value);
+        set_notes(value);
+        return rr_request.answer(nullptr);
+      }
+      const auto value = get_notes();
+      return rr_request.answer(&value);
+    }
+    case 20: {  // property view
+      const auto value = get_view();
       return rr_request.answer(&value);
     }
     default:

@@ -27,7 +27,7 @@ enum class Mode : ::std::int32_t {
   running = 1,
 };
 
-extern const ::rr::Member rr_members_Board[18];
+extern const ::rr::Member rr_members_Board[21];
 extern const ::rr::ObjectType rr_object_Board;
 
 /// A Board on another node.
@@ -258,6 +258,37 @@ class BoardStub : public virtual ::rr::Stub {
   auto async_set_shared(double value, Token&& token) {
     return rr_async_set<double>(rr_members_Board[17], ::std::forward<Token>(token), value);
   }
+  ::std::int32_t get_page() { return rr_get<::std::int32_t>(rr_members_Board[18]); }
+  template <class Token>
+  auto async_get_page(Token&& token) {
+    return rr_async_get<::std::int32_t>(rr_members_Board[18], ::std::forward<Token>(token));
+  }
+  void set_page(::std::int32_t value) { rr_set(rr_members_Board[18], &value); }
+  template <class Token>
+  auto async_set_page(::std::int32_t value, Token&& token) {
+    return rr_async_set<::std::int32_t>(rr_members_Board[18], ::std::forward<Token>(token), value);
+  }
+  ::std::optional<::std::vector<::std::string>> get_notes() {
+    return rr_get<::std::optional<::std::vector<::std::string>>>(rr_members_Board[19]);
+  }
+  template <class Token>
+  auto async_get_notes(Token&& token) {
+    return rr_async_get<::std::optional<::std::vector<::std::string>>>(
+        rr_members_Board[19], ::std::forward<Token>(token));
+  }
+  void set_notes(const ::std::optional<::std::vector<::std::string>>& value) {
+    rr_set(rr_members_Board[19], &value);
+  }
+  template <class Token>
+  auto async_set_notes(const ::std::optional<::std::vector<::std::string>>& value, Token&& token) {
+    return rr_async_set<::std::optional<::std::vector<::std::string>>>(
+        rr_members_Board[19], ::std::forward<Token>(token), value);
+  }
+  Mode get_view() { return rr_get<Mode>(rr_members_Board[20]); }
+  template <class Token>
+  auto async_get_view(Token&& token) {
+    return rr_async_get<Mode>(rr_members_Board[20], ::std::forward<Token>(token));
+  }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
 
@@ -300,6 +331,11 @@ class BoardSkeleton : public virtual ::rr::Skeleton {
   virtual void set_password(const ::std::string& value) = 0;
   virtual double get_shared() = 0;
   virtual void set_shared(double value) = 0;
+  virtual ::std::int32_t get_page() = 0;
+  virtual void set_page(::std::int32_t value) = 0;
+  virtual ::std::optional<::std::vector<::std::string>> get_notes() = 0;
+  virtual void set_notes(const ::std::optional<::std::vector<::std::string>>& value) = 0;
+  virtual Mode get_view() = 0;
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
   void rr_dispatch(::std::size_t member, ::rr::Request& request) override;
   ::std::shared_ptr<::rr::Skeleton> rr_child(::std::size_t member,
@@ -368,10 +404,20 @@ class BoardDefault : public BoardSkeleton {
   void set_password(const ::std::string& value) override { rr_value_password.set(value); }
   double get_shared() override { return rr_value_shared.get(); }
   void set_shared(double value) override { rr_value_shared.set(value); }
+  ::std::int32_t get_page() override { return rr_value_page.get(); }
+  void set_page(::std::int32_t value) override { rr_value_page.set(value); }
+  ::std::optional<::std::vector<::std::string>> get_notes() override {
+    return rr_value_notes.get();
+  }
+  void set_notes(const ::std::optional<::std::vector<::std::string>>& value) override {
+    rr_value_notes.set(value);
+  }
+  Mode get_view() override { return rr_value_view.get(); }
 
  protected:
   void set_serial_number(::std::int32_t value) { rr_value_serial_number.set(value); }
   ::std::string get_password() { return rr_value_password.get(); }
+  void set_view(Mode value) { rr_value_view.set(value); }
   ::rr::Stored<double> rr_value_gain;
   ::rr::Stored<bool> rr_value_enabled;
   ::rr::Stored<::std::string> rr_value_label;
@@ -391,6 +437,9 @@ class BoardDefault : public BoardSkeleton {
   ::rr::Stored<::std::int32_t> rr_value_serial_number;
   ::rr::Stored<::std::string> rr_value_password;
   ::rr::Stored<double> rr_value_shared;
+  ::rr::StoredPerClient<::std::int32_t> rr_value_page;
+  ::rr::StoredPerClient<::std::optional<::std::vector<::std::string>>> rr_value_notes;
+  ::rr::StoredPerClient<Mode> rr_value_view;
 };
 
 extern const ::rr::Definition rr_definition;
