@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <memory>
@@ -87,6 +88,10 @@ class Client final : public bench::Client {
   std::unique_ptr<bench::Session> connect(int port, int) override {
     return std::make_unique<Session>(node_, port);
   }
+
+  // Callers of L3 have a connection each, as those of omniORB and Thrift do; with ROBDEF_BENCH_SHARED=1
+  // they share one, as those of Ice and gRPC.
+  bool shared_session() override { return std::getenv("ROBDEF_BENCH_SHARED") != nullptr; }
 
   void async(int port, bench::AsyncRun& run) override {
     Session session(node_, port);

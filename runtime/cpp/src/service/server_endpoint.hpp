@@ -201,9 +201,10 @@ class ServerEndpoint final : public channel::Receiver,
 
   Pipes pipes_{*this};
 
-  // The object and the member that were asked last, with the dispatch turn.
+  // The object and the member that were asked last, with the dispatch turn. What is released is not
+  // kept alive until the next request.
   std::string last_path_;
-  std::shared_ptr<const ServedObject> last_object_;
+  std::weak_ptr<const ServedObject> last_object_;
   std::uint32_t last_generation_ = 0;
   const Member* last_member_ = nullptr;
 

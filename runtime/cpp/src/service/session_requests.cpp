@@ -191,7 +191,9 @@ void ServerEndpoint::answer_session_object_type(const Question& question) {
 std::shared_ptr<const ServedObject> ServerEndpoint::find_object(std::string_view path) {
   ObjectTree& objects = host_->objects();
   const std::uint32_t generation = objects.generation();
-  if (last_object_ && last_path_ == path && last_generation_ == generation) return last_object_;
+  if (last_path_ == path && last_generation_ == generation) {
+    if (auto object = last_object_.lock()) return object;
+  }
   auto object = objects.find(path, client_.endpoint);
   last_path_ = path;
   last_object_ = object;
