@@ -32,6 +32,7 @@ class Child {
   void stop() const;
   /// Waits for its end; false when it has not come in time. `status` is that of waitpid.
   bool wait(std::chrono::seconds limit, int& status);
+  [[nodiscard]] pid_t id() const { return process_; }
   [[nodiscard]] bool has_ended() const { return process_ <= 0; }
 
  private:
