@@ -17,55 +17,21 @@
 #include <thread>
 #include <vector>
 
-#include "rr/node.hpp"
-#include "rr/type.hpp"
-#include "rr/wires.hpp"
+#include "runtime/cpp/bench/source.hpp"
 #include "runtime/cpp/src/node/testing/child.hpp"
 #include "runtime/cpp/src/node/testing/process_state.hpp"
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Value = rr::Array<double>;
+using Value = bench::Samples;
+using bench::Source;
+using bench::SourceStub;
 using rr::testing::Child;
 using rr::testing::ProcessState;
 
 constexpr int clients_of_a_process = 250;
 constexpr std::chrono::seconds patience{60};
-
-extern const rr::Definition definition;
-extern const rr::ObjectType source_type;
-constexpr rr::Member members[] = {rr::wire<Value>("level", rr::readonly)};
-
-class SourceStub : public virtual rr::Stub {
- public:
-  [[nodiscard]] const rr::ObjectType& rr_object_type() const override { return source_type; }
-  rr::Wire<Value> level() { return {*this, members[0]}; }
-};
-
-constexpr const rr::ObjectType* objects[] = {&source_type};
-constinit const rr::ObjectType source_type{
-    "bench.fan_out.Source", definition, {}, members, []() -> std::shared_ptr<rr::Stub> {
-      return std::make_shared<SourceStub>();
-    }};
-constinit const rr::Definition definition{
-    "bench.fan_out",
-    "service bench.fan_out\nstdver 0.10\nobject Source\n  wire double[] level [readonly]\nend\n",
-    {0, 10, 0, 0},
-    {},
-    {},
-    {},
-    objects};
-
-class Source final : public rr::Skeleton {
- public:
-  [[nodiscard]] const rr::ObjectType& rr_object_type() const override { return source_type; }
-  void rr_dispatch(std::size_t, rr::Request&) override {}
-  std::shared_ptr<rr::Skeleton> rr_child(std::size_t, const rr::ObjectIndex&) override {
-    return nullptr;
-  }
-  rr::WireServer<Value> level() const { return {*this, members[0]}; }
-};
 
 double cpu_seconds() {
   rusage used{};

@@ -11,48 +11,14 @@
 #include <thread>
 #include <vector>
 
-#include "rr/node.hpp"
-#include "rr/pipes.hpp"
-#include "rr/type.hpp"
+#include "runtime/cpp/bench/source.hpp"
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Sample = rr::Array<double>;
-
-extern const rr::Definition definition;
-extern const rr::ObjectType source_type;
-constexpr rr::Member members[] = {rr::pipe<Sample>("samples", rr::readonly)};
-
-class SourceStub : public virtual rr::Stub {
- public:
-  [[nodiscard]] const rr::ObjectType& rr_object_type() const override { return source_type; }
-  rr::Pipe<Sample> samples() { return {*this, members[0]}; }
-};
-
-constexpr const rr::ObjectType* objects[] = {&source_type};
-constinit const rr::ObjectType source_type{
-    "bench.pipe.Source", definition, {}, members, []() -> std::shared_ptr<rr::Stub> {
-      return std::make_shared<SourceStub>();
-    }};
-constinit const rr::Definition definition{
-    "bench.pipe",
-    "service bench.pipe\nstdver 0.10\nobject Source\n  pipe double[] samples [readonly]\nend\n",
-    {0, 10, 0, 0},
-    {},
-    {},
-    {},
-    objects};
-
-class Source final : public rr::Skeleton {
- public:
-  [[nodiscard]] const rr::ObjectType& rr_object_type() const override { return source_type; }
-  void rr_dispatch(std::size_t, rr::Request&) override {}
-  std::shared_ptr<rr::Skeleton> rr_child(std::size_t, const rr::ObjectIndex&) override {
-    return nullptr;
-  }
-  rr::PipeServer<Sample> samples() const { return {*this, members[0]}; }
-};
+using Sample = bench::Samples;
+using bench::Source;
+using bench::SourceStub;
 
 double seconds(Clock::time_point time) {
   return std::chrono::duration<double>(time.time_since_epoch()).count();

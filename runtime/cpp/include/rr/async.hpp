@@ -496,30 +496,36 @@ class StubCompletion final : public HandlerCompletion<Handler> {
   std::shared_ptr<Stub> found_;
 };
 
-template <class S, class Token>
-auto ServiceSubscription::async_default_client(std::chrono::milliseconds limit,
-                                               Token&& token) const {
+/// For the subscriptions that have a default client: hands `start` what completes the token.
+template <class S, class Start, class Token>
+auto initiate_wait(Start start, Token&& token) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr, std::shared_ptr<S>)>(
-      [subscription = *this, limit](auto&& handler) {
+      [start = std::move(start)](auto&& handler) {
         using Handler = std::decay_t<decltype(handler)>;
-        subscription.start_wait(
-            type_of_stub<S>(), limit,
+        start(
             std::make_unique<StubCompletion<Handler, S>>(std::forward<decltype(handler)>(handler)));
       },
       token);
 }
 
 template <class S, class Token>
+auto ServiceSubscription::async_default_client(std::chrono::milliseconds limit,
+                                               Token&& token) const {
+  return initiate_wait<S>(
+      [subscription = *this, limit](std::unique_ptr<Completion> completion) {
+        subscription.start_wait(type_of_stub<S>(), limit, std::move(completion));
+      },
+      std::forward<Token>(token));
+}
+
+template <class S, class Token>
 auto SubObjectSubscription::async_default_client(std::chrono::milliseconds limit,
                                                  Token&& token) const {
-  return boost::asio::async_initiate<Token, void(std::exception_ptr, std::shared_ptr<S>)>(
-      [subscription = *this, limit](auto&& handler) {
-        using Handler = std::decay_t<decltype(handler)>;
-        subscription.start_wait(
-            type_of_stub<S>(), limit,
-            std::make_unique<StubCompletion<Handler, S>>(std::forward<decltype(handler)>(handler)));
+  return initiate_wait<S>(
+      [subscription = *this, limit](std::unique_ptr<Completion> completion) {
+        subscription.start_wait(type_of_stub<S>(), limit, std::move(completion));
       },
-      token);
+      std::forward<Token>(token));
 }
 
 /// Connects as Node::connect does, on a thread of its own. Signature: void(std::exception_ptr,
