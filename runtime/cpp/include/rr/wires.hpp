@@ -93,9 +93,10 @@ class TypedWireEnd : public WireEnd {
   }
   template <class Function>
   Subscription on_value(Function function) {
-    return on_received([function = std::move(function)](const void* value, const TimeSpec& time) {
-      function(*static_cast<const T*>(value), time);
-    });
+    return on_received(
+        [function = std::move(function)](const void* value, const TimeSpec& time) mutable {
+          function(*static_cast<const T*>(value), time);
+        });
   }
 };
 

@@ -168,12 +168,14 @@ TEST(Wires, FunctionsGetTheValueThatIsThereAndThoseThatCome) {
   std::atomic<double> last = 0;
   std::atomic<int> count = 0;
   {
-    const Subscription values = level.on_in([&](double value, const TimeSpec& time) {
-      EXPECT_GT(time.seconds, 0);
-      EXPECT_GT(value, last);
-      last = value;
-      ++count;
-    });
+    // A function may have a state of its own that changes.
+    const Subscription values =
+        level.on_in([&, own = 0](double value, const TimeSpec& time) mutable {
+          EXPECT_GT(time.seconds, 0);
+          EXPECT_GT(value, last);
+          last = value;
+          count = ++own;
+        });
     EXPECT_TRUE(eventually([&] { return last == 1; }));
     for (int i = 2; i <= 100; ++i) {
       wired->set_level(i);
