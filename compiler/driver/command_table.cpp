@@ -142,8 +142,8 @@ constexpr std::array commands = {
     CommandRow{Command::describe, "describe", "[OPTION...] FILE... | URL [PATH]",
                "print a readable outline of definitions",
                "Prints what the definitions offer: types with their sizes, objects with their\n"
-               "members, each with its documentation. With the URL of a service: its definitions,\n"
-               "or one of its objects or members; --format=json prints JSON then.\n"},
+               "members, each with its documentation. With the URL of a service: what that\n"
+               "offers, or one of its objects or members; --format=json prints JSON then.\n"},
     CommandRow{Command::model, "model", "[OPTION...] FILE...", "print the resolved model as JSON",
                "Prints the given definitions and their imports as JSON: names resolved,\n"
                "constants evaluated, sizes computed. The same input gives the same bytes.\n"},

@@ -139,9 +139,9 @@ class ArgumentReader {
       return "no code given";
     }
     if (command_.command == Command::record) return missing_to_record();
-    if (command_.command >= Command::get || (command_.command == Command::describe &&
-                                             !options_.inputs.empty() &&
-                                             is_url(options_.inputs.front()))) {
+    if (command_.command >= Command::get ||
+        (command_.command == Command::describe && !options_.inputs.empty() &&
+         is_url(options_.inputs.front()))) {
       return live::missing(options_);
     }
     if (options_.inputs.empty() && command_.command != Command::explain) return "no file given";

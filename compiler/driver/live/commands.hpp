@@ -13,8 +13,8 @@ namespace robdef {
 /// Whether an argument is a URL and not a file.
 bool is_url(std::string_view text);
 
-/// `describe`, `get`, `set`, `call`, `watch`, `connect` and `complete`, at the service at the URL that
-/// is their first argument.
+/// `describe`, `get`, `set`, `call`, `watch`, `connect` and `complete`, at the service at the URL
+/// that is their first argument.
 ExitStatus run_live(const Options& options, std::ostream& out, std::ostream& err);
 
 }  // namespace robdef

@@ -23,15 +23,16 @@ std::string first_line(const std::string& path) {
   return line;
 }
 
-// The terminal of the program, whatever its standard streams are; it shows nothing of what is typed.
+// The terminal of the program, whatever its standard streams are; it shows nothing of what is
+// typed.
 class SilentTerminal {
  public:
   SilentTerminal() : descriptor_(::open("/dev/tty", O_RDWR | O_CLOEXEC)) {
     if (descriptor_ < 0 || ::tcgetattr(descriptor_, &before_) != 0) {
       if (descriptor_ >= 0) ::close(descriptor_);
-      throw rr::Error(rr::ErrorCode::authentication_error,
-                      "no password: give `--password-file`, or set " +
-                          std::string(password_variable));
+      throw rr::Error(
+          rr::ErrorCode::authentication_error,
+          "no password: give `--password-file`, or set " + std::string(password_variable));
     }
     termios silent = before_;
     silent.c_lflag &= ~static_cast<tcflag_t>(ECHO);

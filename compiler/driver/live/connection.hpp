@@ -17,8 +17,8 @@ inline constexpr const char* password_variable = "ROBDEF_PASSWORD";
 rr::NodeOptions node_options(const LiveOptions& options);
 
 /// Credentials of the user: the password from the file, else from the environment, else asked for
-/// at the terminal. Empty without a user. Throws rr::Error: io_error for a file that cannot be read,
-/// authentication_error when there is nowhere to ask.
+/// at the terminal. Empty without a user. Throws rr::Error: io_error for a file that cannot be
+/// read, authentication_error when there is nowhere to ask.
 std::map<std::string, rr::VarValue> credentials_of(const LiveOptions& options);
 
 /// A session with the service at a URL, on a node of its own.

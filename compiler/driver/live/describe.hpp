@@ -21,8 +21,8 @@ struct TypeAt {
   }
 };
 
-/// Of the object at a path, found in the definitions; the service is asked only for what lies behind
-/// a varobject. Throws rr::Error.
+/// Of the object at a path, found in the definitions; the service is asked only for what lies
+/// behind a varobject. Throws rr::Error.
 TypeAt object_type_at(const rr::dynamic::Object& root, const ObjectPath& path);
 
 /// Prints outlines of all definitions of a service; with a path those of one object or member.

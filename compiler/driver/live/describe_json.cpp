@@ -90,7 +90,8 @@ class Describer {
     if (member.kind == rr::MemberKind::objref) {
       json_.member("object", member.object_type.empty() ? "varobject" : member.object_type);
       const bool is_number = member.index == rr::IndexForm::int32;
-      if (member.index != rr::IndexForm::none) json_.member("index", is_number ? "int32" : "string");
+      if (member.index != rr::IndexForm::none)
+        json_.member("index", is_number ? "int32" : "string");
     } else if (member.kind != rr::MemberKind::event) {
       write_type("type", member.type);
     }

@@ -37,10 +37,10 @@ class Library {
  public:
   Library() : handle_(::dlopen("libedit.so.2", RTLD_NOW | RTLD_LOCAL)) {
     if (handle_ == nullptr) return;
-    is_complete_ = load(init, "el_init") && load(set, "el_set") &&
-                   load(gets, "el_gets") && load(end, "el_end") && load(line, "el_line") &&
-                   load(insert, "el_insertstr") && load(history_init, "history_init") &&
-                   load(history_do, "history") && load(history_end, "history_end");
+    is_complete_ = load(init, "el_init") && load(set, "el_set") && load(gets, "el_gets") &&
+                   load(end, "el_end") && load(line, "el_line") && load(insert, "el_insertstr") &&
+                   load(history_init, "history_init") && load(history_do, "history") &&
+                   load(history_end, "history_end");
   }
   ~Library() {
     if (handle_ != nullptr) ::dlclose(handle_);
@@ -83,7 +83,8 @@ class Editor final : public LineReader {
     library_->set(editor_, EL_EDITOR, "emacs");
     library_->set(editor_, EL_SIGNAL, 1);
     library_->set(editor_, EL_HIST, library_->history_do, history_);
-    library_->set(editor_, EL_ADDFN, "complete-member", "completes members", &Editor::complete_word);
+    library_->set(editor_, EL_ADDFN, "complete-member", "completes members",
+                  &Editor::complete_word);
     library_->set(editor_, EL_BIND, "^I", "complete-member", nullptr);
     self_ = this;
   }

@@ -36,6 +36,21 @@ std::string subject_of(const MemberDescription& member) { return "member " + mem
                   subject_of(member) + ": expected a " + expected + ", it is a " + kind_of(member));
 }
 
+// What a user has written for a value.
+Value read_json(const dynamic::ValueType& type, const std::string& text,
+                const std::string& subject) {
+  try {
+    return type.from_json(text, subject);
+  } catch (const rr::Error& error) {
+    if (error.code() != rr::ErrorCode::invalid_argument) throw;
+    constexpr std::size_t most = 60;
+    throw rr::Error(rr::ErrorCode::invalid_argument,
+                    subject + ": expected " + type.text() + " as JSON, got `" +
+                        (text.size() > most ? text.substr(0, most) + "..." : text) + "`" +
+                        (type.kind() == dynamic::Kind::text ? "; a string has quotes" : ""));
+  }
+}
+
 dynamic::Memory::Numbers position_in(const dynamic::Memory::Numbers& dims,
                                      const LiveOptions& options) {
   return options.position.value_or(dynamic::Memory::Numbers(dims.size(), 0));
@@ -51,16 +66,15 @@ Value read(const dynamic::Memory& memory, const LiveOptions& options) {
   return memory.read(position, counts);
 }
 
-dynamic::List read_arguments(const MemberDescription& member,
-                             std::span<const std::string> texts) {
+dynamic::List read_arguments(const MemberDescription& member, std::span<const std::string> texts) {
   dynamic::List arguments;
   for (std::size_t i = 0; i < texts.size(); ++i) {
     // One too many is refused with all of them.
-    arguments.push_back(i < member.parameters.size()
-                            ? member.parameters[i].type.from_json(
-                                  texts[i],
-                                  subject_of(member) + ", parameter " + member.parameters[i].name)
-                            : Value());
+    arguments.push_back(
+        i < member.parameters.size()
+            ? read_json(member.parameters[i].type, texts[i],
+                        subject_of(member) + ", parameter " + member.parameters[i].name)
+            : Value());
   }
   return arguments;
 }
@@ -86,7 +100,7 @@ class Steps {
       if (takes()) {
         const std::optional<std::string> text = next_text(count);
         if (!text) break;
-        given = found_.member.generator_parameter.from_json(*text, subject_of(found_.member));
+        given = read_json(found_.member.generator_parameter, *text, subject_of(found_.member));
       }
       const std::optional<Value> value = generator.next(given);
       if (!value) return;
@@ -97,9 +111,7 @@ class Steps {
   }
 
  private:
-  [[nodiscard]] bool takes() const {
-    return found_.member.generator != rr::GeneratorForm::returns;
-  }
+  [[nodiscard]] bool takes() const { return found_.member.generator != rr::GeneratorForm::returns; }
   [[nodiscard]] std::optional<std::string> next_text(std::uint64_t count) const {
     if (steps_.size() == 1 && steps_.front() == "-") return next_();
     if (count >= steps_.size()) return std::nullopt;
@@ -141,7 +153,7 @@ void set(const Object& root, std::string_view path, const std::string& json,
   if (!is_memory && member.kind != MemberKind::property && member.kind != MemberKind::wire) {
     refuse(member, "property, wire or memory");
   }
-  const Value value = member.type.from_json(json, subject_of(member));
+  const Value value = read_json(member.type, json, subject_of(member));
   if (member.kind == MemberKind::property) {
     object.set(member.name, value);
   } else if (is_memory) {

@@ -94,7 +94,8 @@ TEST_F(Members, ErrorsNameTheMemberAndTheType) {
   EXPECT_THAT(err({"set", "pose", R"({"x":"a","steps":1,"notes":null})"}),
               HasSubstr("member pose, field x: expected double, got string"));
   EXPECT_THAT(err({"set", "byte", "256"}), HasSubstr("member byte"));
-  EXPECT_THAT(err({"set", "label", "text"}), AllOf(HasSubstr("member label"), HasSubstr("JSON")));
+  EXPECT_THAT(err({"set", "label", "text"}),
+              HasSubstr("member label: expected string as JSON, got `text`; a string has quotes"));
   EXPECT_THAT(err({"get", "nothing"}), HasSubstr("has no member `nothing`"));
   EXPECT_THAT(err({"get", "ticked"}),
               HasSubstr("member ticked: expected a property, wire or memory, it is a event"));

@@ -102,8 +102,8 @@ MemberPath parse_member_path(std::string_view text) {
   ObjectPath path = parse_object_path(text);
   if (path.empty()) refuse("no member given");
   if (path.back().index) {
-    refuse("`" + std::string(text) + "` is an object; name one of its members: " +
-           std::string(text) + ".NAME");
+    refuse("`" + std::string(text) +
+           "` is an object; name one of its members: " + std::string(text) + ".NAME");
   }
   std::string member = std::move(path.back().name);
   path.pop_back();

@@ -50,13 +50,13 @@ TEST_F(Sessions, WiresPipesAndEventsAreWatched) {
     return watching.out().find("ticked") != std::string::npos;
   }));
   EXPECT_EQ(watching.end(0), 0);
-  EXPECT_THAT(
-      watching.out(),
-      MatchesRegex("\\{\"member\":\"level\",\"time\":\"20..-..-..T..:..:..\\..........Z\",\"value\":"
-                   "1\\.5\\}\n"
-                   "\\{\"member\":\"points\",\"value\":\\{\"x\":1,\"y\":-2\\}\\}\n"
-                   "\\{\"member\":\"ticked\",\"value\":\\{\"count\":7,\"text\":\"a "
-                   "\\\\\"b\\\\\"\"\\}\\}\n"));
+  EXPECT_THAT(watching.out(),
+              MatchesRegex(
+                  "\\{\"member\":\"level\",\"time\":\"20..-..-..T..:..:..\\..........Z\",\"value\":"
+                  "1\\.5\\}\n"
+                  "\\{\"member\":\"points\",\"value\":\\{\"x\":1,\"y\":-2\\}\\}\n"
+                  "\\{\"member\":\"ticked\",\"value\":\\{\"count\":7,\"text\":\"a "
+                  "\\\\\"b\\\\\"\"\\}\\}\n"));
   EXPECT_TRUE(eventually([&] { return bench_->level().connection_count() == 0; }));
 }
 
@@ -74,7 +74,8 @@ TEST_F(Sessions, AWatchSaysThatTheServiceIsLostAndComesBack) {
   Running watching(folder_, {"watch", server_.url(), "level", "--count", "2"});
   ASSERT_TRUE(eventually([&] { return watching.out().find('\n') != std::string::npos; }));
   server_.stop();
-  ASSERT_TRUE(eventually([&] { return watching.err().find("connection lost") != std::string::npos; }));
+  ASSERT_TRUE(
+      eventually([&] { return watching.err().find("connection lost") != std::string::npos; }));
   server_.start();
   bench_->level().set_in(2);
   EXPECT_EQ(watching.end(0), 0);
@@ -88,7 +89,8 @@ TEST_F(Sessions, WhatCannotBeWatchedIsTold) {
     EXPECT_EQ(ended.status, 1);
     return ended.err;
   };
-  EXPECT_THAT(err("gain"), HasSubstr("member gain: expected a wire, pipe or event, it is a property"));
+  EXPECT_THAT(err("gain"),
+              HasSubstr("member gain: expected a wire, pipe or event, it is a property"));
   EXPECT_THAT(err("nothing"), HasSubstr("has no member `nothing`"));
   server_.stop();
   EXPECT_THAT(err("level"), HasSubstr("ConnectionError"));
@@ -125,9 +127,9 @@ TEST_F(Sessions, AFailedCommandDoesNotEndThePrompt) {
   const Ended ended = prompt("get nothing\ngte gain\nset gain\ncd lamps[9]\nget fixed");
   EXPECT_EQ(ended.status, 1);
   EXPECT_EQ(ended.out, "42.125\n");
-  EXPECT_THAT(ended.err, AllOf(HasSubstr("has no member `nothing`"),
-                               HasSubstr("did you mean `get`?"),
-                               HasSubstr("give a member and a value"), HasSubstr("two lamps")));
+  EXPECT_THAT(ended.err,
+              AllOf(HasSubstr("has no member `nothing`"), HasSubstr("did you mean `get`?"),
+                    HasSubstr("give a member and a value"), HasSubstr("two lamps")));
 }
 
 TEST(Locks, AreMadeAtThePrompt) {
@@ -137,11 +139,11 @@ TEST(Locks, AreMadeAtThePrompt) {
   const TemporaryFolder folder;
   folder.write("password", "wonder 1\n");
   const Ended ended =
-      run_robdef(folder,
-                 {"connect", server.url(), "--user=alice", "--password-file=password"}, "",
+      run_robdef(folder, {"connect", server.url(), "--user=alice", "--password-file=password"}, "",
                  "lock client\nset gain 2\nlock\nunlock\nlock user\nunlock\nlock all\n");
   EXPECT_EQ(ended.status, 1);
-  EXPECT_THAT(ended.err, AllOf(HasSubstr("ObjectLocked"), HasSubstr("`user` or for this `client`")));
+  EXPECT_THAT(ended.err,
+              AllOf(HasSubstr("ObjectLocked"), HasSubstr("`user` or for this `client`")));
   EXPECT_THAT(run_robdef(folder, {"connect", server.url()}, "", "lock\n").err,
               HasSubstr("AuthenticationError"));
 }
@@ -174,10 +176,11 @@ TEST_F(Sessions, ATerminalHasAPromptHistoryAndCompletion) {
 }
 
 TEST(Words, AreValuesAsJsonToo) {
-  EXPECT_THAT(live::split_line("call  move [1, 2] \"a \\\" ]text\" {\"k\": [1, {}]} lamps[left one].x")
-                  .words,
-              ElementsAre("call", "move", "[1, 2]", "\"a \\\" ]text\"", "{\"k\": [1, {}]}",
-                          "lamps[left one].x"));
+  EXPECT_THAT(
+      live::split_line("call  move [1, 2] \"a \\\" ]text\" {\"k\": [1, {}]} lamps[left one].x")
+          .words,
+      ElementsAre("call", "move", "[1, 2]", "\"a \\\" ]text\"", "{\"k\": [1, {}]}",
+                  "lamps[left one].x"));
   EXPECT_TRUE(live::split_line("get ga").is_last_open);
   EXPECT_FALSE(live::split_line("get ").is_last_open);
 }

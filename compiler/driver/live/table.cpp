@@ -67,8 +67,7 @@ constexpr std::array command_rows = {
                "print the value of a member of a service",
                "Prints the value of a property, what a wire holds, or a part of a memory: JSON,\n"
                "a line for each MEMBER.\n"},
-    CommandRow{Command::set, "set", "[OPTION...] URL MEMBER JSON",
-               "set a member of a service",
+    CommandRow{Command::set, "set", "[OPTION...] URL MEMBER JSON", "set a member of a service",
                "Sets a property, pokes a value into a wire, or writes into a memory.\n"},
     CommandRow{Command::call, "call", "[OPTION...] URL MEMBER [JSON...]",
                "call a function of a service",
@@ -91,17 +90,19 @@ constexpr CommandRow completing_row = {Command::complete, "complete",
                                        "Prints what WORD may become as a member for a command, a\n"
                                        "line each. For the completion of shells.\n"};
 
-constexpr CommandSet connecting = {Command::describe, Command::get,     Command::set,
-                                   Command::call,     Command::watch,   Command::connect,
+constexpr CommandSet connecting = {Command::describe, Command::get,   Command::set,
+                                   Command::call,     Command::watch, Command::connect,
                                    Command::complete};
 
 constexpr std::array option_rows = {
-    OptionRow{"--user", "", "NAME", connecting,
-              "log in at the service at a URL; the password\nis that of --password-file, else of the"
-              "\nenvironment, else asked for at the terminal",
-              take_text<&LiveOptions::user>},
+    OptionRow{
+        "--user", "", "NAME", connecting,
+        "log in at the service at a URL; the password\nis that of --password-file, else of the"
+        "\nenvironment, else asked for at the terminal",
+        take_text<&LiveOptions::user>},
     OptionRow{"--password-file", "", "FILE", connecting,
-              "the first line of this file is the password", take_text<&LiveOptions::password_file>},
+              "the first line of this file is the password",
+              take_text<&LiveOptions::password_file>},
     OptionRow{"--timeout", "", "SECONDS", connecting,
               "how long to wait for an answer of the service;\ndefault: 15, and 5 to connect",
               take_seconds<&LiveOptions::timeout>},

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/driver/live/watch.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -9,8 +11,6 @@
 #include <rr/error.hpp>
 #include <string_view>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "compiler/driver/live/connection.hpp"
 #include "compiler/driver/live/members.hpp"
@@ -76,9 +76,7 @@ struct Watch::Ends {
 };
 
 Watch::Watch(std::span<const std::string> members, const LiveOptions& options)
-    : options_(options),
-      queue_(std::make_shared<WatchQueue>()),
-      ends_(std::make_unique<Ends>()) {
+    : options_(options), queue_(std::make_shared<WatchQueue>()), ends_(std::make_unique<Ends>()) {
   for (const std::string& member : members) {
     members_.emplace_back(member, parse_member_path(member));
   }
@@ -98,8 +96,7 @@ void Watch::attach(const dynamic::Object& root) {
   for (const auto& [text, path] : members_) attach(object_at(root, path.object), path, text);
 }
 
-void Watch::attach(const dynamic::Object& object, const MemberPath& path,
-                   const std::string& text) {
+void Watch::attach(const dynamic::Object& object, const MemberPath& path, const std::string& text) {
   const MemberDescription member = object.member(path.member);
   const auto put = [queue = queue_, text, type = member.type](const Value& value,
                                                               const std::string& time) {
@@ -107,10 +104,8 @@ void Watch::attach(const dynamic::Object& object, const MemberPath& path,
   };
   if (member.kind == MemberKind::wire) {
     ends_->wires.push_back(object.wire(member.name).connect());
-    ends_->handlers.push_back(
-        ends_->wires.back().on_in([put](const Value& value, const rr::TimeSpec& time) {
-          put(value, time_text(time));
-        }));
+    ends_->handlers.push_back(ends_->wires.back().on_in(
+        [put](const Value& value, const rr::TimeSpec& time) { put(value, time_text(time)); }));
   } else if (member.kind == MemberKind::pipe) {
     ends_->pipes.push_back(object.pipe(member.name).connect());
     ends_->handlers.push_back(
@@ -122,9 +117,9 @@ void Watch::attach(const dynamic::Object& object, const MemberPath& path,
           queue->put_line(line_of(text, "", arguments_json(member, arguments)));
         }));
   } else {
-    throw rr::Error(rr::ErrorCode::member_format_mismatch,
-                    "member " + member.name + ": expected a wire, pipe or event, it is a " +
-                        kind_of(member));
+    throw rr::Error(
+        rr::ErrorCode::member_format_mismatch,
+        "member " + member.name + ": expected a wire, pipe or event, it is a " + kind_of(member));
   }
 }
 
@@ -132,9 +127,12 @@ void Watch::run(const EndSignals& signals, std::ostream& out) {
   // Signals are looked for so often.
   constexpr std::chrono::milliseconds turn{100};
   const auto begin = Clock::now();
-  const auto is_over = [&] { return options_.duration && Clock::now() - begin >= *options_.duration; };
+  const auto is_over = [&] {
+    return options_.duration && Clock::now() - begin >= *options_.duration;
+  };
   std::uint64_t count = 0;
-  while (!has_ended_ && !is_over() && !signals.has_come() && (!options_.limit || count < *options_.limit)) {
+  while (!has_ended_ && !is_over() && !signals.has_come() &&
+         (!options_.limit || count < *options_.limit)) {
     auto until = Clock::now() + turn;
     if (options_.duration) until = std::min(until, begin + *options_.duration);
     const auto item = queue_->take(until);
@@ -162,29 +160,35 @@ ExitStatus watch_service(const std::string& url, std::span<const std::string> me
   const auto on_first_failure = [&](const rr::Error& why) {
     if (!was_connected) throw rr::Error(why);
   };
-  service.on_connected([&](const rr::SubscriptionClientId& client) {
-    watch.post([&, client] {
-      try {
-        // It may have gone meanwhile, and come back, which is told too.
-        const auto stub = service.client<rr::Stub>(client);
-        if (!stub) return;
-        watch.attach(dynamic::Object::of(stub));
-        if (was_connected) err << "robdef: connected again" << std::endl;
-        was_connected = true;
-      } catch (const rr::Error& error) {
-        on_first_failure(error);
-        err << "robdef: " << error.what() << std::endl;
-      }
-    });
-  }).detach();
-  service.on_disconnected([&](const rr::SubscriptionClientId&, const rr::Error& why) {
-    watch.post([&, why] {
-      err << "robdef: connection lost, trying again: " << why.what() << std::endl;
-    });
-  }).detach();
-  service.on_failed([&](const std::vector<std::string>&, const rr::Error& why) {
-    watch.post([&, why] { on_first_failure(why); });
-  }).detach();
+  service
+      .on_connected([&](const rr::SubscriptionClientId& client) {
+        watch.post([&, client] {
+          try {
+            // It may have gone meanwhile, and come back, which is told too.
+            const auto stub = service.client<rr::Stub>(client);
+            if (!stub) return;
+            watch.attach(dynamic::Object::of(stub));
+            if (was_connected) err << "robdef: connected again" << std::endl;
+            was_connected = true;
+          } catch (const rr::Error& error) {
+            on_first_failure(error);
+            err << "robdef: " << error.what() << std::endl;
+          }
+        });
+      })
+      .detach();
+  service
+      .on_disconnected([&](const rr::SubscriptionClientId&, const rr::Error& why) {
+        watch.post([&, why] {
+          err << "robdef: connection lost, trying again: " << why.what() << std::endl;
+        });
+      })
+      .detach();
+  service
+      .on_failed([&](const std::vector<std::string>&, const rr::Error& why) {
+        watch.post([&, why] { on_first_failure(why); });
+      })
+      .detach();
 
   try {
     watch.run(signals, out);

@@ -14,9 +14,9 @@
 #include "compiler/driver/live/object_path.hpp"
 #include "compiler/driver/live_options.hpp"
 
-/// Values of wires, packets of pipes and events as they come: an object of JSON a line, with `member`
-/// as it was asked for, the sender's `time` where it is sent, and `value`; the parameters of an event
-/// are the fields of its value.
+/// Values of wires, packets of pipes and events as they come: an object of JSON a line, with
+/// `member` as it was asked for, the sender's `time` where it is sent, and `value`; the parameters
+/// of an event are the fields of its value.
 namespace robdef::live {
 
 class WatchQueue;
@@ -52,8 +52,8 @@ class Watch {
   bool has_ended_ = false;
 };
 
-/// Watches members of the service at a URL, and connects again when the connection is lost, which it
-/// says on `err`. Throws rr::Error when the first attempt fails.
+/// Watches members of the service at a URL, and connects again when the connection is lost, which
+/// it says on `err`. Throws rr::Error when the first attempt fails.
 ExitStatus watch_service(const std::string& url, std::span<const std::string> members,
                          const LiveOptions& options, std::ostream& out, std::ostream& err);
 

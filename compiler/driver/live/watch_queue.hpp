@@ -13,8 +13,8 @@
 
 namespace robdef::live {
 
-/// From the threads of the node to the one that prints. Whoever puts a line where no more fit waits:
-/// so a wire skips values, and the rest is held back at its sender.
+/// From the threads of the node to the one that prints. Whoever puts a line where no more fit
+/// waits: so a wire skips values, and the rest is held back at its sender.
 class WatchQueue {
  public:
   struct Item {
