@@ -175,6 +175,44 @@ TEST_F(Sessions, ATerminalHasAPromptHistoryAndCompletion) {
   EXPECT_EQ(terminal.end(), 0);
 }
 
+TEST(Passwords, AreAskedForAtTheTerminal) {
+  const auto users =
+      std::make_shared<rr::PasswordUsers>("alice " + rr::PasswordUsers::hash("wonder 1") + " _\n");
+  rr::testing::Server server("bench", std::make_shared<Bench>(), {},
+                             {.users = users, .require_user = true});
+  Terminal terminal({"get", server.url(), "fixed", "--user", "alice"});
+  ASSERT_TRUE(terminal.shows("password of alice: ")) << terminal.screen();
+  terminal.type("wonder 1\n");
+  EXPECT_TRUE(terminal.shows("42.125")) << terminal.screen();
+  EXPECT_EQ(terminal.end(), 0);
+  EXPECT_THAT(terminal.screen(), Not(HasSubstr("wonder")));
+}
+
+TEST_F(Sessions, APromptConnectsAgainWhenTheServiceIsBack) {
+  Terminal terminal({"connect", server_.url()});
+  ASSERT_TRUE(terminal.shows("bench> ")) << terminal.screen();
+  terminal.type("watch level\n");
+  ASSERT_TRUE(eventually([&] { return has_wire(); }));
+  server_.stop();
+  ASSERT_TRUE(terminal.shows("robdef: ")) << terminal.screen();
+  ASSERT_TRUE(terminal.shows("bench> ")) << terminal.screen();
+  server_.start();
+  terminal.type("get fixed\n");
+  EXPECT_TRUE(terminal.shows("connecting again")) << terminal.screen();
+  EXPECT_TRUE(terminal.shows("42.125")) << terminal.screen();
+  terminal.type("\x04");  // the end of the input
+  EXPECT_EQ(terminal.end(), 0);
+}
+
+TEST_F(Sessions, AWatchEndsWhenNothingCanBePrinted) {
+  bench_->level().set_in(1);
+  const std::string command = "'" ROBDEF_PROGRAM "' watch '" + server_.url() +
+                              "' level >/dev/full 2>'" + (folder_ / "err") + "'";
+  const int status = std::system(command.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_THAT(read_text(folder_ / "err"), HasSubstr("standard output cannot be written"));
+}
+
 TEST(Words, AreValuesAsJsonToo) {
   EXPECT_THAT(
       live::split_line("call  move [1, 2] \"a \\\" ]text\" {\"k\": [1, {}]} lamps[left one].x")

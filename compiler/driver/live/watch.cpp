@@ -131,8 +131,7 @@ void Watch::run(const EndSignals& signals, std::ostream& out) {
     return options_.duration && Clock::now() - begin >= *options_.duration;
   };
   std::uint64_t count = 0;
-  while (!has_ended_ && !is_over() && !signals.has_come() &&
-         (!options_.limit || count < *options_.limit)) {
+  while (out && !is_over() && !signals.has_come() && (!options_.limit || count < *options_.limit)) {
     auto until = Clock::now() + turn;
     if (options_.duration) until = std::min(until, begin + *options_.duration);
     const auto item = queue_->take(until);

@@ -35,9 +35,9 @@ class Watch {
   /// Connects the members of a service. Throws rr::Error (member_format_mismatch for a member of
   /// another kind).
   void attach(const rr::dynamic::Object& root);
-  /// Prints until there are enough, the time is over, the program is to end, or end() was called.
+  /// Prints until there are enough, the time is over, the program is to end, or nothing can be
+  /// printed any more. Throws what posted work throws.
   void run(const EndSignals& signals, std::ostream& out);
-  void end() { has_ended_ = true; }
   /// Disconnects the members; what comes now is not printed. To be called before the node ends.
   void close();
 
@@ -49,7 +49,6 @@ class Watch {
   std::vector<std::pair<std::string, MemberPath>> members_;
   std::shared_ptr<WatchQueue> queue_;
   std::unique_ptr<Ends> ends_;
-  bool has_ended_ = false;
 };
 
 /// Watches members of the service at a URL, and connects again when the connection is lost, which
