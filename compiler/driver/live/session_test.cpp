@@ -154,8 +154,10 @@ TEST_F(Sessions, ATerminalHasAPromptHistoryAndCompletion) {
   terminal.type("get fi\t\n");
   ASSERT_TRUE(terminal.shows("fixed")) << terminal.screen();
   ASSERT_TRUE(terminal.shows("42.125")) << terminal.screen();
+  ASSERT_TRUE(terminal.shows("bench> ")) << terminal.screen();
   terminal.type("get lamps[0].b\t\n");
   ASSERT_TRUE(terminal.shows("brightness")) << terminal.screen();
+  ASSERT_TRUE(terminal.shows("bench> ")) << terminal.screen();
   terminal.type("get by\t");
   ASSERT_TRUE(terminal.shows("by_name")) << terminal.screen();
   ASSERT_TRUE(terminal.shows("by_number")) << terminal.screen();
@@ -200,6 +202,8 @@ TEST_F(Sessions, APromptConnectsAgainWhenTheServiceIsBack) {
   terminal.type("get fixed\n");
   EXPECT_TRUE(terminal.shows("connecting again")) << terminal.screen();
   EXPECT_TRUE(terminal.shows("42.125")) << terminal.screen();
+  // What is no line yet may get lost while the terminal is not read.
+  ASSERT_TRUE(terminal.shows("bench> ")) << terminal.screen();
   terminal.type("\x04");  // the end of the input
   EXPECT_EQ(terminal.end(), 0);
 }

@@ -59,13 +59,16 @@ class Terminal {
     });
   }
   [[nodiscard]] const std::string& screen() const { return screen_; }
-  /// Its exit status, -1 when a signal has ended it.
+  /// Its exit status, -1 when a signal has ended it: one does that when it does not end itself.
   int end() {
     int status = 0;
-    // What it prints last must go somewhere.
-    while (::waitpid(process_, &status, WNOHANG) == 0) {
-      read();
-      ::usleep(1000);
+    const auto has_ended = [&] {
+      read();  // what it prints last must go somewhere
+      return ::waitpid(process_, &status, WNOHANG) != 0;
+    };
+    if (!rr::testing::eventually(has_ended)) {
+      ::kill(process_, SIGKILL);
+      ::waitpid(process_, &status, 0);
     }
     process_ = -1;
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
