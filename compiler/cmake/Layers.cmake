@@ -15,6 +15,9 @@ set(robdef_layers
   "compiler/backends/cpp/generated_test.cpp: compiler/model runtime/cpp/include/rr"
   "compiler/backends/cpp/generated_members_test.cpp: runtime/cpp/include/rr"
   "compiler/driver: compiler/diagnostics compiler/syntax compiler/model compiler/output compiler/backends runtime/cpp/include/rr runtime/cpp/src/replay"
+  "compiler/driver/live/members_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
+  "compiler/driver/live/session_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
+  "compiler/driver/live/testing: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
   "compiler/driver/recordings_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
 
   "runtime/cpp/include/rr:"
@@ -48,6 +51,7 @@ set(robdef_outside_headers
   "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress conformance benchmarks"
   "^fmt/| compiler benchmarks"
   "^nlohmann/| runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"
+  "^histedit\\.h$| compiler/driver/live/line_reader.cpp"
   "^png\\.h$| examples")
 
 # A name of a folder or file that `path` is or lies below.

@@ -10,6 +10,7 @@
 
 #include "compiler/backends/backend.hpp"
 #include "compiler/diagnostics/spelling.hpp"
+#include "compiler/driver/live/table.hpp"
 #include "runtime/cpp/src/replay/words.hpp"
 
 namespace robdef {
@@ -138,10 +139,11 @@ constexpr std::array commands = {
                "report errors and warnings, write nothing",
                "Checks the definitions and everything they import. All errors of all files are\n"
                "reported in one run.\n"},
-    CommandRow{Command::describe, "describe", "[OPTION...] FILE...",
+    CommandRow{Command::describe, "describe", "[OPTION...] FILE... | URL [PATH]",
                "print a readable outline of definitions",
                "Prints what the definitions offer: types with their sizes, objects with their\n"
-               "members, each with its documentation.\n"},
+               "members, each with its documentation. With the URL of a service: what that\n"
+               "offers, or one of its objects or members; --format=json prints JSON then.\n"},
     CommandRow{Command::model, "model", "[OPTION...] FILE...", "print the resolved model as JSON",
                "Prints the given definitions and their imports as JSON: names resolved,\n"
                "constants evaluated, sizes computed. The same input gives the same bytes.\n"},
@@ -339,6 +341,13 @@ std::string languages() {
   return text;
 }
 
+template <class Row, std::size_t size>
+std::vector<Row> with(const std::array<Row, size>& rows, std::span<const Row> others) {
+  std::vector<Row> all(rows.begin(), rows.end());
+  all.insert(all.end(), others.begin(), others.end());
+  return all;
+}
+
 constexpr std::string_view environment_and_exit =
     "\nEnvironment:\n"
     "  ROBOTRACONTEUR_ROBDEF_PATH  folders searched for imports after those of -I,\n"
@@ -347,8 +356,14 @@ constexpr std::string_view environment_and_exit =
 
 }  // namespace
 
-std::span<const CommandRow> command_rows() { return commands; }
-std::span<const OptionRow> option_rows() { return options; }
+std::span<const CommandRow> command_rows() {
+  static const std::vector<CommandRow> all = with(commands, live::commands());
+  return all;
+}
+std::span<const OptionRow> option_rows() {
+  static const std::vector<OptionRow> all = with(options, live::options());
+  return all;
+}
 
 std::string general_help() {
   std::string text =
@@ -358,7 +373,7 @@ std::string general_help() {
       "clients and services.\n"
       "\n"
       "Commands:\n";
-  for (const CommandRow& row : commands) {
+  for (const CommandRow& row : command_rows()) {
     text += "  " + padded(std::string(row.name), 12) + std::string(row.summary) + "\n";
   }
   text +=
@@ -380,7 +395,7 @@ std::string help_of(const CommandRow& command) {
                      std::string(command.arguments) + "\n\n" + std::string(command.description) +
                      "\nOptions:\n";
   bool has_language = false;
-  for (const OptionRow& row : options) {
+  for (const OptionRow& row : option_rows()) {
     if (!row.commands.contains(command.command)) continue;
     text += option_line(row.short_name, row.name, row.value, row.help);
     has_language = has_language || row.name == "--lang";
@@ -392,6 +407,7 @@ std::string help_of(const CommandRow& command) {
   } else if (command.command == Command::explain) {
     text += "\nExit status: 0 fine, 2 no such code.\n";
   } else {
+    if (command.command >= Command::get) text += live::environment_help;
     text += "\nExit status: 0 fine, 1 errors, 2 used wrongly, 3 a fault of robdef itself.\n";
   }
   return text;

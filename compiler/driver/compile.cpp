@@ -55,6 +55,12 @@ Product make_product(const Options& options, const model::Model& model, const So
     case Command::inspect:
     case Command::record:
     case Command::replay:
+    case Command::get:
+    case Command::set:
+    case Command::call:
+    case Command::watch:
+    case Command::connect:
+    case Command::complete:
       break;
   }
   return {};

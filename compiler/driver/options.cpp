@@ -6,6 +6,8 @@
 
 #include "compiler/diagnostics/spelling.hpp"
 #include "compiler/driver/command_table.hpp"
+#include "compiler/driver/live/commands.hpp"
+#include "compiler/driver/live/table.hpp"
 
 namespace robdef {
 
@@ -22,7 +24,13 @@ const CommandRow* find_command(std::string_view name) {
   for (const CommandRow& row : command_rows()) {
     if (row.name == name) return &row;
   }
-  return nullptr;
+  const CommandRow& hidden = live::completing_command();
+  return hidden.name == name ? &hidden : nullptr;
+}
+
+// A value, not an option: options do not begin with digits.
+bool is_negative_number(std::string_view argument) {
+  return argument.size() > 1 && argument[0] == '-' && argument[1] >= '0' && argument[1] <= '9';
 }
 
 UsageError unknown_command(std::string_view name) {
@@ -61,7 +69,8 @@ class ArgumentReader {
     while (!arguments_.empty()) {
       const std::string& argument = arguments_.front();
       arguments_ = arguments_.subspan(1);
-      if (options_end || argument.size() < 2 || argument.front() != '-') {
+      if (options_end || argument.size() < 2 || argument.front() != '-' ||
+          is_negative_number(argument)) {
         options_.inputs.push_back(argument);
       } else if (argument == "--") {
         options_end = true;
@@ -130,6 +139,11 @@ class ArgumentReader {
       return "no code given";
     }
     if (command_.command == Command::record) return missing_to_record();
+    if (command_.command >= Command::get ||
+        (command_.command == Command::describe && !options_.inputs.empty() &&
+         is_url(options_.inputs.front()))) {
+      return live::missing(options_);
+    }
     if (options_.inputs.empty() && command_.command != Command::explain) return "no file given";
     if (command_.command == Command::replay) return missing_to_replay();
     if (!options_.inputs.empty() && options_.lists_codes) return "`--list` takes no codes";

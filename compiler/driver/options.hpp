@@ -9,6 +9,7 @@
 
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/diagnostics/report.hpp"
+#include "compiler/driver/live_options.hpp"
 #include "compiler/driver/recording_options.hpp"
 #include "compiler/syntax/read.hpp"
 
@@ -16,12 +17,29 @@
 /// `--help` alike.
 namespace robdef {
 
-enum class Command { generate, check, describe, model, view, explain, inspect, record, replay };
+enum class Command {
+  generate,
+  check,
+  describe,
+  model,
+  view,
+  explain,
+  inspect,
+  record,
+  replay,
+  get,
+  set,
+  call,
+  watch,
+  connect,
+  complete
+};
 
 /// What the user asked for. Which parts mean something depends on the command.
 struct Options {
   Command command{};
-  /// Definition files; for explain: codes and rules; for inspect and replay: recordings.
+  /// Definition files; for explain: codes and rules; for inspect and replay: recordings; for what
+  /// uses a running service: its URL, and members or a path.
   std::vector<std::string> inputs;
   /// Folders in which imports are looked for: those of `-I`, then those of the environment.
   ast::SearchPath search_path;
@@ -37,6 +55,7 @@ struct Options {
   bool lists_codes = false;
   bool is_json = false;
   RecordingOptions recording;
+  LiveOptions live;
 };
 
 /// Text that answers the command line itself: help or the version.

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/driver/program.hpp"
 
+#include <fcntl.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <thread>
+#include <utility>
 
 namespace robdef {
 
@@ -63,16 +68,60 @@ std::string read_text(const std::filesystem::path& file) {
 }
 
 Ended run_robdef(const TemporaryFolder& folder, const std::vector<std::string>& arguments,
-                 const std::string& import_variable) {
+                 const std::string& import_variable, const std::string& input) {
   const TemporaryFolder output;
   std::string command = "cd " + shell_word(folder.path().string()) +
                         " && ROBOTRACONTEUR_ROBDEF_PATH=" + shell_word(import_variable) + " " +
                         shell_word(ROBDEF_PROGRAM);
   for (const std::string& argument : arguments) command += " " + shell_word(argument);
+  command += " <" + shell_word(output.write("in", input));
   command += " >" + shell_word(output / "out") + " 2>" + shell_word(output / "err");
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(output / "out"),
           read_text(output / "err")};
+}
+
+Running::Running(const TemporaryFolder& folder, std::vector<std::string> arguments)
+    : out_(folder / "running.out"), err_(folder / "running.err") {
+  arguments.insert(arguments.begin(), ROBDEF_PROGRAM);
+  std::vector<char*> words;
+  for (std::string& argument : arguments) words.push_back(argument.data());
+  words.push_back(nullptr);
+  constexpr int flags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC;
+  const int out = ::open(out_.c_str(), flags, 0600);
+  const int err = ::open(err_.c_str(), flags, 0600);
+  process_ = ::fork();
+  if (process_ != 0) {
+    ::close(out);
+    ::close(err);
+    return;
+  }
+  ::dup2(out, STDOUT_FILENO);
+  ::dup2(err, STDERR_FILENO);
+  if (::chdir(folder.path().c_str()) == 0) ::execv(words[0], words.data());
+  ::_exit(127);
+}
+
+Running::~Running() {
+  if (process_ > 0) end();
+}
+
+std::uint16_t Running::port() const {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  std::string text = out();
+  while (text.find('\n') == std::string::npos && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    text = out();
+  }
+  const std::string line = text.substr(0, text.find('\n'));
+  return static_cast<std::uint16_t>(std::stoi(line.substr(line.rfind(' ') + 1)));
+}
+
+int Running::end(int signal) {
+  if (signal != 0) ::kill(process_, signal);
+  int status = 0;
+  ::waitpid(std::exchange(process_, -1), &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 }  // namespace robdef

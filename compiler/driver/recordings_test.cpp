@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The commands about recordings, as a user runs them.
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <functional>
 #include <rr/recording.hpp>
 #include <rr/tap.hpp>
-#include <utility>
 
 #include "compiler/driver/program.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
@@ -20,7 +15,6 @@ namespace robdef {
 namespace {
 
 using rr::testing::CounterStub;
-using rr::testing::eventually;
 using testing::AllOf;
 using testing::ContainsRegex;
 using testing::HasSubstr;
@@ -28,55 +22,6 @@ using testing::Not;
 using testing::StartsWith;
 
 const std::string golden = ROBDEF_DRIVER_GOLDEN;
-
-// The program while it runs, until it is interrupted.
-class Running {
- public:
-  Running(const TemporaryFolder& folder, std::vector<std::string> arguments)
-      : out_(folder / "running.out") {
-    arguments.insert(arguments.begin(), ROBDEF_PROGRAM);
-    std::vector<char*> words;
-    for (std::string& argument : arguments) words.push_back(argument.data());
-    words.push_back(nullptr);
-    const int out = ::open(out_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-    process_ = ::fork();
-    if (process_ != 0) {
-      ::close(out);
-      return;
-    }
-    ::dup2(out, STDOUT_FILENO);
-    if (::chdir(folder.path().c_str()) == 0) ::execv(words[0], words.data());
-    ::_exit(127);
-  }
-  ~Running() {
-    if (process_ > 0) end();
-  }
-  Running(const Running&) = delete;
-  Running& operator=(const Running&) = delete;
-
-  // The number behind the last blank of the first line, which names the port.
-  [[nodiscard]] std::uint16_t port() const {
-    std::string line;
-    eventually([&] {
-      const std::string text = read_text(out_);
-      line = text.substr(0, text.find('\n'));
-      return text.find('\n') != std::string::npos;
-    });
-    return static_cast<std::uint16_t>(std::stoi(line.substr(line.rfind(' ') + 1)));
-  }
-  // Waits for its end, and asks for it if `signal` is not 0; its exit status.
-  int end(int signal = SIGINT) {
-    if (signal != 0) ::kill(process_, signal);
-    int status = 0;
-    ::waitpid(std::exchange(process_, -1), &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  [[nodiscard]] std::string out() const { return read_text(out_); }
-
- private:
-  const std::string out_;
-  pid_t process_ = -1;
-};
 
 std::string url(std::uint16_t port) {
   return "rr+tcp://127.0.0.1:" + std::to_string(port) + "/?service=counter";

@@ -1,13 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
 # bash completion of robdef
 
+# Members of the service at a URL. The words are counted anew: to bash the URL is several.
+_robdef_members() {
+  local line=${COMP_LINE:0:COMP_POINT} words word='' url='' each reply
+  read -ra words <<< "$line"
+  [[ $line == *[[:blank:]] ]] || word=${words[-1]}
+  for each in "${words[@]}"; do
+    each=${each//[\'\"]/}
+    [[ $each != *://* || $each == "$word" ]] || url=$each
+  done
+  [ -n "$url" ] || return
+  mapfile -t reply < <(robdef complete --timeout 2 "${words[1]}" "$url" "$word" 2>/dev/null < /dev/null)
+  compopt +o filenames
+  [[ ${reply[0]-} != *[.[] ]] || compopt -o nospace
+  COMPREPLY=("${reply[@]}")
+}
+
 _robdef() {
   local word=$2 previous=$3 command=${COMP_WORDS[1]}
   local reading='--import-path -I --format --no-warning --help'
   COMPREPLY=()
   if [ "$COMP_CWORD" = 1 ]; then
     mapfile -t COMPREPLY < <(compgen -W \
-      'generate check describe model view explain inspect record replay --help --version' -- "$word")
+      'generate check describe model view explain inspect record replay get set call watch connect
+      --help --version' -- "$word")
     return
   fi
   case $previous in
@@ -42,11 +59,12 @@ _robdef() {
         CallbackCallRet WirePacket MemoryRead MemoryReadRet MemoryWrite' -- "$word")
       return
       ;;
-    --depfile)
+    --depfile | --password-file)
       mapfile -t COMPREPLY < <(compgen -f -- "$word")
       return
       ;;
   esac
+  local live='--user --password-file --timeout'
   if [[ $word == -* ]]; then
     local options
     case $command in
@@ -54,7 +72,13 @@ _robdef() {
         options="--lang --output -o --templates --list-outputs --depfile --depfile-target $reading" ;;
       check) options="--strict $reading" ;;
       view) options="--lang $reading" ;;
-      describe | model) options=$reading ;;
+      describe) options="$reading $live" ;;
+      model) options=$reading ;;
+      get) options="--at --count $live --help" ;;
+      set) options="--at $live --help" ;;
+      call) options="--count $live --help" ;;
+      watch) options="--count --for $live --help" ;;
+      connect) options="$live --help" ;;
       explain) options='--list --json --help' ;;
       inspect) options='--json --entries --path --connection --summary --help' ;;
       record) options='--connect --listen --everywhere --output -o --drop --help' ;;
@@ -64,6 +88,8 @@ _robdef() {
   elif [ "$command" = explain ]; then
     mapfile -t COMPREPLY < <(compgen -W \
       "$(robdef explain --list 2>/dev/null | cut -d ' ' -f 1)" -- "$word")
+  elif [[ $command == @(get|set|call|watch|connect) || $COMP_LINE == *describe*://* ]]; then
+    _robdef_members
   elif [ "$command" = inspect ] || [ "$command" = replay ]; then
     mapfile -t COMPREPLY < <(compgen -f -- "$word")
   else

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compiler/driver/explain.hpp"
+#include "compiler/driver/live/commands.hpp"
 #include "compiler/driver/recordings.hpp"
 
 namespace robdef {
@@ -53,6 +54,16 @@ ExitStatus answer(std::span<const std::string> arguments, std::string_view impor
       return record(options, out, err);
     case Command::replay:
       return replay(options, out, err);
+    case Command::get:
+    case Command::set:
+    case Command::call:
+    case Command::watch:
+    case Command::connect:
+    case Command::complete:
+      return run_live(options, out, err);
+    case Command::describe:
+      if (is_url(options.inputs.front())) return run_live(options, out, err);
+      return compile(options, out, err);
     default:
       return compile(options, out, err);
   }

@@ -21,6 +21,7 @@
 #include "rr/memories.hpp"
 #include "rr/node.hpp"
 #include "rr/pipes.hpp"
+#include "rr/subscription.hpp"
 #include "rr/wires.hpp"
 
 /// A client that needs no generated code: members by name, with values of types that are known at
@@ -244,6 +245,11 @@ class Client : public ClientBase {
 Client connect(Node& node, std::string_view url, ConnectOptions options = {});
 /// The same without waiting: on a thread of its own, where `done` is called, too.
 void async_connect(Node& node, std::string url, ConnectOptions options, Done<Client> done);
+
+/// Keeps a connection to the service at a URL; see rr/subscription.hpp. Its clients are objects of
+/// this kind: `Object::of(subscription.default_client<Stub>())`. Does not wait. Throws rr::Error as
+/// Node::subscribe.
+ServiceSubscription subscribe(Node& node, std::string_view url, SubscriptionOptions options = {});
 
 /// For credentials and parameters of errors. Throws rr::Error (data_type_error) for what no
 /// varvalue holds.

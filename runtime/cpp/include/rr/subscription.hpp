@@ -46,6 +46,8 @@ struct SubscriptionOptions {
   std::chrono::milliseconds connect_timeout{10'000};
 
   ServiceFilter filter{};
+  /// Internal, of rr::dynamic: makes the reader of each session.
+  Function<std::shared_ptr<client::DefinitionReader>()> make_definition_reader{};
 };
 
 /// How it stands with one service of a subscription.

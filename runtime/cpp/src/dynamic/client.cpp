@@ -114,4 +114,9 @@ void async_connect(Node& node, std::string url, ConnectOptions options, Done<Cli
       });
 }
 
+ServiceSubscription subscribe(Node& node, std::string_view url, SubscriptionOptions options) {
+  options.make_definition_reader = [] { return std::make_shared<DefinitionStore>(); };
+  return node.subscribe(url, std::move(options));
+}
+
 }  // namespace rr::dynamic

@@ -140,6 +140,9 @@ Services::Reached Services::connect(const std::string& url, const FoundService& 
     options.credentials = choice.node->credentials;
   }
   const auto end = std::make_shared<SessionEnd>();
+  if (options_.make_definition_reader) {
+    options.definition_reader = options_.make_definition_reader();
+  }
   options.on_closed = [services = weak_from_this(), target = std::weak_ptr(target),
                        end](const Error& why) {
     const auto self = services.lock();
