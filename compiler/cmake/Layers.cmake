@@ -48,7 +48,7 @@ set(robdef_outside_headers
   "^(antlr4|Robdef(Lexer|Parser))| compiler/syntax"
   "^boost/| runtime/cpp/include/rr/async.hpp"
   "^rr/async\\.hpp$| runtime/cpp/src runtime/cpp/stress examples conformance benchmarks compiler/backends"
-  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress conformance benchmarks"
+  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp conformance benchmarks"
   "^fmt/| compiler benchmarks"
   "^nlohmann/| runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"
   "^histedit\\.h$| compiler/driver/live/line_reader.cpp"

@@ -141,11 +141,10 @@ Pipes::End Pipes::open(const Wish& wish, Decoder& decoder, const Entry& entry) {
       session_.core(), std::shared_ptr<endpoint::PipeSide>(session_.shared_from_this(), this),
       PipeEnd::State::Identity{wish.path, wish.member, wish.holding, index, is_unreliable, true});
   bool has_room = true;
+  End predecessor;
   {
     const std::lock_guard lock(mutex_);
-    if (!ends_.add(end)) {
-      throw Error(ErrorCode::protocol_error, "the service has given an index of a pipe twice");
-    }
+    predecessor = add(end);
     Early& early = early_[Key(wish.path, wish.member->name)];
     std::erase_if(early.packets, [&](Early::Packet& packet) {
       if (packet.index != index) return false;
@@ -154,14 +153,35 @@ Pipes::End Pipes::open(const Wish& wish, Decoder& decoder, const Entry& entry) {
       return true;
     });
   }
+  channel::Laters later;
+  if (predecessor) later.emplace_back([predecessor] { predecessor->finish(); });
   if (!has_room) {
-    channel::Laters later;
     later.emplace_back([end] {
       if (const auto side = end->side()) side->close(*end, false);
     });
-    session_.post(std::move(later));
   }
+  if (!later.empty()) session_.post(std::move(later));
   return end;
+}
+
+// Under the lock, as the next. Returns the end whose index the new one has been given; null: none.
+Pipes::End Pipes::add(const End& end) {
+  if (ends_.add(end)) return nullptr;
+  const PipeEnd::State::Identity& what = end->identity;
+  End predecessor = ends_.find(what.path, what.member->name, what.index);
+  ends_.remove(*predecessor);
+  ends_.add(end);
+  const auto earlier = successors_.extract(predecessor.get());
+  successors_[end.get()] = earlier.empty() ? 1 : earlier.mapped() + 1;
+  return predecessor;
+}
+
+// Whether what the service says of an end that is there has been overtaken by its connecting.
+bool Pipes::is_about_predecessor(const End& end) {
+  const auto found = successors_.find(end.get());
+  if (found == successors_.end()) return false;
+  if (--found->second == 0) successors_.erase(found);
+  return true;
 }
 
 // Under the lock.
@@ -223,9 +243,10 @@ void Pipes::take_closed(const Message& message, const Entry& entry) {
   {
     const std::lock_guard lock(mutex_);
     end = ends_.find(entry.service_path, entry.member, index);
-    if (end) ends_.remove(*end);
+    if (!end || is_about_predecessor(end)) return;
+    ends_.remove(*end);
   }
-  if (end) end->finish();
+  end->finish();
 }
 
 void Pipes::release(std::string_view path) {
@@ -233,6 +254,8 @@ void Pipes::release(std::string_view path) {
   {
     const std::lock_guard lock(mutex_);
     ended = ends_.take_below(path);
+    std::erase_if(ended,
+                  [&](const End& end) { return is_about_predecessor(end) && ends_.add(end); });
   }
   for (const End& end : ended) end->finish();
 }
@@ -242,6 +265,7 @@ void Pipes::end() {
   {
     const std::lock_guard lock(mutex_);
     ended = ends_.take_all();
+    successors_.clear();
   }
   for (const End& end : ended) end->finish();
 }
@@ -256,6 +280,7 @@ void Pipes::close(PipeEnd::State& end, bool may_wait) {
   {
     const std::lock_guard lock(mutex_);
     if (!ends_.remove(end)) return;
+    successors_.erase(&end);
   }
   const auto keep = session_.shared_from_this();
   end.finish();

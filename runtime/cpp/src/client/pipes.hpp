@@ -80,12 +80,17 @@ class Pipes final : public endpoint::PipeSide {
   void begin(const Wish& wish);
   void finish(const Wish& wish);
   End open(const Wish& wish, Decoder& decoder, const Entry& entry);
+  End add(const End& end);
+  bool is_about_predecessor(const End& end);
   bool keep_early(const Entry& entry, const endpoint::PipePacket& packet, Decoder& decoder);
 
   Session& session_;
   std::mutex mutex_;
   endpoint::PipeTable ends_;
   std::map<Key, Early> early_;
+  // Ends that have the index of others which the service has ended: how often it will still say so.
+  // An answer is read at once, what was sent before it in turn with all other messages.
+  std::map<const PipeEnd::State*, unsigned> successors_;
 };
 
 }  // namespace rr::client

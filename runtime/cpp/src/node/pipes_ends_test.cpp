@@ -11,6 +11,7 @@
 
 #include "rr/async.hpp"
 #include "rr/pipes.hpp"
+#include "runtime/cpp/src/node/testing/gate.hpp"
 #include "runtime/cpp/src/node/testing/pipe_boards.hpp"
 
 namespace rr::testing {
@@ -59,6 +60,29 @@ TEST(Pipes, TheServiceCloses) {
   std::atomic<bool> is_told{false};
   end.on_closed([&] { is_told = true; });
   EXPECT_TRUE(eventually([&] { return is_told.load(); }));
+}
+
+TEST(Pipes, AnIndexMayComeBackBeforeItsEndIsTold) {
+  Gate gate;
+  PipeBoards boards;
+  auto board = boards.connect();
+  auto end = board->numbers().connect();
+  ASSERT_EQ(end.index(), 1);
+  // What comes now waits for this function; answers do not.
+  const Subscription packets = end.on_packet([&](double /*number*/) { gate.pass(); });
+  auto served = boards.board->numbers().endpoints().front();
+  served.send(1);
+  ASSERT_TRUE(gate.has_entered());
+  served.close();
+  auto next = board->numbers().connect({.index = 1});
+  EXPECT_EQ(next.index(), 1);
+  EXPECT_TRUE(next.is_open());
+  gate.open();
+  EXPECT_TRUE(eventually([&] { return !end.is_open(); }));
+  boards.board->numbers().endpoints().front().send(2);
+  EXPECT_EQ(next.receive_for(10s), 2);
+  EXPECT_TRUE(next.is_open());
+  EXPECT_FALSE(end.is_open());
 }
 
 TEST(Pipes, TheServiceMayRefuseAnEndpoint) {

@@ -73,6 +73,19 @@ void Wires::answer_packet(const Question& question, const ServedObject& object,
 // may send, before the answer leaves.
 void Wires::answer_connect(const Question& question, std::shared_ptr<const ServedObject> object,
                            const Member& member) {
+  while (!connect(object, member)) {
+    // It was released meanwhile: the client gets the one that is there now.
+    auto next = endpoint_.find_object(question.entry.service_path);
+    if (next->type != object->type) {
+      throw Error(ErrorCode::object_not_found, "the object was released");
+    }
+    object = std::move(next);
+  }
+  endpoint_.answer_empty(question);
+}
+
+// False when the object is no longer the one at its path.
+bool Wires::connect(const std::shared_ptr<const ServedObject>& object, const Member& member) {
   auto end = std::static_pointer_cast<ServedWireEnd>(table_.find(object->path, member.name));
   if (!end) {
     end = std::make_shared<ServedWireEnd>(endpoint_.shared_from_this(), object, member);
@@ -81,21 +94,25 @@ void Wires::answer_connect(const Question& question, std::shared_ptr<const Serve
     }
     end->open();
   }
-  try {
-    if (endpoint_.find_object(question.entry.service_path) != object) {
-      throw Error(ErrorCode::object_not_found, "the object was released");
-    }
-    offered(*object, member).join(end);
-  } catch (...) {
+  const auto give_up = [&] {
     table_.remove(*end);
     channel::Laters laters;
     end->finish(laters);
     run(std::move(laters));
+  };
+  try {
+    if (endpoint_.find_object(object->path) != object) {
+      give_up();
+      return false;
+    }
+    offered(*object, member).join(end);
+  } catch (...) {
+    give_up();
     throw;
   }
   // It may have ended before it could join, and would stay with the object.
   if (!end->is_open()) offered(*object, member).leave(*end);
-  endpoint_.answer_empty(question);
+  return true;
 }
 
 void Wires::answer_disconnect(const Question& question, const ServedObject& object,

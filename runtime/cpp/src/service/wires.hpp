@@ -36,6 +36,7 @@ class Wires {
   void answer_packet(const Question& question, const ServedObject& object, const Member& member);
   void answer_connect(const Question& question, std::shared_ptr<const ServedObject> object,
                       const Member& member);
+  bool connect(const std::shared_ptr<const ServedObject>& object, const Member& member);
   void answer_disconnect(const Question& question, const ServedObject& object,
                          const Member& member);
   void answer_peek(const Question& question, const ServedObject& object, const Member& member);
