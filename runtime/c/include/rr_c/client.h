@@ -90,8 +90,8 @@ enum {
   RR_MEMORY_WRITE = 1173,
   RR_MEMORY_GET_PARAM = 1175
 };
-/* Sends a request to a member and waits for the answer, whose elements are in `*out_answer`.
- * `elements` may be NULL for none. */
+/* Sends a request to a member and waits for the answer, whose elements are in `*out_answer`: of a
+ * function without a value one that means nothing. `elements` may be NULL for none. */
 RR_API rr_status rr_object_call(rr_object* object, uint32_t request, rr_str member,
                                 const rr_elements* elements, const rr_call_options* options,
                                 rr_data** out_answer, rr_error** error);
@@ -160,9 +160,9 @@ RR_API rr_status rr_generator_open_async(rr_object* object, rr_str member,
                                          const rr_elements* arguments,
                                          const rr_call_options* options,
                                          const rr_completion* completion, rr_error** error);
-/* One step. `parameter` is NULL where none is taken. At the end RR_STOP_ITERATION is returned,
- * without an error. Otherwise `*out_value` holds the value, and nothing (no elements) where none is
- * given. */
+/* One step. `parameter` is NULL where none is taken. At the end RR_STOP_ITERATION is returned, without
+ * an error. Otherwise `*out_value` holds one element: the value, or where none is given what void
+ * looks like, which means nothing. */
 RR_API rr_status rr_generator_next(rr_generator* generator, const rr_elements* parameter,
                                    const rr_call_options* options, rr_data** out_value,
                                    rr_error** error);

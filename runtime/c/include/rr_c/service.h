@@ -96,7 +96,7 @@ RR_API void rr_served_object_release(rr_served_object* object);
 
 /* Answers RR_REQUEST_FIND; the object's handle stays with the caller. With per_client not 0 it is
  * that client's own: each client that follows the objref asks for one, and it is released when the
- * client goes. NULL: RR_OBJECT_NOT_FOUND. */
+ * client goes. NULL: there is none, and the client gets RR_SERVICE_ERROR. */
 RR_API rr_status rr_request_answer_object(rr_request* request, rr_served_object* object,
                                           int32_t per_client, rr_error** error);
 
@@ -256,7 +256,7 @@ typedef struct rr_service_options {
   void* context;
   void (*on_client_connected)(void* context, const rr_client_info* client);
   void (*on_client_disconnected)(void* context, const rr_client_info* client);
-  void (*drop)(void* context); /* when the service has ended */
+  void (*drop)(void* context); /* behind the end of the service */
 } rr_service_options;
 
 /* Offers an object and what it refers to, until the service is closed or the node ends.
@@ -264,7 +264,8 @@ typedef struct rr_service_options {
 RR_API rr_status rr_service_register(rr_node* node, rr_str name, rr_served_object* root,
                                      const rr_service_options* options, rr_service** out_service,
                                      rr_error** error);
-/* Lets go of the handle; the service goes on. */
+/* Lets go of the handle; the service goes on. A handle does not keep a service either: when that has
+ * ended, what is asked of it fails with RR_INVALID_OPERATION, or does nothing. */
 RR_API void rr_service_release(rr_service* service);
 /* Tells all clients that the service is closed, and ends their sessions. The name is free again. */
 RR_API void rr_service_close(rr_service* service);
