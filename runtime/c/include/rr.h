@@ -30,7 +30,7 @@
  * call anything here. What they are given without a word about owning is theirs until they return.
  * `drop` is called once with the context when none of the others will be called any more; it may be
  * NULL, as may all functions of which it is not said that they are needed. drop is also called when
- * the function that was given the struct fails.
+ * the function that was given the struct fails, unless it does for the struct's size.
  *
  * Threads. All functions may be called from any thread at once. docs/threads.md says who runs what.
  */

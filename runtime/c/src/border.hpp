@@ -71,7 +71,8 @@ T& output(T* place) {
   return need(place, "there is no place for the result");
 }
 
-/// A struct as the caller knows it, perhaps an older, shorter one; `needed` when it may not be NULL.
+/// A struct as the caller knows it, perhaps an older, shorter one; `needed` when it may not be
+/// NULL.
 template <class T>
 T known(const T* given, bool needed = false) {
   constexpr std::size_t most = 4096;

@@ -153,8 +153,7 @@ rr_status rr_client_attributes(const rr_client* client, rr_data** out_data, rr_e
   return guarded(error, [&] {
     output(out_data) = nullptr;
     const rr::VarStringMap& map = need(client, "there is no client").client.attributes();
-    *out_data =
-        rr::capi::write_data(rr::type_of<rr::VarStringMap>, &map, "attributes").hand_out();
+    *out_data = rr::capi::write_data(rr::type_of<rr::VarStringMap>, &map, "attributes").hand_out();
   });
 }
 
@@ -162,8 +161,7 @@ rr_status rr_client_fetch_attributes(rr_client* client, rr_data** out_data, rr_e
   return guarded(error, [&] {
     output(out_data) = nullptr;
     const rr::VarStringMap map = need(client, "there is no client").client.fetch_attributes();
-    *out_data =
-        rr::capi::write_data(rr::type_of<rr::VarStringMap>, &map, "attributes").hand_out();
+    *out_data = rr::capi::write_data(rr::type_of<rr::VarStringMap>, &map, "attributes").hand_out();
   });
 }
 
@@ -203,8 +201,7 @@ int32_t rr_object_is_a(const rr_object* object, rr_str type) {
 }
 
 rr_status rr_object_find(rr_object* object, rr_str member, const rr_index* index, rr_str type,
-                         const rr_call_options* options, rr_object** out_object,
-                         rr_error** error) {
+                         const rr_call_options* options, rr_object** out_object, rr_error** error) {
   return guarded(error, [&] {
     output(out_object) = nullptr;
     rr::capi::RawStub& stub = stub_of(object);
@@ -226,9 +223,8 @@ rr_status rr_object_find_async(rr_object* object, rr_str member, const rr_index*
         completion, [](std::shared_ptr<rr::Stub>& found) -> void* {
           return rr::capi::make_object(std::move(found));
         });
-    rr::capi::with_index(index, [&](const auto&... item) {
-      stub.rr_start_find(objref, item..., std::move(done));
-    });
+    rr::capi::with_index(
+        index, [&](const auto&... item) { stub.rr_start_find(objref, item..., std::move(done)); });
   });
 }
 
@@ -239,8 +235,8 @@ rr_status rr_object_find_type(rr_object* object, rr_str member, const rr_index* 
     output(out_data) = nullptr;
     const rr::capi::RawStub& stub = stub_of(object);
     const Terms terms(options);
-    *out_data = rr::capi::Data::text(stub.rr_session()->ask_object_type(
-                                         rr::capi::path_of(stub, member, index), {}))
+    *out_data = rr::capi::Data::text(
+                    stub.rr_session()->ask_object_type(rr::capi::path_of(stub, member, index), {}))
                     .hand_out();
   });
 }
@@ -286,8 +282,7 @@ rr_status rr_object_lock(rr_object* object, int32_t session_only, const rr_call_
                          rr_error** error) {
   return guarded(error, [&] {
     const Terms terms(options);
-    rr::lock(stub_of(object),
-             session_only != 0 ? rr::LockOwner::session : rr::LockOwner::user);
+    rr::lock(stub_of(object), session_only != 0 ? rr::LockOwner::session : rr::LockOwner::user);
   });
 }
 

@@ -48,8 +48,7 @@ class DoneCompletion : public Base {
 };
 
 template <class Result, class Finish>
-std::unique_ptr<DoneCompletion<Result, Finish>> complete(const rr_completion* done,
-                                                         Finish finish) {
+std::unique_ptr<DoneCompletion<Result, Finish>> complete(const rr_completion* done, Finish finish) {
   return std::make_unique<DoneCompletion<Result, Finish>>(check(done), std::move(finish));
 }
 

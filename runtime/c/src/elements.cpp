@@ -87,8 +87,7 @@ Data Data::copy(std::span<const std::byte> bytes, std::uint32_t count, std::uint
   if (bytes.empty()) return Data(new rr_data({}, {}, count, version));
   Allocation memory = allocate(bytes.size());
   std::memcpy(memory.bytes, bytes.data(), bytes.size());
-  return Data(
-      new rr_data(std::move(memory.owner), {memory.bytes, bytes.size()}, count, version));
+  return Data(new rr_data(std::move(memory.owner), {memory.bytes, bytes.size()}, count, version));
 }
 
 Data Data::text(std::string_view text) { return copy(std::as_bytes(std::span(text)), 0, 0); }
@@ -167,8 +166,8 @@ void Values::make_room(std::size_t count) {
 
 const Raw& Values::single() const {
   if (count_ != 1) {
-    throw Error(ErrorCode::data_serialization_error, "a value is one element, not " +
-                                                         std::to_string(count_));
+    throw Error(ErrorCode::data_serialization_error,
+                "a value is one element, not " + std::to_string(count_));
   }
   return raws_[0];
 }
@@ -235,8 +234,8 @@ rr_status rr_elements_convert(const rr_elements* elements, uint32_t version, rr_
       parameter.type->write(writer, parameter.name, values.places()[i]);
     }
     if (writer.failed()) throw rr::endpoint::latched(writer);
-    *out_data = Data::copy(writer.copy(), static_cast<std::uint32_t>(values.count()), version)
-                    .hand_out();
+    *out_data =
+        Data::copy(writer.copy(), static_cast<std::uint32_t>(values.count()), version).hand_out();
   });
 }
 

@@ -20,8 +20,7 @@ Data read_arguments(const Arguments& arguments) {
 
 class RawEventHandler final : public EventHandler {
  public:
-  RawEventHandler(const Member& member,
-                  std::shared_ptr<const Handler<rr_event_handler>> handler)
+  RawEventHandler(const Member& member, std::shared_ptr<const Handler<rr_event_handler>> handler)
       : EventHandler(member), handler_(std::move(handler)) {}
   void call(const Arguments& arguments) override {
     const Data data = read_arguments(arguments);
@@ -41,8 +40,8 @@ class RawCallbackFunction final : public CallbackFunction {
 
   std::shared_ptr<const void> call(const Arguments& arguments) override {
     auto wait = std::make_shared<Wait<std::optional<Raw>>>();
-    auto request = std::make_unique<ValueRequest>(RR_REQUEST_CALLBACK, member().type != nullptr,
-                                                  wait);
+    auto request =
+        std::make_unique<ValueRequest>(RR_REQUEST_CALLBACK, member().type != nullptr, wait);
     request->set_arguments(read_arguments(arguments));
     request->info.answer_version =
         static_cast<std::uint32_t>(arguments.rr_source().message.version);
@@ -79,11 +78,12 @@ rr_status rr_event_subscribe(rr_object* object, rr_str member, const rr_event_ha
     rr::capi::output(out_subscription) = nullptr;
     auto kept = rr::capi::take_handler(handler, &rr_event_handler::on_event);
     rr::capi::RawStub& stub = stub_of(object);
-    const rr::Member& event = stub.tables().member(rr::capi::text(member), rr::MemberKind::event, 0);
+    const rr::Member& event =
+        stub.tables().member(rr::capi::text(member), rr::MemberKind::event, 0);
     auto subscription = std::make_unique<rr_subscription>();
     subscription->tables = stub.shared_tables();
-    subscription->subscription = stub.rr_connect(
-        event, std::make_unique<rr::capi::RawEventHandler>(event, std::move(kept)));
+    subscription->subscription =
+        stub.rr_connect(event, std::make_unique<rr::capi::RawEventHandler>(event, std::move(kept)));
     *out_subscription = subscription.release();
   });
 }

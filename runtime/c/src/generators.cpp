@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Generators as a client sees them.
+#include "rr/generators.hpp"
+
 #include <utility>
 
-#include "rr/generators.hpp"
+#include "rr/type.hpp"
 #include "runtime/c/src/node.hpp"
 #include "runtime/cpp/src/client/generator.hpp"
 #include "runtime/cpp/src/client/session.hpp"
-#include "rr/type.hpp"
 
 namespace rr::capi {
 namespace {
@@ -27,8 +28,8 @@ class Opening {
  public:
   Opening(RawStub& stub, rr_str member, const rr_elements* arguments, const Terms& terms)
       : values_(arguments),
-        member_(stub.tables().member(text(member), MemberKind::function,
-                                     access_of(terms.access()))) {}
+        member_(
+            stub.tables().member(text(member), MemberKind::function, access_of(terms.access()))) {}
   [[nodiscard]] const Member& member() const { return member_; }
   [[nodiscard]] Outgoing request(const RawStub& stub) const {
     return {.type = EntryType::function_call_req,
@@ -123,8 +124,7 @@ rr_status rr_generator_open_async(rr_object* object, rr_str member, const rr_ele
 }
 
 rr_status rr_generator_next(rr_generator* generator, const rr_elements* parameter,
-                            const rr_call_options* options, rr_data** out_value,
-                            rr_error** error) {
+                            const rr_call_options* options, rr_data** out_value, rr_error** error) {
   bool has_ended = false;
   const rr_status status = guarded(error, [&] {
     output(out_value) = nullptr;
@@ -148,10 +148,9 @@ rr_status rr_generator_next_async(rr_generator* generator, const rr_elements* pa
     const auto finish = [tables = generator->tables](rr::capi::Raw& value) -> void* {
       return std::move(value.data).hand_out();
     };
-    rr::capi::RawGenerator::start_step(
-        of.state(), given.place(),
-        std::make_unique<rr::capi::StepCompletion<decltype(finish)>>(rr::capi::check(completion),
-                                                                     finish));
+    rr::capi::RawGenerator::start_step(of.state(), given.place(),
+                                       std::make_unique<rr::capi::StepCompletion<decltype(finish)>>(
+                                           rr::capi::check(completion), finish));
   });
 }
 

@@ -84,8 +84,7 @@ void check_status(rr_status status) {
 
 void Part::read_piece(client::MemoryTransfer& transfer, const rr_memory_pieces& pieces) const {
   Raw data;
-  const Session::AnswerReader read = [&data](Decoder& decoder, const Message&,
-                                             const Entry& entry) {
+  const Session::AnswerReader read = [&data](Decoder& decoder, const Message&, const Entry& entry) {
     endpoint::read_value(decoder, entry, "data", raw_type, &data);
   };
   stub_.rr_session()->call(transfer.request(), read, stub_.rr_timeout());
@@ -136,8 +135,8 @@ const Member& any_memory(RawStub& stub, rr_str member) {
 }  // namespace
 
 Error piece_error(rr_status status) {
-  const auto code = status > 0 && status <= 0xFFFF ? static_cast<ErrorCode>(status)
-                                                   : ErrorCode::operation_failed;
+  const auto code =
+      status > 0 && status <= 0xFFFF ? static_cast<ErrorCode>(status) : ErrorCode::operation_failed;
   return {code, "the program has not transferred the piece"};
 }
 
@@ -157,8 +156,7 @@ rr_status rr_memory_length(rr_object* object, rr_str member, const rr_call_optio
   return guarded(error, [&] {
     rr::capi::RawStub& stub = stub_of(object);
     const Terms terms(options);
-    output(out_length) =
-        rr::capi::RawMemory(stub, rr::capi::any_memory(stub, member)).ask_length();
+    output(out_length) = rr::capi::RawMemory(stub, rr::capi::any_memory(stub, member)).ask_length();
   });
 }
 

@@ -212,8 +212,7 @@ rr_status rr_client_connect_async(rr_node* node, const rr_str* urls, size_t url_
                                   const rr_connect_options* options,
                                   const rr_completion* completion, rr_error** error) {
   return guarded(error, [&] {
-    const auto connecting =
-        std::make_shared<const rr::capi::Connecting>(urls, url_count, options);
+    const auto connecting = std::make_shared<const rr::capi::Connecting>(urls, url_count, options);
     const rr_completion done = rr::capi::check(completion);
     const std::shared_ptr<rr::Node> of = need(node, "there is no node").node;
     of->run_aside([of, connecting, done] {

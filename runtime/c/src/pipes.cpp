@@ -59,8 +59,9 @@ void begin_telling(rr_pipe& pipe) {
   });
 }
 
-void set_handler(rr_pipe& pipe, const rr_pipe_handler* given) {
+void set_handler(rr_pipe* handle, const rr_pipe_handler* given) {
   auto functions = given != nullptr ? take_handler(given) : nullptr;
+  rr_pipe& pipe = need(handle, "there is no pipe");
   begin_telling(pipe);
   pipe.told->exchange(functions);
   pipe.exchange({}).disconnect();
@@ -114,10 +115,10 @@ rr_status rr_pipe_connect_async(rr_object* object, rr_str member,
     rr::capi::Connection connection(stub, member, pipe_options);
     connection.pipe().start_connect(
         connection.options(),
-        rr::capi::complete<rr::PipeEnd>(
-            completion, [tables = stub.shared_tables()](rr::PipeEnd& end) -> void* {
-              return rr::capi::make_pipe(tables, std::move(end));
-            }));
+        rr::capi::complete<rr::PipeEnd>(completion,
+                                        [tables = stub.shared_tables()](rr::PipeEnd& end) -> void* {
+                                          return rr::capi::make_pipe(tables, std::move(end));
+                                        }));
   });
 }
 
@@ -225,9 +226,7 @@ size_t rr_pipe_unacknowledged(const rr_pipe* pipe) {
 }
 
 rr_status rr_pipe_set_handler(rr_pipe* pipe, const rr_pipe_handler* handler, rr_error** error) {
-  return guarded(error, [&] {
-    rr::capi::set_handler(rr::capi::need(pipe, "there is no pipe"), handler);
-  });
+  return guarded(error, [&] { rr::capi::set_handler(pipe, handler); });
 }
 
 }  // extern "C"

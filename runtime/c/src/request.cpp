@@ -70,9 +70,7 @@ void StepRequest::answer(const rr_elements* value) {
 MemberRequest::MemberRequest(std::uint32_t kind, std::shared_ptr<State> state)
     : rr_request(kind), state_(std::move(state)) {}
 
-MemberRequest::~MemberRequest() {
-  if (!state_->is_over()) state_->fail(released_unanswered());
-}
+MemberRequest::~MemberRequest() { state_->drop(); }
 
 void MemberRequest::answer(const rr_elements* value) { state_->answer(value); }
 void MemberRequest::answer_generator(std::shared_ptr<GeneratorSource> source) {
@@ -80,9 +78,16 @@ void MemberRequest::answer_generator(std::shared_ptr<GeneratorSource> source) {
 }
 void MemberRequest::fail(const Error& why) { state_->fail(why); }
 
-bool MemberRequest::State::is_over() {
-  const std::lock_guard lock(mutex_);
-  return is_over_;
+void MemberRequest::State::drop() noexcept {
+  try {
+    {
+      const std::lock_guard lock(mutex_);
+      if (is_over_) return;
+    }
+    fail(released_unanswered());
+  } catch (...) {
+    // Nobody is left to be told.
+  }
 }
 
 void MemberRequest::State::begin_answer() const {
@@ -90,8 +95,8 @@ void MemberRequest::State::begin_answer() const {
   if (member_.generator != GeneratorForm::none) refuse_answer();
 }
 
-// In the thread of the handler the answer is sent at once; in another one, or later, as one that was
-// put off. The handler cannot return while another thread is here.
+// In the thread of the handler the answer is sent at once; in another one, or later, as one that
+// was put off. The handler cannot return while another thread is here.
 void MemberRequest::State::answer(const rr_elements* value) {
   const Values values(wants_value() ? value : nullptr);
   const Raw* const raw = wants_value() ? &values.single() : nullptr;

@@ -63,10 +63,13 @@ class Wait {
   void fail(const Error& why) {
     end([&] { error_ = std::make_exception_ptr(why); });
   }
-  /// True once it has ended; for a request that is released.
-  [[nodiscard]] bool is_over() {
-    const std::lock_guard lock(mutex_);
-    return is_over_;
+  /// The request is released: fails unless it has ended.
+  void drop() noexcept {
+    try {
+      fail(released_unanswered());
+    } catch (...) {
+      // It has ended.
+    }
   }
   /// Waits; throws what it failed with.
   Result take() {
@@ -112,9 +115,7 @@ class WaitedRequest : public rr_request {
  public:
   WaitedRequest(std::uint32_t kind, std::shared_ptr<Wait<Result>> wait)
       : rr_request(kind), wait_(std::move(wait)) {}
-  ~WaitedRequest() override {
-    if (!wait_->is_over()) wait_->fail(released_unanswered());
-  }
+  ~WaitedRequest() override { wait_->drop(); }
   void fail(const Error& why) override { wait_->fail(why); }
 
  protected:
@@ -193,7 +194,8 @@ class MemberRequest::State {
   void answer(const rr_elements* value);
   void answer_generator(std::shared_ptr<GeneratorSource> source);
   void fail(const Error& why);
-  [[nodiscard]] bool is_over();
+  /// The request is released: fails unless it has been answered.
+  void drop() noexcept;
   /// The handler has returned. Throws what is to be answered with.
   void leave();
 

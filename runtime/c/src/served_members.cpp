@@ -83,8 +83,8 @@ class RecordMemory final : public service::PieceMemory {
     const rr_memory_source& source = **source_;
     if (source.write_piece == nullptr) check(RR_READ_ONLY_MEMBER);
     const rr_elements elements = static_cast<const Raw*>(piece)->data.elements();
-    check(source.write_piece(source.context, position.data(), count.data(), count.size(),
-                             &elements));
+    check(
+        source.write_piece(source.context, position.data(), count.data(), count.size(), &elements));
   }
   [[nodiscard]] std::vector<std::uint64_t> rr_dims() const override { return ask_dims(**source_); }
 
@@ -92,15 +92,12 @@ class RecordMemory final : public service::PieceMemory {
   const Source source_;
 };
 
-}  // namespace
-
-std::shared_ptr<MemorySource> make_memory(const MemoryItems& items,
-                                          const rr_memory_source* given) {
-  Source source = take_handler(given, &rr_memory_source::dims);
+std::shared_ptr<MemorySource> make_memory(const MemoryItems& items, Source source) {
   if (items.item_size() == 0) return std::make_shared<RecordMemory>(std::move(source));
   return std::make_shared<NumberMemory>(std::move(source), items.item_size());
 }
 
+}  // namespace
 }  // namespace rr::capi
 
 using rr::MemberKind;
@@ -162,9 +159,11 @@ rr_status rr_served_callback_call_async(rr_served_object* object, uint32_t membe
 rr_status rr_served_memory_set(rr_served_object* object, uint32_t member,
                                const rr_memory_source* source, rr_error** error) {
   return guarded(error, [&] {
+    auto functions = rr::capi::take_handler(source, &rr_memory_source::dims);
     rr::capi::RawSkeleton& skeleton = skeleton_of(object);
     static_cast<void>(skeleton.member(member, MemberKind::memory));
-    skeleton.set_memory(member, rr::capi::make_memory(skeleton.type()->memory(member), source));
+    skeleton.set_memory(
+        member, rr::capi::make_memory(skeleton.type()->memory(member), std::move(functions)));
   });
 }
 

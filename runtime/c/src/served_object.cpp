@@ -120,8 +120,8 @@ bool RawSkeleton::rr_has_monitor() const { return (*handler_)->on_monitor_enter 
 bool RawSkeleton::rr_monitor_enter(std::chrono::milliseconds timeout) {
   constexpr auto longest = std::chrono::milliseconds(std::numeric_limits<std::int32_t>::max());
   return (*handler_)->on_monitor_enter(
-             (*handler_)->context,
-             static_cast<std::int32_t>(std::min(timeout, longest).count())) != 0;
+             (*handler_)->context, static_cast<std::int32_t>(std::min(timeout, longest).count())) !=
+         0;
 }
 
 void RawSkeleton::rr_monitor_exit() { (*handler_)->on_monitor_exit((*handler_)->context); }

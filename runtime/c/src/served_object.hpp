@@ -95,9 +95,6 @@ class RawWireServer : public WireServerBase {
   using WireServerBase::set_received;
 };
 
-/// The memory that a program offers. Throws rr::Error for functions that are needed.
-std::shared_ptr<MemorySource> make_memory(const MemoryItems& items, const rr_memory_source* source);
-
 }  // namespace rr::capi
 
 struct rr_served_object {

@@ -27,10 +27,11 @@ void hand_out(const Ends& ends, Handle** handles, std::size_t* count, const Make
 }
 
 // Functions that are kept by the object itself: it is there when they are called.
-void set_handler(const RawSkeleton& object, std::uint32_t place,
+void set_handler(const rr_served_object* handle, std::uint32_t place,
                  const rr_served_wire_handler* given) {
-  const RawWireServer wire(object, place);
   const auto functions = take_handler(given);
+  const RawSkeleton& object = skeleton_of(handle);
+  const RawWireServer wire(object, place);
   if ((*functions)->on_connect != nullptr) {
     wire.set_connected([functions, of = &object](WireEnd end) {
       (*functions)->on_connect((*functions)->context, make_wire(*of, std::move(end)));
@@ -69,8 +70,8 @@ extern "C" {
 rr_status rr_served_pipe_set_handler(rr_served_object* object, uint32_t member,
                                      const rr_served_pipe_handler* handler, rr_error** error) {
   return guarded(error, [&] {
-    const rr::capi::RawSkeleton& skeleton = skeleton_of(object);
     const auto functions = rr::capi::take_handler(handler, &rr_served_pipe_handler::on_connect);
+    const rr::capi::RawSkeleton& skeleton = skeleton_of(object);
     RawPipeServer(skeleton, member).set_connected([functions, of = &skeleton](rr::PipeEnd end) {
       (*functions)->on_connect((*functions)->context, rr::capi::make_pipe(*of, std::move(end)));
     });
@@ -96,16 +97,14 @@ rr_status rr_served_pipe_endpoints(rr_served_object* object, uint32_t member, rr
                                    size_t* count, rr_error** error) {
   return guarded(error, [&] {
     const rr::capi::RawSkeleton& skeleton = skeleton_of(object);
-    rr::capi::hand_out(
-        RawPipeServer(skeleton, member).ends(), pipes, count,
-        [&](const rr::PipeEnd& end) { return rr::capi::make_pipe(skeleton, end); });
+    rr::capi::hand_out(RawPipeServer(skeleton, member).ends(), pipes, count,
+                       [&](const rr::PipeEnd& end) { return rr::capi::make_pipe(skeleton, end); });
   });
 }
 
 rr_status rr_served_wire_set_handler(rr_served_object* object, uint32_t member,
                                      const rr_served_wire_handler* handler, rr_error** error) {
-  return guarded(error,
-                 [&] { rr::capi::set_handler(skeleton_of(object), member, handler); });
+  return guarded(error, [&] { rr::capi::set_handler(object, member, handler); });
 }
 
 rr_status rr_served_wire_send(rr_served_object* object, uint32_t member, const rr_elements* value,
@@ -142,9 +141,8 @@ rr_status rr_served_wire_connections(rr_served_object* object, uint32_t member, 
                                      size_t* count, rr_error** error) {
   return guarded(error, [&] {
     const rr::capi::RawSkeleton& skeleton = skeleton_of(object);
-    rr::capi::hand_out(
-        RawWireServer(skeleton, member).ends(), wires, count,
-        [&](const rr::WireEnd& end) { return rr::capi::make_wire(skeleton, end); });
+    rr::capi::hand_out(RawWireServer(skeleton, member).ends(), wires, count,
+                       [&](const rr::WireEnd& end) { return rr::capi::make_wire(skeleton, end); });
   });
 }
 

@@ -38,14 +38,14 @@ OwnedDefinition::OwnedDefinition(std::string_view text, Imports imports)
     throw wrong_definition("`" + name_ + "` imports more definitions than were given");
   }
   const std::string version = client::declared_version(text_);
-  definition_ = {.name = name_,
-                 .text = text_,
-                 .version =
-                     version.empty() ? DefinitionVersion{} : endpoint::parse_version(version),
-                 .imports = import_views_,
-                 .records = {},
-                 .exceptions = {},
-                 .objects = {}};
+  definition_ = {
+      .name = name_,
+      .text = text_,
+      .version = version.empty() ? DefinitionVersion{} : endpoint::parse_version(version),
+      .imports = import_views_,
+      .records = {},
+      .exceptions = {},
+      .objects = {}};
 }
 
 std::vector<std::string> OwnedDefinition::implements(const std::string& object) const {
@@ -201,8 +201,7 @@ const Member& ClientTables::member(std::string_view name, MemberKind kind, std::
 
 const MemoryItems& ClientTables::memory(const rr_memory_type& memory) {
   const std::lock_guard lock(mutex_);
-  return memories_
-      .try_emplace({memory.element, memory.is_multi != 0, memory.transfer_size}, memory)
+  return memories_.try_emplace({memory.element, memory.is_multi != 0, memory.transfer_size}, memory)
       .first->second;
 }
 
@@ -235,8 +234,8 @@ rr_status rr_definition_new(rr_str text, rr_definition* const* imports, size_t i
       const auto* const import = (&need(imports, "there are no imports"))[i];
       list.push_back(need(import, "an import is NULL").definition);
     }
-    *out_definition = new rr_definition{std::make_shared<rr::capi::OwnedDefinition>(
-        rr::capi::text(text), std::move(list))};
+    *out_definition = new rr_definition{
+        std::make_shared<rr::capi::OwnedDefinition>(rr::capi::text(text), std::move(list))};
   });
 }
 

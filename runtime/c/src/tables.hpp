@@ -45,8 +45,8 @@ class OwnedDefinition {
   OwnedDefinition& operator=(const OwnedDefinition&) = delete;
 
   [[nodiscard]] const Definition& definition() const { return definition_; }
-  /// What an object implements, as stored in ObjectType. Throws rr::Error (service_definition_error)
-  /// when there is no object of this name.
+  /// What an object implements, as stored in ObjectType. Throws rr::Error
+  /// (service_definition_error) when there is no object of this name.
   [[nodiscard]] std::vector<std::string> implements(const std::string& object) const;
 
  private:
@@ -71,7 +71,9 @@ class OwnedObjectType {
   /// Throws rr::Error (invalid_argument) unless there is a member of this kind at this place.
   [[nodiscard]] const Member& member(std::uint32_t place, MemberKind kind) const;
   /// What the memory at this place is of.
-  [[nodiscard]] const MemoryItems& memory(std::uint32_t place) const { return *memories_.at(place); }
+  [[nodiscard]] const MemoryItems& memory(std::uint32_t place) const {
+    return *memories_.at(place);
+  }
   [[nodiscard]] const std::shared_ptr<const OwnedDefinition>& definition() const {
     return definition_;
   }

@@ -72,8 +72,7 @@ void rr_users_release(rr_users* users) { rr::capi::release(users); }
 rr_status rr_password_hash(rr_str password, rr_data** out_data, rr_error** error) {
   return guarded(error, [&] {
     output(out_data) = nullptr;
-    *out_data =
-        rr::capi::Data::text(rr::PasswordUsers::hash(text(password))).hand_out();
+    *out_data = rr::capi::Data::text(rr::PasswordUsers::hash(text(password))).hand_out();
   });
 }
 

@@ -11,8 +11,7 @@ namespace {
 class RawWire : public WireMember {
  public:
   RawWire(RawStub& stub, rr_str member, std::uint32_t access)
-      : WireMember(stub,
-                   stub.tables().member(text(member), MemberKind::wire, access_of(access)),
+      : WireMember(stub, stub.tables().member(text(member), MemberKind::wire, access_of(access)),
                    holding_of<Raw>) {}
   using WireMember::connect_end;
   using WireMember::peek_in;
@@ -39,8 +38,9 @@ rr_data* hand_out(const std::shared_ptr<const void>& value) {
   return Data(static_cast<const Raw*>(value.get())->data).hand_out();
 }
 
-void set_handler(rr_wire& wire, const rr_wire_handler* given) {
+void set_handler(rr_wire* handle, const rr_wire_handler* given) {
   auto functions = given != nullptr ? take_handler(given) : nullptr;
+  rr_wire& wire = need(handle, "there is no wire");
   wire.told->exchange(functions);
   wire.exchange({}).disconnect();
   if (!functions) return;
@@ -183,9 +183,7 @@ void rr_wire_set_lifespan(rr_wire* wire, int32_t lifespan_ms) {
 }
 
 rr_status rr_wire_set_handler(rr_wire* wire, const rr_wire_handler* handler, rr_error** error) {
-  return guarded(error, [&] {
-    rr::capi::set_handler(rr::capi::need(wire, "there is no wire"), handler);
-  });
+  return guarded(error, [&] { rr::capi::set_handler(wire, handler); });
 }
 
 rr_status rr_wire_peek_in(rr_object* object, rr_str member, const rr_call_options* options,
@@ -226,17 +224,15 @@ rr_status rr_wire_poke_out(rr_object* object, rr_str member, const rr_elements* 
 rr_status rr_wire_peek_in_async(rr_object* object, rr_str member, const rr_call_options* options,
                                 rr_time* out_time, const rr_completion* completion,
                                 rr_error** error) {
-  return guarded(error, [&] {
-    rr::capi::start_peek(object, member, false, options, out_time, completion);
-  });
+  return guarded(
+      error, [&] { rr::capi::start_peek(object, member, false, options, out_time, completion); });
 }
 
 rr_status rr_wire_peek_out_async(rr_object* object, rr_str member, const rr_call_options* options,
                                  rr_time* out_time, const rr_completion* completion,
                                  rr_error** error) {
-  return guarded(error, [&] {
-    rr::capi::start_peek(object, member, true, options, out_time, completion);
-  });
+  return guarded(
+      error, [&] { rr::capi::start_peek(object, member, true, options, out_time, completion); });
 }
 
 rr_status rr_wire_poke_out_async(rr_object* object, rr_str member, const rr_elements* value,

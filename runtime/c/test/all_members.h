@@ -2,8 +2,8 @@
 #ifndef RR_TEST_ALL_MEMBERS_H
 #define RR_TEST_ALL_MEMBERS_H
 
-/* Five services that have members of all kinds, as those of runtime/cpp/src/node/testing, and a client
- * that uses each of them. */
+/* Five services that have members of all kinds, as those of runtime/cpp/src/node/testing, and a
+ * client that uses each of them. */
 
 #include "rr.h"
 

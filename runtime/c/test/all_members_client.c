@@ -178,7 +178,8 @@ static void on_sum(void* context, rr_request* request) {
   rr_elements elements;
   info.size = sizeof info;
   rr_request_read(request, &info);
-  pack_int32(&answer, "sum", unpack_int32(&info.arguments, "a") + unpack_int32(&info.arguments, "b"));
+  pack_int32(&answer, "sum",
+             unpack_int32(&info.arguments, "a") + unpack_int32(&info.arguments, "b"));
   elements = packed(&answer);
   rr_request_answer(request, &elements, NULL);
   rr_request_release(request);

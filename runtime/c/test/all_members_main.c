@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 
-/* A client and a service in one program of C only, for a checker of memory. With an argument both speak
- * format 2. */
+/* A client and a service in one program of C only, for a checker of memory. With an argument both
+ * speak format 2. */
 
 #include <stdio.h>
 

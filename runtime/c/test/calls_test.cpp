@@ -158,8 +158,7 @@ TEST(Requests, AreAnsweredOnceAndAsTheyAsk) {
 
 TEST(Connecting, TriesOneUrlAfterTheOther) {
   Pair pair;
-  const std::string good =
-      "rr+tcp://127.0.0.1:" + std::to_string(pair.port) + "/?service=counter";
+  const std::string good = "rr+tcp://127.0.0.1:" + std::to_string(pair.port) + "/?service=counter";
   const rr_str urls[] = {view("rr+tcp://127.0.0.1:1/?service=counter"), view(good)};
   std::atomic<bool> is_done = false;
   Done done([&](rr_status status, void* result) {

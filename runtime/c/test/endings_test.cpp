@@ -122,9 +122,9 @@ TEST(Releases, AnEventHandlerMayEndItself) {
     rr_subscription_release(of.subscription);
   };
   handler.drop = [](void* context) { ++static_cast<State*>(context)->dropped; };
-  ASSERT_EQ(rr_event_subscribe(silent.root.get(), view("noted"), &handler, &state.subscription,
-                               nullptr),
-            RR_OK);
+  ASSERT_EQ(
+      rr_event_subscribe(silent.root.get(), view("noted"), &handler, &state.subscription, nullptr),
+      RR_OK);
   Packed value;
   value.number("value", 0.5);
   for (int i = 0; i < 3; ++i) {
@@ -193,9 +193,8 @@ TEST(Contexts, AreDroppedWhenTheirHandlerIsReplacedOrRefused) {
   wrong.context = &refused;
   wrong.drop = Held::drop;
   rr_subscription* subscription = nullptr;
-  EXPECT_EQ(
-      rr_event_subscribe(pair.root.get(), view("noted"), &wrong, &subscription, nullptr),
-      RR_INVALID_ARGUMENT);
+  EXPECT_EQ(rr_event_subscribe(pair.root.get(), view("noted"), &wrong, &subscription, nullptr),
+            RR_INVALID_ARGUMENT);
   EXPECT_EQ(refused.dropped, 1);
 }
 

@@ -161,8 +161,7 @@ int unpack(const rr_elements* from, const char* name, unpacked* element) {
     element->payload = at;
     element->size = (size_t)(end - at);
     at = end;
-    if (name == NULL ||
-        (found.size == strlen(name) && memcmp(found.data, name, found.size) == 0)) {
+    if (name == NULL || (found.size == strlen(name) && memcmp(found.data, name, found.size) == 0)) {
       return 1;
     }
   }

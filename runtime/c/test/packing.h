@@ -2,7 +2,8 @@
 #ifndef RR_TEST_PACKING_H
 #define RR_TEST_PACKING_H
 
-/* Elements of format 4 as a language binding would write and read them: what the test programs need. */
+/* Elements of format 4 as a language binding would write and read them: what the test programs
+ * need. */
 
 #include "rr.h"
 
@@ -29,7 +30,8 @@ typedef struct packer {
 
 void packer_free(packer* to);
 /* One element of `count` items, which take `size` bytes. */
-void pack(packer* to, const char* name, uint16_t type, const void* items, size_t size, uint32_t count);
+void pack(packer* to, const char* name, uint16_t type, const void* items, size_t size,
+          uint32_t count);
 /* The same with the name of a named type; `payload` are the elements of `nested`. */
 void pack_nested(packer* to, const char* name, uint16_t type, const char* type_name,
                  const packer* nested);

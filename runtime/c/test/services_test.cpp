@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a service says and asks: definitions, attributes, users, objects of clients' own, memories of pods.
+// What a service says and asks: definitions, attributes, users, objects of clients' own, memories
+// of pods.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -38,12 +39,12 @@ TEST(Definitions, ThatDoNotFitAreRefused) {
       RR_OK);
   const DefinitionHandle owner(definition);
   rr_object_type* type = nullptr;
-  EXPECT_EQ(rr_object_type_new(definition, view("D"), nullptr, 0, sizeof(rr_member), &type,
-                               nullptr),
-            RR_SERVICE_DEFINITION_ERROR);
-  EXPECT_EQ(rr_object_type_new(definition, view("C"), nullptr, 1, sizeof(rr_member), &type,
-                               nullptr),
-            RR_INVALID_ARGUMENT);
+  EXPECT_EQ(
+      rr_object_type_new(definition, view("D"), nullptr, 0, sizeof(rr_member), &type, nullptr),
+      RR_SERVICE_DEFINITION_ERROR);
+  EXPECT_EQ(
+      rr_object_type_new(definition, view("C"), nullptr, 1, sizeof(rr_member), &type, nullptr),
+      RR_INVALID_ARGUMENT);
 }
 
 TEST(Services, AreToldOfTheirClients) {

@@ -204,9 +204,8 @@ TEST(Wires, WithoutAValueSaySo) {
   rr_data* value = nullptr;
   EXPECT_EQ(rr_wire_peek_in(silent.root.get(), view("level"), nullptr, &value, nullptr, nullptr),
             RR_VALUE_NOT_SET);
-  EXPECT_EQ(
-      rr_served_wire_received(silent.object.get(), level_place, &value, nullptr, nullptr),
-      RR_VALUE_NOT_SET);
+  EXPECT_EQ(rr_served_wire_received(silent.object.get(), level_place, &value, nullptr, nullptr),
+            RR_VALUE_NOT_SET);
   rr_wire* made = nullptr;
   ASSERT_EQ(rr_wire_connect(silent.root.get(), view("level"), 0, nullptr, &made, nullptr), RR_OK);
   const WireHandle wire(made);
@@ -229,9 +228,9 @@ TEST(Generators, TakeAndGiveByCompletions) {
     Packed parameter;
     parameter.number("", i);
     Result<rr_data> step;
-    ASSERT_EQ(rr_generator_next_async(generator.get(), &parameter, nullptr, &step.completion,
-                                      nullptr),
-              RR_OK);
+    ASSERT_EQ(
+        rr_generator_next_async(generator.get(), &parameter, nullptr, &step.completion, nullptr),
+        RR_OK);
     EXPECT_EQ(number_in(step.wait()), sum += i);
   }
   Result<void> ended;

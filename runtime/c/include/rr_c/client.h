@@ -14,7 +14,8 @@ extern "C" {
 #endif
 
 /* An object of a service, named by its path. Keeps its session, but does not hold the connection
- * open. With the last handle of an object at a path end its event handlers and callbacks. */
+ * open. With the last handle of an object at a path end its event handlers and callbacks; those of
+ * the root object also need the client's handle to go. */
 typedef struct rr_object rr_object;
 
 /* Sessions. */
@@ -160,9 +161,9 @@ RR_API rr_status rr_generator_open_async(rr_object* object, rr_str member,
                                          const rr_elements* arguments,
                                          const rr_call_options* options,
                                          const rr_completion* completion, rr_error** error);
-/* One step. `parameter` is NULL where none is taken. At the end RR_STOP_ITERATION is returned, without
- * an error. Otherwise `*out_value` holds one element: the value, or where none is given what void
- * looks like, which means nothing. */
+/* One step. `parameter` is NULL where none is taken. At the end RR_STOP_ITERATION is returned,
+ * without an error. Otherwise `*out_value` holds one element: the value, or where none is given
+ * what void looks like, which means nothing. */
 RR_API rr_status rr_generator_next(rr_generator* generator, const rr_elements* parameter,
                                    const rr_call_options* options, rr_data** out_value,
                                    rr_error** error);

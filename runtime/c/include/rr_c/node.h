@@ -30,7 +30,7 @@ typedef struct rr_node_options {
   void* context;
   void (*log)(void* context, uint32_t level, rr_str text); /* on any thread */
   void (*drop)(void* context); /* when nothing of the node is left, handles of clients included */
-  uint32_t client_without;                                 /* RR_WITHOUT_... */
+  uint32_t client_without;     /* RR_WITHOUT_... */
   uint32_t server_without;
   uint32_t server_string_table; /* 1: servers offer it, which they do not by default */
   uint32_t max_threads;

@@ -264,8 +264,8 @@ typedef struct rr_service_options {
 RR_API rr_status rr_service_register(rr_node* node, rr_str name, rr_served_object* root,
                                      const rr_service_options* options, rr_service** out_service,
                                      rr_error** error);
-/* Lets go of the handle; the service goes on. A handle does not keep a service either: when that has
- * ended, what is asked of it fails with RR_INVALID_OPERATION, or does nothing. */
+/* Lets go of the handle; the service goes on. A handle does not keep a service either: when that
+ * has ended, what is asked of it fails with RR_INVALID_OPERATION, or does nothing. */
 RR_API void rr_service_release(rr_service* service);
 /* Tells all clients that the service is closed, and ends their sessions. The name is free again. */
 RR_API void rr_service_close(rr_service* service);

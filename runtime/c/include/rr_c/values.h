@@ -202,9 +202,9 @@ RR_API void rr_subscription_release(rr_subscription* subscription);
  * Something that the program is asked for: by a client of its service, by a service whose client it
  * is, or by the runtime. Whoever gets one owns it, and answers or fails it exactly once, now or
  * later, from any thread; then, or without that, it releases it. One that is released unanswered
- * fails with RR_OPERATION_ABORTED. What info tells stays valid until then, and at least while the
- * function that got the request runs. Where it is said that a request waits, the thread of the node
- * that asks waits for the answer; it does not while a member of a service is answered later.
+ * fails with RR_OPERATION_ABORTED. What info tells stays valid until the release. Where it is said
+ * that a request waits, the thread of the node that asks waits for the answer; it does not while a
+ * member of a service is answered later.
  */
 typedef struct rr_request rr_request;
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Generators as a client sees them (07, section 8).
+#include "runtime/cpp/src/client/generator.hpp"
+
 #include <array>
 #include <atomic>
 #include <string>
@@ -8,7 +10,6 @@
 #include "rr/error.hpp"
 #include "rr/generators.hpp"
 #include "rr/type.hpp"
-#include "runtime/cpp/src/client/generator.hpp"
 #include "runtime/cpp/src/client/session.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
 
