@@ -14,7 +14,7 @@ class SilentService {
  public:
   explicit SilentService(const rr_connect_options* connecting = nullptr,
                          const rr_service_options* options = nullptr) {
-    rr_definition* definition = nullptr;
+    ::rr_definition* definition = nullptr;
     rr_definition_new(view(text), nullptr, 0, &definition, nullptr);
     const DefinitionHandle definition_owner(definition);
     rr_member members[5] = {};

@@ -3,7 +3,6 @@
 # comes unasked.
 #   cmake -D NM=<nm> -D LIBRARY=<file> -D GOLDEN=<file> -P symbols.cmake
 cmake_policy(VERSION 3.25)
-cmake_policy(VERSION 3.25)
 execute_process(COMMAND ${NM} -D --defined-only --format=posix ${LIBRARY}
   OUTPUT_VARIABLE listing RESULT_VARIABLE status)
 if(NOT status EQUAL 0)
