@@ -138,6 +138,8 @@ struct ClientTables::Told {
   client::DefinitionOutline outline;
   std::vector<std::string> names;
   std::vector<std::vector<std::string_view>> implements;
+  std::map<std::string, std::vector<client::DeclaredMember>> declared;
+  std::deque<std::vector<Member>> callbacks;
   std::deque<ToldObjectType> types;
   std::vector<const ObjectType*> views;
   Definition definition;
@@ -145,12 +147,20 @@ struct ClientTables::Told {
 
 ClientTables::Told::Told(const std::string& from, ClientTables& tables)
     : text(from), outline(client::outline(text)) {
+  declared = client::declared_members(text);
   for (const auto& [name, others] : outline.objects) {
     names.push_back(outline.name + "." + name);
     implements.emplace_back(others.begin(), others.end());
+    // What the service may call without asking; the rest is the program's business.
+    std::vector<Member>& members = callbacks.emplace_back();
+    for (const client::DeclaredMember& member : declared[name]) {
+      if (member.kind == "callback") {
+        members.push_back({.kind = MemberKind::callback, .name = member.name});
+      }
+    }
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
-    types.push_back({{names[i], definition, implements[i], {}, make_raw_stub}, &tables});
+    types.push_back({{names[i], definition, implements[i], callbacks[i], make_raw_stub}, &tables});
     views.push_back(&types.back());
   }
   definition = {.name = outline.name,

@@ -39,6 +39,7 @@ class Den {
 
   std::atomic<int> made = 0;
   std::atomic<int> released = 0;
+  std::atomic<int> entered = 0;
   std::mutex mutex;
   double points[50] = {};
   TypeHandle type;
@@ -67,6 +68,10 @@ class Den {
     handler.on_request = [](void* context, rr_request* request, const rr_request_info* info) {
       static_cast<Den*>(context)->answer(request, *info);
     };
+    handler.on_monitor_enter = [](void* context, std::int32_t) {
+      return static_cast<Den*>(context)->entered.exchange(1) == 0 ? 1 : 0;
+    };
+    handler.on_monitor_exit = [](void* context) { static_cast<Den*>(context)->entered = 0; };
     handler.on_released = [](void* context, rr_str) { ++static_cast<Den*>(context)->released; };
     rr_served_object* object = nullptr;
     rr_served_object_new(type.get(), &handler, &object, nullptr);

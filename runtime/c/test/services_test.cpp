@@ -178,6 +178,22 @@ TEST(Objects, OfAClientsOwnGoWithIt) {
   EXPECT_TRUE(eventually([&] { return den.released == 2; }));
 }
 
+TEST(Objects, MayBeHadByOneSessionAlone) {
+  Den den;
+  const ClientHandle first = connect(den.node, den.port, "den");
+  const ClientHandle second = connect(den.node, den.port, "den");
+  const ObjectHandle mine = root_of(first);
+  const ObjectHandle theirs = root_of(second);
+  ASSERT_EQ(rr_object_enter_monitor(mine.get(), RR_NO_LIMIT, nullptr, nullptr), RR_OK);
+  EXPECT_EQ(den.entered, 1);
+  EXPECT_EQ(call(mine, "who", nullptr, nullptr, RR_PROPERTY_GET).status, RR_OK);
+  EXPECT_EQ(call(theirs, "who", nullptr, nullptr, RR_PROPERTY_GET).status, RR_INVALID_OPERATION);
+  EXPECT_EQ(rr_object_enter_monitor(theirs.get(), 0, nullptr, nullptr), RR_OPERATION_TIMEOUT);
+  ASSERT_EQ(rr_object_exit_monitor(mine.get(), nullptr, nullptr), RR_OK);
+  EXPECT_TRUE(eventually([&] { return den.entered == 0; }));
+  EXPECT_EQ(call(theirs, "who", nullptr, nullptr, RR_PROPERTY_GET).status, RR_OK);
+}
+
 TEST(Memories, OfPodsAreTransferredInPieces) {
   Den den;
   rr_node_options options{};

@@ -272,7 +272,6 @@ TEST(Callbacks, AreCalledWithoutWaiting) {
     EXPECT_EQ(rr_request_answer(request, &sum, nullptr), RR_OK);
     rr_request_release(request);
   };
-  ASSERT_EQ(rr_callback_set(silent.root.get(), view("sum"), 0, 1, &handler, nullptr), RR_OK);
   std::uint32_t client = 0;
   rr_service_clients(
       silent.service.get(), &client,
@@ -282,6 +281,11 @@ TEST(Callbacks, AreCalledWithoutWaiting) {
       nullptr);
   Packed arguments;
   arguments.integer("a", 2).integer("b", 3);
+  rr_data* none = nullptr;
+  EXPECT_EQ(rr_served_callback_call(silent.object.get(), sum_place, client, &arguments, nullptr,
+                                    &none, nullptr),
+            RR_INVALID_OPERATION);  // not set yet
+  ASSERT_EQ(rr_callback_set(silent.root.get(), view("sum"), 0, 1, &handler, nullptr), RR_OK);
   Result<rr_data> called;
   ASSERT_EQ(rr_served_callback_call_async(silent.object.get(), sum_place, client, &arguments,
                                           nullptr, &called.completion, nullptr),
@@ -290,7 +294,6 @@ TEST(Callbacks, AreCalledWithoutWaiting) {
   const rr_elements answer = rr_data_elements(data.get());
   EXPECT_EQ(unpack_int32(&answer, nullptr), 5);
   ASSERT_EQ(rr_callback_clear(silent.root.get(), view("sum"), nullptr), RR_OK);
-  rr_data* none = nullptr;
   EXPECT_EQ(rr_served_callback_call(silent.object.get(), sum_place, client, &arguments, nullptr,
                                     &none, nullptr),
             RR_INVALID_OPERATION);

@@ -72,6 +72,44 @@ DefinitionOutline outline(std::string_view text) {
   return result;
 }
 
+namespace {
+
+// The name behind a type, which may have blanks in its brackets only.
+std::string_view declared_name(const std::vector<std::string_view>& words) {
+  int open = 0;
+  for (std::size_t i = 1; i + 1 < words.size(); ++i) {
+    for (const char c : words[i]) {
+      if (c == '[' || c == '{') ++open;
+      if (c == ']' || c == '}') --open;
+    }
+    if (open != 0) continue;
+    const std::string_view name = words[i + 1];
+    return name.substr(0, name.find_first_of("([{"));
+  }
+  return {};
+}
+
+}  // namespace
+
+std::map<std::string, std::vector<DeclaredMember>> declared_members(std::string_view text) {
+  std::map<std::string, std::vector<DeclaredMember>> objects;
+  std::vector<DeclaredMember>* members = nullptr;
+  std::vector<std::string_view> words;
+  while (next_line(text, words)) {
+    if (words[0] == "object" && words.size() == 2) {
+      members = &objects[std::string(words[1])];
+    } else if (words[0] == "end") {
+      members = nullptr;
+    } else if (members != nullptr && words[0] == "event" && words.size() > 1) {
+      members->push_back({"event", std::string(words[1].substr(0, words[1].find('(')))});
+    } else if (members != nullptr) {
+      const std::string_view name = declared_name(words);
+      if (!name.empty()) members->push_back({std::string(words[0]), std::string(name)});
+    }
+  }
+  return objects;
+}
+
 std::string declared_version(std::string_view text) {
   std::string version;
   std::vector<std::string_view> words;
