@@ -39,6 +39,7 @@
 #include "rr_c/node.h"
 #include "rr_c/service.h"
 #include "rr_c/streams.h"
+#include "rr_c/subscriptions.h"
 #include "rr_c/values.h"
 
 #endif

@@ -46,6 +46,8 @@ struct SubscriptionOptions {
   std::chrono::milliseconds connect_timeout{10'000};
 
   ServiceFilter filter{};
+  /// Internal: makes one for each connection, as ConnectOptions::definition_reader.
+  Function<std::shared_ptr<client::DefinitionReader>()> definition_reader{};
 };
 
 /// How it stands with one service of a subscription.

@@ -146,6 +146,7 @@ Services::Reached Services::connect(const std::string& url, const FoundService& 
     const auto whose = target.lock();
     if (self && whose) self->session_ended(whose, *end, why);
   };
+  if (options_.definition_reader) options.definition_reader = options_.definition_reader();
   auto session = std::make_shared<Session>(host_.core, parsed, std::move(options));
   host_.keep(session);
   const channel::Interruption::Scope interruptible(attempt->interruption);
