@@ -29,7 +29,7 @@ set(robdef_layers
   # The compiler's model reads definitions here too.
   "runtime/cpp/src/dynamic: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/client compiler/diagnostics compiler/syntax compiler/model"
   "runtime/c: runtime/cpp/include/rr runtime/cpp/src/channel runtime/cpp/src/client runtime/cpp/src/endpoint runtime/cpp/src/service"
-  "runtime/c/test: runtime/c/include runtime/cpp/include/rr runtime/cpp/src/node/testing"
+  "runtime/c/test: runtime/c/include runtime/cpp/include/rr runtime/cpp/src/node/testing runtime/cpp/src/client/definition_text.hpp"
   "runtime/cpp/src/tap: runtime/cpp/include/rr"
   "runtime/cpp/src/replay: runtime/cpp/include/rr runtime/cpp/src/channel/capabilities.hpp runtime/cpp/src/channel/socket.hpp"
   "runtime/cpp/src/node/replay_test.cpp: runtime/cpp/include/rr runtime/cpp/src/node runtime/cpp/src/replay"

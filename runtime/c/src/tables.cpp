@@ -133,17 +133,38 @@ const Member& OwnedObjectType::member(std::uint32_t place, MemberKind kind) cons
 // One definition that a service has sent.
 struct ClientTables::Told {
   Told(const std::string& from, ClientTables& tables);
+  static void add(const client::DeclaredMember& declared, std::vector<Member>& members);
 
   std::string text;
   client::DefinitionOutline outline;
   std::vector<std::string> names;
   std::vector<std::vector<std::string_view>> implements;
   std::map<std::string, std::vector<client::DeclaredMember>> declared;
-  std::deque<std::vector<Member>> callbacks;
+  std::deque<std::vector<Member>> members;
   std::deque<ToldObjectType> types;
   std::vector<const ObjectType*> views;
   Definition definition;
 };
+
+// What the runtime looks for by itself: callbacks that the service asks for, wires and pipes of
+// subscriptions. The rest is the program's business.
+void ClientTables::Told::add(const client::DeclaredMember& declared, std::vector<Member>& members) {
+  Member member{.kind = MemberKind::callback, .name = declared.name, .type = &raw_type};
+  if (declared.kind == "wire" || declared.kind == "pipe") {
+    member.kind = declared.kind == "wire" ? MemberKind::wire : MemberKind::pipe;
+    member.holding = &holding_of<Raw>;
+  } else if (declared.kind != "callback") {
+    return;
+  }
+  const auto has = [&](std::string_view modifier) {
+    return declared.modifiers.find(modifier) != std::string::npos;
+  };
+  if (has("readonly")) member.access |= readonly;
+  if (has("writeonly")) member.access |= writeonly;
+  if (has("unreliable")) member.access |= unreliable;
+  if (has("urgent")) member.access |= urgent;
+  members.push_back(member);
+}
 
 ClientTables::Told::Told(const std::string& from, ClientTables& tables)
     : text(from), outline(client::outline(text)) {
@@ -151,16 +172,11 @@ ClientTables::Told::Told(const std::string& from, ClientTables& tables)
   for (const auto& [name, others] : outline.objects) {
     names.push_back(outline.name + "." + name);
     implements.emplace_back(others.begin(), others.end());
-    // What the service may call without asking; the rest is the program's business.
-    std::vector<Member>& members = callbacks.emplace_back();
-    for (const client::DeclaredMember& member : declared[name]) {
-      if (member.kind == "callback") {
-        members.push_back({.kind = MemberKind::callback, .name = member.name});
-      }
-    }
+    std::vector<Member>& used = members.emplace_back();
+    for (const client::DeclaredMember& member : declared[name]) add(member, used);
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
-    types.push_back({{names[i], definition, implements[i], callbacks[i], make_raw_stub}, &tables});
+    types.push_back({{names[i], definition, implements[i], members[i], make_raw_stub}, &tables});
     views.push_back(&types.back());
   }
   definition = {.name = outline.name,

@@ -2,6 +2,7 @@
 #include "runtime/cpp/src/client/definition_text.hpp"
 
 #include <cstddef>
+#include <utility>
 
 namespace rr::client {
 namespace {
@@ -74,17 +75,21 @@ DefinitionOutline outline(std::string_view text) {
 
 namespace {
 
-// The name behind a type, which may have blanks in its brackets only.
-std::string_view declared_name(const std::vector<std::string_view>& words) {
+// The name behind a type, which may have blanks in its brackets only, and the rest of the line.
+DeclaredMember read_member(const std::vector<std::string_view>& words) {
   int open = 0;
   for (std::size_t i = 1; i + 1 < words.size(); ++i) {
     for (const char c : words[i]) {
       if (c == '[' || c == '{') ++open;
       if (c == ']' || c == '}') --open;
     }
-    if (open != 0) continue;
-    const std::string_view name = words[i + 1];
-    return name.substr(0, name.find_first_of("([{"));
+    const char next = words[i + 1][0];
+    if (open != 0 || next == '[' || next == '{') continue;
+    const std::string_view name = words[i + 1].substr(0, words[i + 1].find_first_of("([{"));
+    DeclaredMember member{std::string(words[0]), std::string(name), {}};
+    member.modifiers = words[i + 1].substr(name.size());
+    for (std::size_t rest = i + 2; rest < words.size(); ++rest) member.modifiers += words[rest];
+    return member;
   }
   return {};
 }
@@ -101,10 +106,10 @@ std::map<std::string, std::vector<DeclaredMember>> declared_members(std::string_
     } else if (words[0] == "end") {
       members = nullptr;
     } else if (members != nullptr && words[0] == "event" && words.size() > 1) {
-      members->push_back({"event", std::string(words[1].substr(0, words[1].find('(')))});
+      members->push_back({"event", std::string(words[1].substr(0, words[1].find('('))), {}});
     } else if (members != nullptr) {
-      const std::string_view name = declared_name(words);
-      if (!name.empty()) members->push_back({std::string(words[0]), std::string(name)});
+      DeclaredMember member = read_member(words);
+      if (!member.name.empty()) members->push_back(std::move(member));
     }
   }
   return objects;

@@ -24,6 +24,7 @@ DefinitionOutline outline(std::string_view text);
 struct DeclaredMember {
   std::string kind;  ///< `property`, `function`, ...
   std::string name;
+  std::string modifiers;  ///< and what else is behind the name
 };
 /// The members of the objects of a text, by the objects' unqualified names.
 std::map<std::string, std::vector<DeclaredMember>> declared_members(std::string_view text);
