@@ -17,7 +17,7 @@ file(REMOVE_RECURSE "${SCRATCH}")
 file(COPY "${SOURCE}/" DESTINATION "${SCRATCH}/source")
 if(INSTALL_FROM)
   run(${CMAKE_COMMAND} --install "${INSTALL_FROM}" --prefix "${SCRATCH}/prefix")
-  foreach(installed bin/robdef include/rr/error.hpp share/man/man1/robdef.1
+  foreach(installed bin/robdef include/rr/error.hpp include/rr.h include/rr_c/values.h share/man/man1/robdef.1
                     share/bash-completion/completions/robdef)
     if(NOT EXISTS "${SCRATCH}/prefix/${installed}")
       message(SEND_ERROR "not installed: ${installed}")

@@ -46,7 +46,7 @@ struct SubscriptionOptions {
   std::chrono::milliseconds connect_timeout{10'000};
 
   ServiceFilter filter{};
-  /// Internal, of rr::dynamic: makes the reader of each session.
+  /// Internal: makes the reader of each session (ConnectOptions::definition_reader).
   Function<std::shared_ptr<client::DefinitionReader>()> make_definition_reader{};
 };
 

@@ -2,6 +2,7 @@
 #include "runtime/cpp/src/client/definition_text.hpp"
 
 #include <cstddef>
+#include <utility>
 
 namespace rr::client {
 namespace {
@@ -70,6 +71,58 @@ DefinitionOutline outline(std::string_view text) {
     }
   }
   return result;
+}
+
+namespace {
+
+// The name behind a type, which may have blanks in its brackets only, and the rest of the line.
+DeclaredMember read_member(const std::vector<std::string_view>& words) {
+  int open = 0;
+  for (std::size_t i = 1; i + 1 < words.size(); ++i) {
+    for (const char c : words[i]) {
+      if (c == '[' || c == '{') ++open;
+      if (c == ']' || c == '}') --open;
+    }
+    const char next = words[i + 1][0];
+    if (open != 0 || next == '[' || next == '{') continue;
+    const std::string_view name = words[i + 1].substr(0, words[i + 1].find_first_of("([{"));
+    DeclaredMember member{std::string(words[0]), std::string(name), {}};
+    member.modifiers = words[i + 1].substr(name.size());
+    for (std::size_t rest = i + 2; rest < words.size(); ++rest) member.modifiers += words[rest];
+    return member;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::map<std::string, std::vector<DeclaredMember>> declared_members(std::string_view text) {
+  std::map<std::string, std::vector<DeclaredMember>> objects;
+  std::vector<DeclaredMember>* members = nullptr;
+  std::vector<std::string_view> words;
+  while (next_line(text, words)) {
+    if (words[0] == "object" && words.size() == 2) {
+      members = &objects[std::string(words[1])];
+    } else if (words[0] == "end") {
+      members = nullptr;
+    } else if (members != nullptr && words[0] == "event" && words.size() > 1) {
+      members->push_back({"event", std::string(words[1].substr(0, words[1].find('('))), {}});
+    } else if (members != nullptr) {
+      DeclaredMember member = read_member(words);
+      if (!member.name.empty()) members->push_back(std::move(member));
+    }
+  }
+  return objects;
+}
+
+std::string declared_version(std::string_view text) {
+  std::string version;
+  std::vector<std::string_view> words;
+  while (next_line(text, words)) {
+    if (words[0] == "stdver" && words.size() > 1) return std::string(words[1]);
+    if (words[0] == "option" && words.size() == 3 && words[1] == "version") version = words[2];
+  }
+  return version;
 }
 
 }  // namespace rr::client

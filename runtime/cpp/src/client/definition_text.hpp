@@ -20,4 +20,16 @@ struct DefinitionOutline {
 /// Reads the lines that matter and skips all others; never fails.
 DefinitionOutline outline(std::string_view text);
 
+/// One member of an object, as far as it can be told from its line alone.
+struct DeclaredMember {
+  std::string kind;  ///< `property`, `function`, ...
+  std::string name;
+  std::string modifiers;  ///< and what else is behind the name
+};
+/// The members of the objects of a text, by the objects' unqualified names.
+std::map<std::string, std::vector<DeclaredMember>> declared_members(std::string_view text);
+
+/// The version of the language that a text declares; empty for none.
+std::string declared_version(std::string_view text);
+
 }  // namespace rr::client
