@@ -25,7 +25,11 @@ set(robdef_layers
   "runtime/cpp/src/client: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint"
   "runtime/cpp/src/service: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint"
   "runtime/cpp/src/subscription: runtime/cpp/include/rr runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/client"
-  "runtime/cpp/src/node: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/client runtime/cpp/src/service runtime/cpp/src/subscription"
+  "runtime/cpp/src/discovery: runtime/cpp/include/rr runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/client runtime/cpp/src/subscription"
+  "runtime/cpp/src/discovery/find_inside_test.cpp: runtime/cpp/include/rr runtime/cpp/src/discovery runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/node/testing"
+  "runtime/cpp/src/discovery/flood_inside_test.cpp: runtime/cpp/include/rr runtime/cpp/src/discovery runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/node/testing"
+  "runtime/cpp/src/discovery/type_subscription_test.cpp: runtime/cpp/include/rr runtime/cpp/src/discovery runtime/cpp/src/node/testing"
+  "runtime/cpp/src/node: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/client runtime/cpp/src/service runtime/cpp/src/subscription runtime/cpp/src/discovery"
   # The compiler's model reads definitions here too.
   "runtime/cpp/src/dynamic: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/client compiler/diagnostics compiler/syntax compiler/model"
   "runtime/cpp/src/tap: runtime/cpp/include/rr"
@@ -45,7 +49,7 @@ set(robdef_outside_headers
   "^(antlr4|Robdef(Lexer|Parser))| compiler/syntax"
   "^boost/| runtime/cpp/include/rr/async.hpp"
   "^rr/async\\.hpp$| runtime/cpp/src runtime/cpp/stress examples conformance benchmarks compiler/backends"
-  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress conformance benchmarks"
+  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/channel runtime/cpp/src/discovery runtime/cpp/src/endpoint runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress conformance benchmarks"
   "^fmt/| compiler benchmarks"
   "^nlohmann/| runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"
   "^png\\.h$| examples")
