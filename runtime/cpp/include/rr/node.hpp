@@ -71,6 +71,8 @@ class Node {
   std::uint16_t listen(std::string_view url);
   /// The same at all addresses of both families, or at `host` only.
   std::uint16_t listen_tcp(std::uint16_t port, std::string_view host = {});
+  /// Whether URLs of a scheme (`rr+tcp`) can be listened at and connected to.
+  [[nodiscard]] bool has_channel(std::string_view scheme) const;
   /// Where a service may be reached, by what this node knows: one URL for each address it listens
   /// at.
   [[nodiscard]] std::vector<std::string> urls(std::string_view service) const;

@@ -205,6 +205,15 @@ std::uint16_t Node::listen_tcp(std::uint16_t port, std::string_view host) {
   return listen("rr+tcp://" + place + ":" + std::to_string(port));
 }
 
+bool Node::has_channel(std::string_view scheme) const {
+  try {
+    state_->core->channel(std::string(scheme));
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 std::vector<std::string> Node::urls(std::string_view service) const {
   std::vector<std::string> result;
   for (const std::string& url : state_->listening()) {
