@@ -15,6 +15,7 @@ set(robdef_layers
   "compiler/backends/cpp/generated_test.cpp: compiler/model runtime/cpp/include/rr"
   "compiler/backends/cpp/generated_members_test.cpp: runtime/cpp/include/rr"
   "compiler/driver: compiler/diagnostics compiler/syntax compiler/model compiler/output compiler/backends runtime/cpp/include/rr runtime/cpp/src/replay"
+  "compiler/driver/discover_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing runtime/cpp/src/discovery/testing.hpp"
   "compiler/driver/recordings_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
 
   "runtime/cpp/include/rr:"
@@ -28,7 +29,10 @@ set(robdef_layers
   "runtime/cpp/src/discovery: runtime/cpp/include/rr runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/client runtime/cpp/src/subscription"
   "runtime/cpp/src/discovery/find_inside_test.cpp: runtime/cpp/include/rr runtime/cpp/src/discovery runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/node/testing"
   "runtime/cpp/src/discovery/flood_inside_test.cpp: runtime/cpp/include/rr runtime/cpp/src/discovery runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/node/testing"
+  "runtime/cpp/src/discovery/local_nodes_inside_test.cpp: runtime/cpp/include/rr runtime/cpp/src/discovery runtime/cpp/src/channel runtime/cpp/src/node/testing"
   "runtime/cpp/src/discovery/type_subscription_test.cpp: runtime/cpp/include/rr runtime/cpp/src/discovery runtime/cpp/src/node/testing"
+  "runtime/cpp/src/discovery/networks_test.cpp: runtime/cpp/src/node/testing"
+  "runtime/cpp/src/discovery/peer.cpp: runtime/cpp/include/rr runtime/cpp/src/node/testing"
   "runtime/cpp/src/node: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/client runtime/cpp/src/service runtime/cpp/src/subscription runtime/cpp/src/discovery"
   # The compiler's model reads definitions here too.
   "runtime/cpp/src/dynamic: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/client compiler/diagnostics compiler/syntax compiler/model"

@@ -130,6 +130,9 @@ class ArgumentReader {
       return "no code given";
     }
     if (command_.command == Command::record) return missing_to_record();
+    if (command_.command == Command::discover) {
+      return options_.inputs.empty() ? "" : "`robdef discover` takes no files";
+    }
     if (options_.inputs.empty() && command_.command != Command::explain) return "no file given";
     if (command_.command == Command::replay) return missing_to_replay();
     if (!options_.inputs.empty() && options_.lists_codes) return "`--list` takes no codes";

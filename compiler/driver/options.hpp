@@ -9,6 +9,7 @@
 
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/diagnostics/report.hpp"
+#include "compiler/driver/discover_options.hpp"
 #include "compiler/driver/recording_options.hpp"
 #include "compiler/syntax/read.hpp"
 
@@ -16,7 +17,18 @@
 /// `--help` alike.
 namespace robdef {
 
-enum class Command { generate, check, describe, model, view, explain, inspect, record, replay };
+enum class Command {
+  generate,
+  check,
+  describe,
+  model,
+  view,
+  explain,
+  inspect,
+  record,
+  replay,
+  discover
+};
 
 /// What the user asked for. Which parts mean something depends on the command.
 struct Options {
@@ -37,6 +49,7 @@ struct Options {
   bool lists_codes = false;
   bool is_json = false;
   RecordingOptions recording;
+  DiscoverOptions discover;
 };
 
 /// Text that answers the command line itself: help or the version.

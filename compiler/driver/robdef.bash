@@ -7,7 +7,7 @@ _robdef() {
   COMPREPLY=()
   if [ "$COMP_CWORD" = 1 ]; then
     mapfile -t COMPREPLY < <(compgen -W \
-      'generate check describe model view explain inspect record replay --help --version' -- "$word")
+      'generate check describe model view explain inspect record replay discover --help --version' -- "$word")
     return
   fi
   case $previous in
@@ -58,6 +58,7 @@ _robdef() {
       explain) options='--list --json --help' ;;
       inspect) options='--json --entries --path --connection --summary --help' ;;
       record) options='--connect --listen --everywhere --output -o --drop --help' ;;
+      discover) options='--once --type --format --wait --ipv4 --interface --port --help' ;;
       replay) options='--connect --listen --everywhere --connection --fast --help' ;;
     esac
     mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")

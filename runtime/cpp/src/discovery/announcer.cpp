@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "rr/url.hpp"
 #include "runtime/cpp/src/discovery/packets.hpp"
 #include "runtime/cpp/src/discovery/voice.hpp"
 #include "runtime/cpp/src/endpoint/service_index_types.hpp"
@@ -88,10 +87,10 @@ std::vector<std::string> Announcer::packets_for(const LocalAddress& from) const 
   std::vector<std::string> packets;
   const std::string nonce_now = nonce();
   for (const std::string& base : listening_()) {
-    const Url url = Url::parse(base);
-    if (url.scheme != "rr+tcp" && url.scheme != "rrs+tcp") continue;
+    if (!base.starts_with("rr+tcp://") && !base.starts_with("rrs+tcp://")) continue;
+    const std::string here = base.substr(0, base.find("://") + 3) + from.host() + ":";
     for (const std::string& reachable : reachable_urls(base, {from})) {
-      if (!reachable.starts_with(url.scheme + "://" + from.host() + ":")) continue;
+      if (!reachable.starts_with(here)) continue;
       packets.push_back(write_announcement(
           {id_, name_, service_index::service_url(reachable, id_, service_index::service_name),
            nonce_now}));

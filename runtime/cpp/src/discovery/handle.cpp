@@ -22,7 +22,7 @@ template <class Result, class Work>
 std::future<Result> aside(const std::shared_ptr<discovery::NodeDiscovery>& state, Work work) {
   auto promise = std::make_shared<std::promise<Result>>();
   auto future = promise->get_future();
-  need_state(state).host().run_aside([promise, work = std::move(work)] {
+  need_state(state).run_aside([promise, work = std::move(work)] {
     try {
       promise->set_value(work());
     } catch (...) {
@@ -104,7 +104,7 @@ std::future<std::vector<DetectedNode>> Discovery::async_update_detected_nodes(
 void Discovery::find_services_aside(
     std::string type, FindOptions options,
     Function<void(std::exception_ptr, std::vector<FoundService>)> done) const {
-  need_state(state_).host().run_aside(
+  need_state(state_).run_aside(
       [self = *this, type = std::move(type), options = std::move(options), done = std::move(done)] {
         std::vector<FoundService> services;
         std::exception_ptr error;

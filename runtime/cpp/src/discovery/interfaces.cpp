@@ -10,8 +10,6 @@
 #include <cstring>
 #include <memory>
 
-#include "rr/url.hpp"
-
 namespace rr::discovery {
 namespace {
 
@@ -61,9 +59,8 @@ std::vector<LocalAddress> local_addresses() {
 
 std::vector<std::string> reachable_urls(const std::string& base,
                                         const std::vector<LocalAddress>& addresses) {
-  const Url url = Url::parse(base);
-  const bool is_any_v4 = url.host == "0.0.0.0";
-  const bool is_any_v6 = url.host == "::";
+  const bool is_any_v4 = base.find("://0.0.0.0:") != std::string::npos;
+  const bool is_any_v6 = base.find("://[::]:") != std::string::npos;
   if (!is_any_v4 && !is_any_v6) {
     const std::size_t scope = base.find('%');
     if (scope == std::string::npos) return {base};
@@ -72,7 +69,8 @@ std::vector<std::string> reachable_urls(const std::string& base,
   std::vector<std::string> urls;
   for (const LocalAddress& address : addresses) {
     if (address.is_v6() != is_any_v6) continue;
-    urls.push_back(url.scheme + "://" + address.host() + ":" + std::to_string(url.port));
+    urls.push_back(base.substr(0, base.find("://") + 3) + address.host() +
+                   base.substr(base.rfind(':')));
   }
   return urls;
 }

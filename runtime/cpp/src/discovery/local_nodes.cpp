@@ -61,7 +61,7 @@ void add_nodes_in(const fs::path& base, const std::string& user, std::vector<Ann
     if (!id || id->is_any() || owner.empty() || (!user.empty() && owner != user)) continue;
     Announcement& node = nodes.emplace_back(Announcement{.node = *id});
     if (const auto name = names.find(*id); name != names.end()) node.name = name->second;
-    const std::string place = user.empty() ? std::string() : user + "@localhost";
+    const std::string place = user.empty() ? "/" : user + "@localhost/";
     node.url = service_index::service_url("rr+local://" + place, *id, service_index::service_name);
     node.nonce = text_of(info, "ServiceStateNonce");
   }

@@ -56,6 +56,13 @@ void NodeDiscovery::check_open() const {
   if (has_ended_) throw Error(ErrorCode::invalid_operation, "the node is shut down");
 }
 
+// Under the lock, which the node's end takes, too: what runs things aside may be gone after that.
+void NodeDiscovery::run_aside(std::function<void()> work) {
+  const std::lock_guard lock(mutex_);
+  check_open();
+  host_.run_aside(std::move(work));
+}
+
 std::shared_ptr<Alarm> NodeDiscovery::alarm(void (NodeDiscovery::*method)()) {
   return std::make_shared<Alarm>(host_.core->ground().reactor, [weak = weak_from_this(), method] {
     if (const auto self = weak.lock()) ((*self).*method)();

@@ -47,7 +47,8 @@ class NodeDiscovery : public std::enable_shared_from_this<NodeDiscovery> {
   void ensure_listening();
   [[nodiscard]] Announcer& announcer() { return *announcer_; }
   [[nodiscard]] const std::shared_ptr<ServiceWatch>& watch_pointer() const { return watch_; }
-  [[nodiscard]] const subscription::Host& host() const { return host_; }
+  /// On a thread that the node's end waits for. Throws rr::Error (invalid_operation) after that.
+  void run_aside(std::function<void()> work);
   /// A datagram has come: on a thread of the node. For Ears and tests.
   void hear(std::string_view packet, const channel::Address& sender);
   /// Ends everything; waits for nobody.

@@ -80,7 +80,11 @@ std::string service_url(std::string_view base, const NodeId& node, std::string_v
   std::string url(base);
   const std::size_t scope = url.find('%');
   if (scope != std::string::npos) url.erase(scope, url.find(']', scope) - scope);
-  url += "/?nodeid=" + node.text();
+  // One of a local socket or the like may say more than a place already.
+  if (url.find('?') == std::string::npos) {
+    url += url.ends_with('/') ? "?" : "/?";
+    url += "nodeid=" + node.text();
+  }
   if (!service.empty()) url += "&service=" + std::string(service);
   return url;
 }
