@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <chrono>
 #include <optional>
 #include <vector>
 
@@ -125,6 +126,29 @@ std::string take_port(Options& options, const std::string& value) {
   return options.recording.port ? "" : "`" + value + "` is no port";
 }
 
+std::string take_discover_format(Options& options, const std::string& value) {
+  const std::string complaint = take_format(options, value);
+  if (!complaint.empty() || options.format != Format::line) return complaint;
+  return "known here: `text`, `json`";
+}
+
+std::string take_discovery_port(Options& options, const std::string& value) {
+  const auto port = number_in<std::uint16_t>(value);
+  options.discover.port = port.value_or(0);
+  return options.discover.port != 0 ? "" : "`" + value + "` is no port";
+}
+
+std::string take_wait(Options& options, const std::string& value) {
+  const auto seconds = number_in<std::uint16_t>(value);
+  options.discover.wait = std::chrono::seconds(seconds.value_or(0));
+  return seconds ? "" : "`" + value + "` is no number of seconds";
+}
+
+std::string take_interface(Options& options, const std::string& value) {
+  options.discover.interfaces.push_back(value);
+  return value.empty() ? "the value is empty" : "";
+}
+
 constexpr CommandSet reading = {Command::generate, Command::check, Command::describe,
                                 Command::model, Command::view};
 
@@ -174,6 +198,11 @@ constexpr std::array commands = {
                "does otherwise than in the recording. Endpoints, node ids, message, request and\n"
                "generator numbers, and the times of wire values may differ; values of wires may\n"
                "be missing.\n"},
+    CommandRow{Command::discover, "discover", "[OPTION...]",
+               "show the nodes and services that can be found",
+               "Listens to the announcements of nodes and asks them for their services. Prints\n"
+               "nodes and services with + when they come, * when they change and - when they\n"
+               "are lost, until it is interrupted.\n"},
 };
 
 constexpr std::array options = {
@@ -305,6 +334,57 @@ constexpr std::array options = {
               {Command::replay},
               "send as soon as the answers before have come,\nnot at the recorded times",
               take_recording_switch<&RecordingOptions::is_fast>},
+    OptionRow{"--once",
+              "",
+              "",
+              {Command::discover},
+              "wait a while, print what there is, and end",
+              [](Options& taken, const std::string&) {
+                taken.discover.is_once = true;
+                return std::string();
+              }},
+    OptionRow{"--type",
+              "",
+              "TYPE",
+              {Command::discover},
+              "only services whose root object has this\nqualified type, or implements it",
+              [](Options& taken, const std::string& value) {
+                taken.discover.type = value;
+                return std::string(value.empty() ? "the value is empty" : "");
+              }},
+    OptionRow{"--format",
+              "",
+              "FORM",
+              {Command::discover},
+              "text (default) or json: one document with\n--once, otherwise an object a line",
+              take_discover_format},
+    OptionRow{"--wait",
+              "",
+              "SECONDS",
+              {Command::discover},
+              "how long --once waits; default: 3",
+              take_wait},
+    OptionRow{"--ipv4",
+              "",
+              "",
+              {Command::discover},
+              "ask by broadcasts of IPv4, too",
+              [](Options& taken, const std::string&) {
+                taken.discover.uses_ipv4 = true;
+                return std::string();
+              }},
+    OptionRow{"--interface",
+              "",
+              "NAME",
+              {Command::discover},
+              "ask on this interface only; may be repeated",
+              take_interface},
+    OptionRow{"--port",
+              "",
+              "PORT",
+              {Command::discover},
+              "port of discovery; default: 48653",
+              take_discovery_port},
 };
 
 /// `text` in a column that begins behind `indent` blanks; the first line stands there already.

@@ -139,6 +139,9 @@ class ArgumentReader {
       return "no code given";
     }
     if (command_.command == Command::record) return missing_to_record();
+    if (command_.command == Command::discover) {
+      return options_.inputs.empty() ? "" : "`robdef discover` takes no files";
+    }
     if (command_.command >= Command::get ||
         (command_.command == Command::describe && !options_.inputs.empty() &&
          is_url(options_.inputs.front()))) {

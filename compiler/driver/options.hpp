@@ -9,6 +9,7 @@
 
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/diagnostics/report.hpp"
+#include "compiler/driver/discover_options.hpp"
 #include "compiler/driver/live_options.hpp"
 #include "compiler/driver/recording_options.hpp"
 #include "compiler/syntax/read.hpp"
@@ -27,6 +28,7 @@ enum class Command {
   inspect,
   record,
   replay,
+  discover,
   get,
   set,
   call,
@@ -55,6 +57,7 @@ struct Options {
   bool lists_codes = false;
   bool is_json = false;
   RecordingOptions recording;
+  DiscoverOptions discover;
   LiveOptions live;
 };
 

@@ -23,7 +23,7 @@ _robdef() {
   COMPREPLY=()
   if [ "$COMP_CWORD" = 1 ]; then
     mapfile -t COMPREPLY < <(compgen -W \
-      'generate check describe model view explain inspect record replay get set call watch connect
+      'generate check describe model view explain inspect record replay discover get set call watch connect
       --help --version' -- "$word")
     return
   fi
@@ -82,6 +82,7 @@ _robdef() {
       explain) options='--list --json --help' ;;
       inspect) options='--json --entries --path --connection --summary --help' ;;
       record) options='--connect --listen --everywhere --output -o --drop --help' ;;
+      discover) options='--once --type --format --wait --ipv4 --interface --port --help' ;;
       replay) options='--connect --listen --everywhere --connection --fast --help' ;;
     esac
     mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "compiler/driver/discover.hpp"
 #include "compiler/driver/explain.hpp"
 #include "compiler/driver/live/commands.hpp"
 #include "compiler/driver/recordings.hpp"
@@ -54,6 +55,8 @@ ExitStatus answer(std::span<const std::string> arguments, std::string_view impor
       return record(options, out, err);
     case Command::replay:
       return replay(options, out, err);
+    case Command::discover:
+      return discover(options, out, err);
     case Command::get:
     case Command::set:
     case Command::call:

@@ -22,6 +22,9 @@
 
 namespace rr {
 
+class Discovery;
+class ServiceInfoSubscription;
+
 /// One participant: offers services, and connects to those of others.
 ///
 ///   rr::Node node({.name = "camera.host"});
@@ -68,9 +71,17 @@ class Node {
   std::uint16_t listen(std::string_view url);
   /// The same at all addresses of both families, or at `host` only.
   std::uint16_t listen_tcp(std::uint16_t port, std::string_view host = {});
+  /// Whether URLs of a scheme (`rr+tcp`) can be listened at and connected to.
+  [[nodiscard]] bool has_channel(std::string_view scheme) const;
   /// Where a service may be reached, by what this node knows: one URL for each address it listens
   /// at.
   [[nodiscard]] std::vector<std::string> urls(std::string_view service) const;
+
+  /// The same for others to use: any-addresses stand for all addresses of this machine as they are
+  /// now, and IPv6 scopes, which mean nothing elsewhere, are left out.
+  [[nodiscard]] std::vector<std::string> candidate_urls(std::string_view service) const;
+  /// Finding other nodes, and being found: see rr/discovery.hpp, which is to be included.
+  [[nodiscard]] Discovery discovery() const;
 
   /// Offers an object and what it refers to. The name is a letter, then letters, digits and
   /// underscores. Throws rr::Error.
@@ -137,6 +148,20 @@ class Node {
                                     SubscriptionOptions options = {}) {
     return subscribe_to(std::move(services), std::move(options));
   }
+
+  /// Keeps a connection to each service that can be found, whose root object has one of these types
+  /// or implements it, and that passes the filter; none: any type. Services come and go with what
+  /// is announced. Listens with default options unless Discovery::listen() was called. Throws
+  /// rr::Error: invalid_argument for a filter's wrong expression, connection_error when discovery
+  /// cannot be listened to, invalid_operation after shutdown().
+  ServiceSubscription subscribe_types(std::vector<std::string> types,
+                                      SubscriptionOptions options = {});
+  ServiceSubscription subscribe_type(std::string type, SubscriptionOptions options = {}) {
+    return subscribe_types({std::move(type)}, std::move(options));
+  }
+  /// The same without connecting: tells which services there are. See rr/discovery.hpp.
+  ServiceInfoSubscription subscribe_services(std::vector<std::string> types,
+                                             ServiceFilter filter = {});
 
   /// Runs something on a thread of its own, which shutdown() waits for. It may not throw. Throws
   /// rr::Error (invalid_operation) after shutdown().

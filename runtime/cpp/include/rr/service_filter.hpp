@@ -24,6 +24,8 @@ struct FoundService {
   std::string object_type{};
   std::vector<std::string> implements{};  ///< qualified; without object_type itself
   std::map<std::string, VarValue> attributes{};
+
+  bool operator==(const FoundService&) const = default;
 };
 
 /// How the answers of several tests make one. Of no tests, all_of and any_of hold, the other two do

@@ -92,6 +92,10 @@ class ServiceSubscription {
   void update_urls(std::vector<std::string> urls);
   /// The same for several services. One that shares a URL with one before is the same service.
   void update_services(std::vector<std::vector<std::string>> services);
+  /// Of one made by Node::subscribe_type: services of other types, or those that pass another
+  /// filter, from now on. Connections to those that match stay. Throws rr::Error: invalid_argument
+  /// for a filter's wrong expression, invalid_operation when closed or made by URLs.
+  void update_types(std::vector<std::string> types, ServiceFilter filter = {});
   /// See SubscriptionOptions. For what fails from now on.
   void set_retry_delay(std::chrono::milliseconds delay, std::chrono::milliseconds maximum = {});
 

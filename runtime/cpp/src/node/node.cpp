@@ -6,10 +6,16 @@
 #include <mutex>
 #include <thread>
 
+#include "rr/discovery.hpp"
 #include "rr/url.hpp"
 #include "runtime/cpp/src/channel/channel.hpp"
 #include "runtime/cpp/src/client/session.hpp"
+#include "runtime/cpp/src/discovery/interfaces.hpp"
+#include "runtime/cpp/src/discovery/node_discovery.hpp"
+#include "runtime/cpp/src/discovery/service_infos.hpp"
+#include "runtime/cpp/src/discovery/type_source.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/endpoint/service_index_types.hpp"
 #include "runtime/cpp/src/service/directory.hpp"
 #include "runtime/cpp/src/subscription/owner.hpp"
 
@@ -19,6 +25,7 @@ struct Node::State {
   std::shared_ptr<endpoint::Core> core;
   std::shared_ptr<service::Directory> directory;
   std::shared_ptr<subscription::Owner> subscriptions;
+  std::shared_ptr<discovery::NodeDiscovery> discovery;
   // Threads of run_aside(), and whether they have done their work.
   struct Worker {
     std::thread thread;
@@ -84,6 +91,16 @@ struct Node::State {
     workers.push_back({std::move(thread), std::move(is_done)});
   }
 
+  // Where this listens, as the listeners say.
+  std::vector<std::string> listening() {
+    std::vector<std::string> result;
+    const std::lock_guard lock(mutex);
+    for (const auto& listener : listeners) {
+      for (std::string& url : listener->urls()) result.push_back(std::move(url));
+    }
+    return result;
+  }
+
   [[nodiscard]] bool is_own_thread() const {
     return served_aside == this || core->reactor().is_own_thread();
   }
@@ -106,6 +123,7 @@ void Node::State::begin_end() {
     old_sessions.swap(sessions);
   }
   old_listeners.clear();
+  discovery->end();
   subscriptions->end();
   for (const auto& session : old_sessions) {
     if (const auto alive = session.lock()) alive->drop();
@@ -134,11 +152,24 @@ void Node::State::finish_end() {
 Node::Node(NodeOptions options) : state_(std::make_unique<State>()) {
   state_->core = std::make_shared<endpoint::Core>(std::move(options));
   state_->directory = std::make_shared<service::Directory>(state_->core);
-  state_->directory->start();
-  state_->subscriptions = std::make_shared<subscription::Owner>(subscription::Host{
+  const subscription::Host host{
       state_->core,
       [state = state_.get()](std::function<void()> work) { state->run_aside(std::move(work)); },
-      [state = state_.get()](const std::shared_ptr<Session>& session) { state->keep(session); }});
+      [state = state_.get()](const std::shared_ptr<Session>& session) { state->keep(session); }};
+  state_->discovery = std::make_shared<discovery::NodeDiscovery>(
+      host, [state = state_.get()] { return state->listening(); });
+  const std::weak_ptr<discovery::NodeDiscovery> known = state_->discovery;
+  state_->directory->set_discovery({[known] {
+                                      const auto discovery = known.lock();
+                                      return discovery ? discovery->detected_nodes()
+                                                       : std::vector<DetectedNode>();
+                                    },
+                                    [known] {
+                                      if (const auto discovery = known.lock())
+                                        discovery->announcer().services_changed();
+                                    }});
+  state_->directory->start();
+  state_->subscriptions = std::make_shared<subscription::Owner>(host);
 }
 
 Node::~Node() {
@@ -159,9 +190,12 @@ std::uint16_t Node::listen(std::string_view url) {
   state_->core->start();
   auto listener = state_->core->channel(parsed.scheme).listen(parsed, state_->accept_handler());
   const std::uint16_t port = Url::parse(listener->urls().front()).port;
-  const std::lock_guard lock(state_->mutex);
-  if (state_->is_shut_down) throw Error(ErrorCode::invalid_operation, "the node is shut down");
-  state_->listeners.push_back(std::move(listener));
+  {
+    const std::lock_guard lock(state_->mutex);
+    if (state_->is_shut_down) throw Error(ErrorCode::invalid_operation, "the node is shut down");
+    state_->listeners.push_back(std::move(listener));
+  }
+  state_->discovery->announcer().announce_soon();
   return port;
 }
 
@@ -171,15 +205,57 @@ std::uint16_t Node::listen_tcp(std::uint16_t port, std::string_view host) {
   return listen("rr+tcp://" + place + ":" + std::to_string(port));
 }
 
+bool Node::has_channel(std::string_view scheme) const {
+  try {
+    state_->core->channel(std::string(scheme));
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 std::vector<std::string> Node::urls(std::string_view service) const {
   std::vector<std::string> result;
-  const std::lock_guard lock(state_->mutex);
-  for (const auto& listener : state_->listeners) {
-    for (const std::string& url : listener->urls()) {
-      result.push_back(url + "/?nodeid=" + id().text() + "&service=" + std::string(service));
+  for (const std::string& url : state_->listening()) {
+    result.push_back(url + "/?nodeid=" + id().text() + "&service=" + std::string(service));
+  }
+  return result;
+}
+
+std::vector<std::string> Node::candidate_urls(std::string_view service) const {
+  std::vector<std::string> result;
+  const auto addresses = discovery::local_addresses();
+  for (const std::string& base : state_->listening()) {
+    for (const std::string& url : discovery::reachable_urls(base, addresses)) {
+      result.push_back(service_index::service_url(url, id(), service));
     }
   }
   return result;
+}
+
+Discovery Node::discovery() const { return Discovery(state_->discovery); }
+
+ServiceSubscription Node::subscribe_types(std::vector<std::string> types,
+                                          SubscriptionOptions options) {
+  state_->discovery->ensure_listening();
+  ServiceFilter filter = options.filter;
+  const auto services = state_->subscriptions->add(std::move(options));
+  const auto& watch = state_->discovery->watch_pointer();
+  const auto source = std::make_shared<discovery::TypeSource>(watch, state_->core, services,
+                                                              std::move(types), std::move(filter));
+  services->set_source(source);
+  watch->add(source);
+  return ServiceSubscription(services);
+}
+
+ServiceInfoSubscription Node::subscribe_services(std::vector<std::string> types,
+                                                 ServiceFilter filter) {
+  const auto& watch = state_->discovery->watch_pointer();
+  const auto infos = std::make_shared<discovery::ServiceInfos>(watch, state_->core,
+                                                               std::move(types), std::move(filter));
+  state_->discovery->ensure_listening();
+  watch->add(infos);
+  return ServiceInfoSubscription(infos);
 }
 
 Service Node::register_service(std::string name, std::shared_ptr<Skeleton> root,

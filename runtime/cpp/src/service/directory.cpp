@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/endpoint/service_index_types.hpp"
 #include "runtime/cpp/src/endpoint/service_path.hpp"
 #include "runtime/cpp/src/service/server_endpoint.hpp"
 #include "runtime/cpp/src/service/service_index.hpp"
@@ -15,7 +16,7 @@ Directory::Directory(std::shared_ptr<endpoint::Core> core) : core_(std::move(cor
 
 void Directory::start() {
   index_ = std::make_shared<ServiceIndex>(weak_from_this());
-  add(std::string(service_index_name), index_, {});
+  add(std::string(service_index::service_name), index_, {});
 }
 
 std::shared_ptr<ServiceHost> Directory::add(std::string name, std::shared_ptr<Skeleton> root,
@@ -46,7 +47,7 @@ std::shared_ptr<ServiceHost> Directory::add(std::string name, std::shared_ptr<Sk
     remove(*host);
     throw;
   }
-  if (index_) index_->fire_changed();
+  services_changed();
   return host;
 }
 
@@ -61,7 +62,7 @@ void Directory::remove(const ServiceHost& host) {
       services_.erase(found);
     }
   }
-  if (index_) index_->fire_changed();
+  services_changed();
 }
 
 void Directory::close() {
@@ -79,6 +80,15 @@ std::shared_ptr<ServiceHost> Directory::find(std::string_view name) const {
 std::vector<std::shared_ptr<ServiceHost>> Directory::all() const {
   const std::lock_guard lock(mutex_);
   return {services_.rbegin(), services_.rend()};
+}
+
+std::vector<DetectedNode> Directory::detected_nodes() const {
+  return discovery_.detected_nodes ? discovery_.detected_nodes() : std::vector<DetectedNode>();
+}
+
+void Directory::services_changed() const {
+  if (index_) index_->fire_changed();
+  if (discovery_.services_changed) discovery_.services_changed();
 }
 
 std::shared_ptr<channel::Receiver> Directory::accept(

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "rr/discovery.hpp"
 #include "rr/service.hpp"
 #include "runtime/cpp/src/channel/channel.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
@@ -20,6 +23,13 @@ class ServiceIndex;
 class Directory : public std::enable_shared_from_this<Directory> {
  public:
   explicit Directory(std::shared_ptr<endpoint::Core> core);
+  /// Discovery: what the index tells of other nodes, and who is told when this node's services are
+  /// others, or what is known of them is. Before start().
+  struct Discovery {
+    std::function<std::vector<DetectedNode>()> detected_nodes{};
+    std::function<void()> services_changed{};
+  };
+  void set_discovery(Discovery discovery) { discovery_ = std::move(discovery); }
   /// Registers the service index, which every node has.
   void start();
 
@@ -35,6 +45,10 @@ class Directory : public std::enable_shared_from_this<Directory> {
   /// Newest first.
   [[nodiscard]] std::vector<std::shared_ptr<ServiceHost>> all() const;
 
+  [[nodiscard]] std::vector<DetectedNode> detected_nodes() const;
+  /// Tells clients of the index, and discovery.
+  void services_changed() const;
+
   /// A receiver for a new incoming connection.
   std::shared_ptr<channel::Receiver> accept(std::shared_ptr<channel::Connection> connection);
 
@@ -42,6 +56,7 @@ class Directory : public std::enable_shared_from_this<Directory> {
 
  private:
   const std::shared_ptr<endpoint::Core> core_;
+  Discovery discovery_;
   mutable std::mutex mutex_;
   std::vector<std::shared_ptr<ServiceHost>> services_;  // oldest first
   std::shared_ptr<ServiceIndex> index_;

@@ -135,8 +135,11 @@ std::map<std::string, VarValue> ServiceHost::attributes() const {
 }
 
 void ServiceHost::set_attributes(std::map<std::string, VarValue> attributes) {
-  const std::lock_guard lock(mutex_);
-  options_.attributes.swap(attributes);  // the old ones go when the lock has
+  {
+    const std::lock_guard lock(mutex_);
+    options_.attributes.swap(attributes);  // the old ones go when the lock has
+  }
+  if (const auto directory = directory_.lock()) directory->services_changed();
 }
 
 std::optional<std::string> ServiceHost::root_type_for(

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <string_view>
 
 #include "rr/definition.hpp"
 #include "rr/skeleton.hpp"
@@ -10,8 +9,6 @@
 namespace rr::service {
 
 class Directory;
-
-inline constexpr std::string_view service_index_name = "RobotRaconteurServiceIndex";
 
 /// The service that every node has: the list of its services (07, section 15).
 class ServiceIndex final : public Skeleton {

@@ -39,11 +39,11 @@ void Services::begin_waiting() {
 }
 
 bool Services::is_full() const {
-  if (filter_.max_connections() == 0) return false;
+  if (filter_->max_connections() == 0) return false;
   const auto count = std::count_if(targets_.begin(), targets_.end(), [](const auto& target) {
     return target->phase == Target::Phase::attempting || target->phase == Target::Phase::connected;
   });
-  return static_cast<std::size_t>(count) >= filter_.max_connections();
+  return static_cast<std::size_t>(count) >= filter_->max_connections();
 }
 
 void Services::begin(const TargetPointer& target) {
@@ -96,6 +96,7 @@ void Services::attempt(const TargetPointer& target, const AttemptPointer& attemp
 Services::Reached Services::reach(const TargetPointer& target, const AttemptPointer& attempt) {
   FoundService service;
   bool is_known = false;
+  const auto wanted = filter();
   {
     const std::lock_guard lock(mutex_);
     service = target->service;
@@ -103,7 +104,7 @@ Services::Reached Services::reach(const TargetPointer& target, const AttemptPoin
   }
   std::exception_ptr last;
   for (const std::string& url : service.urls) {
-    if (!filter_.takes_scheme(url)) continue;
+    if (!wanted->takes_scheme(url)) continue;
     try {
       Reached reached = connect(url, service, target, attempt);
       try {
@@ -126,10 +127,11 @@ Services::Reached Services::reach(const TargetPointer& target, const AttemptPoin
 Services::Reached Services::connect(const std::string& url, const FoundService& service,
                                     const TargetPointer& target, const AttemptPointer& attempt) {
   const Url parsed = Url::parse(url);
+  const auto wanted = filter();
   const auto choice =
-      filter_.choose_node(service.node.is_any() ? parsed.node_id : service.node,
+      wanted->choose_node(service.node.is_any() ? parsed.node_id : service.node,
                           service.node_name.empty() ? parsed.node_name : service.node_name, false);
-  if (!choice.is_wanted || !filter_.takes_name(parsed.service)) {
+  if (!choice.is_wanted || !wanted->takes_name(parsed.service)) {
     throw Error(ErrorCode::service_not_found, "the filter does not take `" + url + "`");
   }
   ConnectOptions options{.username = options_.username,
@@ -175,10 +177,11 @@ void Services::check(const Session& session, const std::string& url, FoundServic
     service.attributes = session.attributes();
   }
   std::string refusal;
-  if (!filter_.choose_node(service.node, service.node_name, true).is_wanted) {
+  const auto wanted_services = filter();
+  if (!wanted_services->choose_node(service.node, service.node_name, true).is_wanted) {
     refusal = "its node";
   } else {
-    refusal = filter_.refusal(service);
+    refusal = wanted_services->refusal(service);
   }
   if (!refusal.empty()) {
     throw Error(ErrorCode::service_not_found, "the filter does not take `" + url + "`: " + refusal);
@@ -249,6 +252,7 @@ void Services::fail(const TargetPointer& target, const AttemptPointer& attempt, 
 
 // From the session, on a thread of the node.
 void Services::session_ended(const TargetPointer& target, SessionEnd& end, const Error& why) {
+  TargetPointer gone;
   {
     const std::lock_guard lock(mutex_);
     end.why = why;
@@ -257,7 +261,14 @@ void Services::session_ended(const TargetPointer& target, SessionEnd& end, const
     const auto client = std::exchange(target->client, nullptr);
     tell_left(client);
     on_disconnected_.tell(*program_, client->id, why);
-    rest(*target, why);
+    if (target->is_fading) {
+      target->phase = Target::Phase::gone;
+      target->end.reset();
+      gone = target;
+      std::erase(targets_, target);
+    } else {
+      rest(*target, why);
+    }
     begin_waiting();
   }
   changed();

@@ -142,6 +142,9 @@ void ServiceSubscription::update_urls(std::vector<std::string> urls) {
 void ServiceSubscription::update_services(std::vector<std::vector<std::string>> services) {
   need_state(services_).urls().replace(subscription::UrlSource::checked(std::move(services)));
 }
+void ServiceSubscription::update_types(std::vector<std::string> types, ServiceFilter filter) {
+  need_state(services_).look_for(std::move(types), std::move(filter));
+}
 void ServiceSubscription::set_retry_delay(std::chrono::milliseconds delay,
                                           std::chrono::milliseconds maximum) {
   need_state(services_).set_retry_delay(delay, maximum);

@@ -10,15 +10,20 @@ namespace rr::subscription {
 
 std::shared_ptr<Services> Owner::add(std::vector<std::vector<std::string>> services,
                                      SubscriptionOptions options) {
-  auto subscription = std::make_shared<Services>(host_, std::move(options), weak_from_this());
   const UrlSource::Lists lists = UrlSource::checked(std::move(services));
+  auto subscription = add(std::move(options));
+  subscription->urls().replace(lists);
+  return subscription;
+}
+
+std::shared_ptr<Services> Owner::add(SubscriptionOptions options) {
+  auto subscription = std::make_shared<Services>(host_, std::move(options), weak_from_this());
   host_.core->start();
   {
     const std::lock_guard lock(mutex_);
     if (has_ended_) throw Error(ErrorCode::invalid_operation, "the node is shut down");
     subscriptions_.push_back(subscription);
   }
-  subscription->urls().replace(lists);
   return subscription;
 }
 

@@ -20,6 +20,8 @@ class Owner : public std::enable_shared_from_this<Owner> {
   /// A subscription to services by URLs: see Node::subscribe.
   std::shared_ptr<Services> add(std::vector<std::vector<std::string>> services,
                                 SubscriptionOptions options);
+  /// A subscription whose services somebody else will name, by Services::set_source().
+  std::shared_ptr<Services> add(SubscriptionOptions options);
   void forget(const Services& subscription);
   /// Closes all. Does not wait. None can be added any more.
   void end();

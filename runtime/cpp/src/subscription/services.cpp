@@ -29,10 +29,10 @@ Services::Services(Host host, SubscriptionOptions options, std::weak_ptr<Owner> 
     : Waits(host.core),
       host_(std::move(host)),
       options_(std::move(options)),
-      filter_(options_.filter),
       owner_(std::move(owner)),
       inner_(std::make_shared<Teller>(host_.core)),
       program_(std::make_shared<Teller>(host_.core)),
+      filter_(std::make_shared<const Filter>(options_.filter)),
       delay_(usable(options_.retry_delay)),
       maximum_(channel::saturated(options_.max_retry_delay)) {}
 
@@ -51,6 +51,7 @@ void Services::appear(const std::string& key, FoundService service, bool is_know
     const std::lock_guard lock(mutex_);
     check_open();
     TargetPointer target = find_target(key);
+    if (target) target->is_fading = false;
     if (target && target->service.urls == service.urls) {
       target->service = std::move(service);
       target->is_known = is_known;
@@ -88,6 +89,46 @@ void Services::disappear(const std::string& key) {
   changed();
 }
 
+void Services::fade(const std::string& key) {
+  {
+    const std::lock_guard lock(mutex_);
+    const TargetPointer target = find_target(key);
+    if (!target) return;
+    if (target->phase == Target::Phase::connected) {
+      target->is_fading = true;
+      return;
+    }
+  }
+  disappear(key);
+}
+
+std::shared_ptr<const Filter> Services::filter() const {
+  const std::lock_guard lock(mutex_);
+  return filter_;
+}
+
+void Services::set_source(std::shared_ptr<FindingSource> source) {
+  const std::lock_guard lock(mutex_);
+  check_open();
+  source_ = std::move(source);
+}
+
+void Services::look_for(std::vector<std::string> types, ServiceFilter filter) {
+  auto prepared = std::make_shared<const Filter>(std::move(filter));
+  std::shared_ptr<FindingSource> source;
+  {
+    const std::lock_guard lock(mutex_);
+    check_open();
+    if (!source_) {
+      throw Error(ErrorCode::invalid_operation, "the subscription is one of URLs, not of types");
+    }
+    source = source_;
+    filter_ = prepared;
+    begin_waiting();
+  }
+  source->look_for(std::move(types), std::move(prepared));
+}
+
 // The target goes; what it has is left in the farewell, unless somebody has claimed it.
 void Services::leave(const TargetPointer& target, Farewell& farewell, const Error& why) {
   host_.core->reactor().cancel(*target);
@@ -115,15 +156,18 @@ void Services::tell_left(const std::shared_ptr<const LiveClient>& client) {
 void Services::close() {
   Farewell farewell;
   std::vector<std::shared_ptr<Links>> members;
+  std::shared_ptr<FindingSource> source;
   {
     const std::lock_guard lock(mutex_);
     if (std::exchange(is_closed_, true)) return;
+    source.swap(source_);
     while (!targets_.empty()) leave(TargetPointer(targets_.back()), farewell, closed_here);
     members.swap(members_);
     on_connected_.end(*program_);
     on_disconnected_.end(*program_);
     on_failed_.end(*program_);
   }
+  if (source) source->end();
   for (const auto& member : members) member->end();
   farewell.say();
   changed();

@@ -24,6 +24,16 @@ namespace rr::subscription {
 
 class Owner;
 
+/// Where services come from that are found by their type.
+class FindingSource {
+ public:
+  virtual ~FindingSource() = default;
+  /// Others from now on. No types: any.
+  virtual void look_for(std::vector<std::string> types, std::shared_ptr<const Filter> filter) = 0;
+  /// Nothing appears any more. May be called twice.
+  virtual void end() = 0;
+};
+
 /// The state of a subscription: services that have appeared, and a connection to each of them. Who
 /// says that services appear and disappear is somebody else: UrlSource, or discovery.
 ///
@@ -42,6 +52,16 @@ class Services final : public Waits, public std::enable_shared_from_this<Service
   void appear(const std::string& key, FoundService service, bool is_known);
   /// It is gone. Its connection is closed.
   void disappear(const std::string& key);
+  /// Nobody can say whether it is still there: its connection stays for as long as it lasts, and is
+  /// not made again unless the service appears again.
+  void fade(const std::string& key);
+  /// Who knows of services, if it is not the program. Throws rr::Error (invalid_operation) when
+  /// this is closed.
+  void set_source(std::shared_ptr<FindingSource> source);
+  /// Services of other types, or those that pass another filter, from now on. Those that do not
+  /// match are closed. Throws rr::Error: invalid_argument for a wrong filter, invalid_operation
+  /// when this is closed or is one of URLs.
+  void look_for(std::vector<std::string> types, ServiceFilter filter);
   /// What the program says itself.
   [[nodiscard]] UrlSource& urls() { return urls_; }
 
@@ -104,6 +124,8 @@ class Services final : public Waits, public std::enable_shared_from_this<Service
   void fail(const TargetPointer& target, const AttemptPointer& attempt, const Error& why);
   void session_ended(const TargetPointer& target, SessionEnd& end, const Error& why);
 
+  [[nodiscard]] std::shared_ptr<const Filter> filter() const;
+
   // Under the lock
   void check_open() const;  // throws invalid_operation
   [[nodiscard]] bool is_full() const;
@@ -121,7 +143,6 @@ class Services final : public Waits, public std::enable_shared_from_this<Service
 
   const Host host_;
   const SubscriptionOptions options_;
-  const Filter filter_;
   const std::weak_ptr<Owner> owner_;
   UrlSource urls_{*this};
   const std::shared_ptr<Teller> inner_;    // to members
@@ -129,6 +150,8 @@ class Services final : public Waits, public std::enable_shared_from_this<Service
 
   mutable std::mutex mutex_;
   bool is_closed_ = false;
+  std::shared_ptr<const Filter> filter_;  // replaced, never changed
+  std::shared_ptr<FindingSource> source_;
   std::chrono::milliseconds delay_;
   std::chrono::milliseconds maximum_;
   std::vector<TargetPointer> targets_;

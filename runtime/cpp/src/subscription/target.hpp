@@ -67,7 +67,8 @@ class Target final : public channel::Timer, public std::enable_shared_from_this<
 
   const std::string key;
   FoundService service;
-  bool is_known;  // the attributes and the like
+  bool is_known;           // the attributes and the like
+  bool is_fading = false;  // goes when its connection does
   Phase phase = Phase::resting;
   std::shared_ptr<Attempt> attempt;  // while attempting
   std::shared_ptr<const LiveClient> client;

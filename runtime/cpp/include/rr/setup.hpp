@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rr/discovery.hpp"
+#include "rr/node.hpp"
+#include "rr/options.hpp"
+
+/// A node that is set up by its command line and environment, as users know it.
+namespace rr {
+
+/// What a set-up starts. Each has a flag `--robotraconteur-...` named as itself, with `-` for `_`,
+/// and a variable `ROBOTRACONTEUR_...`, in capitals; flags win over variables, these over what the
+/// program says.
+struct SetupOptions {
+  /// All that no flag says. Its name and id are those of the node.
+  NodeOptions node{};
+
+  std::uint16_t tcp_port = 0;  ///< 0: any
+  bool discovery_listening_enable = true;
+  bool discovery_announce_enable = false;
+  bool tcp_ipv4_discovery = false;
+  bool tcp_ipv6_discovery = true;
+  bool tcp_enable = true;
+  bool tcp_start_server = false;
+  bool tcp_listen_localhost = false;  ///< accepts connections of this machine only
+  bool tcp_start_server_sharer = false;
+  bool local_enable = true;
+  bool local_start_server = false;
+  bool local_start_client = false;  ///< a client whose id is kept by its name, too
+  bool local_server_public = false;
+  bool intra_enable = true;
+  bool intra_start_server = false;
+  bool hardware_enable = false;
+  bool load_tls = false;
+  bool require_tls = false;
+  bool disable_timeouts = false;  ///< for who stops programs to look into them
+  bool disable_message4 = false;
+  bool disable_stringtable = true;
+  bool jumbo_message = false;  ///< messages up to 100 MiB
+  bool local_tap_enable = false;
+  std::string local_tap_name{};
+  std::vector<std::string> tcp_ws_add_origin{};
+  std::vector<std::string> tcp_ws_remove_origin{};
+  /// Reports of this level and above go to standard error, unless `node.log` takes them. One of
+  /// `debug`, `info`, `warning`, `error`, and `disable`.
+  std::string log_level = "warning";
+
+  /// The defaults of a client: listens to discovery, and to nobody else.
+  static SetupOptions client();
+  /// Those of a service: accepts connections by TCP, local sockets and inside the process, and
+  /// announces itself. Its id is kept by its name.
+  static SetupOptions server(std::string name, std::uint16_t port);
+  /// The same with TLS required.
+  static SetupOptions secure_server(std::string name, std::uint16_t port);
+
+  /// Takes in the environment, then the arguments behind the program's name; returns those that are
+  /// no flags of these. Throws rr::Error (invalid_argument) for a flag that there is not and for a
+  /// value that is none.
+  std::vector<std::string> take(int argc, const char* const* argv);
+};
+
+/// A node, set up; it is shut down with this.
+///
+///   int main(int argc, char** argv) {
+///     rr::ServerNodeSetup setup("my.camera.host", 6257, argc, argv);
+///     setup->register_service("camera", std::make_shared<MyCamera>());
+///     rr::print_candidate_urls(std::cout, setup.node(), "camera");
+///
+/// Nodes that a channel is missing for say so in their log, and go on; but not those that require
+/// TLS.
+class NodeSetup {
+ public:
+  /// Throws rr::Error: invalid_argument for wrong flags, invalid_operation when the name is in use
+  /// by another node of this user, connection_error when it cannot listen, and others.
+  explicit NodeSetup(SetupOptions options, int argc = 0, const char* const* argv = nullptr);
+  ~NodeSetup();
+  NodeSetup(const NodeSetup&) = delete;
+  NodeSetup& operator=(const NodeSetup&) = delete;
+
+  [[nodiscard]] Node& node() const;
+  Node* operator->() const { return &node(); }
+  /// As they have come to be.
+  [[nodiscard]] const SetupOptions& options() const;
+  /// What was no flag, without the program's name.
+  [[nodiscard]] const std::vector<std::string>& arguments() const;
+  /// Where it accepts connections by TCP; 0 for nowhere.
+  [[nodiscard]] std::uint16_t port() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+class ClientNodeSetup : public NodeSetup {
+ public:
+  explicit ClientNodeSetup(int argc = 0, const char* const* argv = nullptr)
+      : NodeSetup(SetupOptions::client(), argc, argv) {}
+};
+
+class ServerNodeSetup : public NodeSetup {
+ public:
+  ServerNodeSetup(std::string name, std::uint16_t port, int argc = 0,
+                  const char* const* argv = nullptr)
+      : NodeSetup(SetupOptions::server(std::move(name), port), argc, argv) {}
+};
+
+class SecureServerNodeSetup : public NodeSetup {
+ public:
+  SecureServerNodeSetup(std::string name, std::uint16_t port, int argc = 0,
+                        const char* const* argv = nullptr)
+      : NodeSetup(SetupOptions::secure_server(std::move(name), port), argc, argv) {}
+};
+
+/// All URLs by which a service of the node may be reached, one a line.
+void print_candidate_urls(std::ostream& out, const Node& node, std::string_view service);
+
+}  // namespace rr

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/channel/directories.hpp"
+
+#include <fcntl.h>
+#include <pwd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <system_error>
+
+#include "rr/error.hpp"
+
+namespace rr::channel {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Files are 0640, folders as the user's mask says (04, section 7.1).
+constexpr mode_t file_mode = 0640;
+constexpr std::size_t longest_info = 64 * 1024;
+
+std::string environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? std::string() : value;
+}
+
+struct Account {
+  std::string name;
+  std::string home;
+};
+
+Account account() {
+  std::array<char, 16 * 1024> bytes{};
+  passwd entry{};
+  passwd* found = nullptr;
+  if (getpwuid_r(geteuid(), &entry, bytes.data(), bytes.size(), &found) != 0 || found == nullptr) {
+    return {environment("USER"), environment("HOME")};
+  }
+  return {entry.pw_name, entry.pw_dir};
+}
+
+fs::path under_home(const char* variable, const fs::path& home, const char* below) {
+  const std::string value = environment(variable);
+  if (!value.empty()) return fs::path(value) / "RobotRaconteur";
+  if (home.empty()) {
+    throw Error(ErrorCode::system_resource_error, "there is no home folder to keep node ids in");
+  }
+  return home / below / "RobotRaconteur";
+}
+
+std::string trimmed(const std::string& text) {
+  constexpr const char* blanks = " \t\r\n\v\f";
+  const std::size_t begin = text.find_first_not_of(blanks);
+  if (begin == std::string::npos) return {};
+  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
+}
+
+bool is_key(const std::string& text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::strchr("_+.-", c) != nullptr;
+  });
+}
+
+flock whole_file(short type) {
+  flock lock{};
+  lock.l_type = type;
+  lock.l_whence = SEEK_SET;
+  return lock;
+}
+
+[[noreturn]] void fail(const std::string& what, const std::string& file) {
+  throw Error(ErrorCode::system_resource_error,
+              "cannot " + what + " " + file + ": " + std::strerror(errno));
+}
+
+}  // namespace
+
+NodeDirectories NodeDirectories::of_user() {
+  NodeDirectories result;
+  const Account user = account();
+  result.user_name = user.name;
+  result.is_root = geteuid() == 0;
+  const std::string prefix = environment("ROBOTRACONTEUR_SYSTEM_PREFIX");
+  const std::string system_run = environment("ROBOTRACONTEUR_SYSTEM_RUN_DIR");
+  result.system_run = !system_run.empty() ? fs::path(system_run)
+                      : !prefix.empty()   ? fs::path(prefix) / "var/run/robotraconteur"
+                                          : fs::path("/var/run/robotraconteur");
+  if (result.is_root) {
+    const fs::path root = prefix.empty() ? fs::path("/") : fs::path(prefix);
+    result.user_run = result.system_run / "root";
+    result.user_config = root / "etc/robotraconteur";
+    result.user_state = root / "var/lib/robotraconteur";
+    return result;
+  }
+  std::string home = environment("ROBOTRACONTEUR_USER_HOME");
+  if (home.empty()) home = environment("HOME");
+  if (home.empty()) home = user.home;
+  const std::string run = environment("ROBOTRACONTEUR_USER_RUN_DIR");
+  const std::string session = environment("XDG_RUNTIME_DIR");
+  result.user_run = !run.empty() ? fs::path(run)
+                    : !session.empty()
+                        ? fs::path(session) / "robotraconteur"
+                        : fs::path("/tmp/robotraconteur-run-" + std::to_string(geteuid()));
+  const std::string config = environment("ROBOTRACONTEUR_USER_CONFIG_DIR");
+  const std::string state = environment("ROBOTRACONTEUR_USER_STATE_DIR");
+  result.user_config =
+      !config.empty() ? fs::path(config) : under_home("XDG_CONFIG_HOME", home, ".config");
+  result.user_state =
+      !state.empty() ? fs::path(state) : under_home("XDG_STATE_HOME", home, ".local/state");
+  return result;
+}
+
+std::map<std::string, std::string> read_info_file(const fs::path& file) {
+  std::map<std::string, std::string> result;
+  // One that is a pipe must not wait for who writes.
+  const Descriptor opened(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  if (!opened) return result;
+  std::string text(longest_info, '\0');
+  const ssize_t size = read(opened.get(), text.data(), text.size());
+  text.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string line = text.substr(begin, end - begin);
+    begin = end + 1;
+    const std::size_t colon = line.find(':');
+    if (colon == std::string::npos) continue;
+    const std::string key = trimmed(line.substr(0, colon));
+    if (is_key(key)) result.emplace(key, trimmed(line.substr(colon + 1)));
+  }
+  return result;
+}
+
+// Locks of the open file, not of the process: two nodes of one process exclude each other, too, and
+// one does not lose its lock when another reads the file. They exclude those of processes.
+LockedFile::LockedFile(const fs::path& file) : name_(file.string()) {
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  file_ = Descriptor(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, file_mode));
+  if (!file_) fail("open", name_);
+  flock lock = whole_file(F_WRLCK);
+  if (fcntl(file_.get(), F_OFD_SETLK, &lock) == 0) return;
+  if (errno != EACCES && errno != EAGAIN) fail("lock", name_);
+  throw Error(ErrorCode::invalid_operation, name_ + " is in use by another node");
+}
+
+void LockedFile::write(const std::string& content) {
+  if (ftruncate(file_.get(), 0) != 0 || pwrite(file_.get(), content.data(), content.size(), 0) !=
+                                            static_cast<ssize_t>(content.size())) {
+    fail("write", name_);
+  }
+}
+
+bool LockedFile::is_held(const fs::path& file) {
+  const Descriptor opened(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  if (!opened) return false;
+  flock lock = whole_file(F_WRLCK);
+  return fcntl(opened.get(), F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+}
+
+}  // namespace rr::channel

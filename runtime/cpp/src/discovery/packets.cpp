@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/discovery/packets.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+
+#include <algorithm>
+#include <random>
+#include <utility>
+
+#include "rr/error.hpp"
+#include "rr/url.hpp"
+
+namespace rr::discovery {
+namespace {
+
+constexpr std::string_view announcement_title = "Robot Raconteur Node Discovery Packet";
+constexpr std::string_view request_title = "Robot Raconteur Discovery Request Packet";
+constexpr std::string_view nonce_key = "ServiceStateNonce";
+// What is longer is left out, or not heeded (05, sections 2.1 and 4).
+constexpr std::size_t longest_written = 2048;
+constexpr std::size_t longest_name = 128;
+constexpr std::size_t nonce_end = 32;
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r\v\f";
+  const std::size_t begin = text.find_first_not_of(blanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
+}
+
+std::string_view take_line(std::string_view& rest) {
+  const std::size_t end = rest.find('\n');
+  const std::string_view line = rest.substr(0, end);
+  rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
+  return trimmed(line);
+}
+
+constexpr bool is_key_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+         c == '+' || c == '.' || c == '-';
+}
+
+// `key: value`; an empty key for a line that is none.
+std::pair<std::string_view, std::string_view> split_line(std::string_view line) {
+  const std::size_t colon = line.find(':');
+  if (colon == std::string_view::npos) return {};
+  const std::string_view key = trimmed(line.substr(0, colon));
+  if (!std::all_of(key.begin(), key.end(), is_key_character)) return {};
+  return {key, trimmed(line.substr(colon + 1))};
+}
+
+bool is_site_local(const in6_addr& address) {
+  return address.s6_addr[0] == 0xfe && (address.s6_addr[1] & 0xc0) == 0xc0;
+}
+
+// Whether a node at `sender` may say that it is at `host`.
+bool may_be_at(const std::string& host, const channel::Address& sender) {
+  in_addr v4{};
+  if (inet_pton(AF_INET, host.c_str(), &v4) == 1) {
+    const std::uint32_t wanted = ntohl(v4.s_addr);
+    if (wanted >> 24 == 127) return true;
+    if (sender.family() != AF_INET) return false;
+    const auto& from = reinterpret_cast<const sockaddr_in&>(sender.storage);
+    return wanted >> 16 == ntohl(from.sin_addr.s_addr) >> 16;
+  }
+  in6_addr v6{};
+  if (inet_pton(AF_INET6, host.substr(0, host.find('%')).c_str(), &v6) != 1) return false;
+  if (IN6_IS_ADDR_LOOPBACK(&v6)) return true;
+  return sender.family() == AF_INET6 && (IN6_IS_ADDR_LINKLOCAL(&v6) || is_site_local(v6));
+}
+
+}  // namespace
+
+std::string write_announcement(const Announcement& announcement) {
+  std::string packet =
+      std::string(announcement_title) + "\n" + announcement.node.text_with_braces();
+  if (!announcement.name.empty()) packet += "," + announcement.name;
+  packet += "\n" + announcement.url + "\n";
+  const std::string line = std::string(nonce_key) + ": " + announcement.nonce + "\n";
+  if (!announcement.nonce.empty() && packet.size() + line.size() <= longest_written) packet += line;
+  return packet;
+}
+
+std::optional<Announcement> read_announcement(std::string_view packet,
+                                              const channel::Address& sender) {
+  if (packet.size() > longest_packet || !packet.starts_with(announcement_title)) return {};
+  std::string_view rest = packet;
+  take_line(rest);
+  const std::string_view identity = take_line(rest);
+  const std::size_t comma = identity.find(',');
+  const auto node = NodeId::parse(trimmed(identity.substr(0, comma)));
+  if (!node || node->is_any()) return {};
+  const std::string_view url = take_line(rest);
+  if (url.empty() || url.size() > longest_url) return {};
+
+  Announcement announcement{.node = *node};
+  try {
+    const Url parsed = Url::parse(url);
+    if (parsed.service.empty() || parsed.node_id != *node) return {};
+    if (!may_be_at(parsed.host, sender)) return {};
+  } catch (const Error&) {
+    return {};
+  }
+  announcement.url = url;
+  if (comma != std::string_view::npos) {
+    const std::string_view name = trimmed(identity.substr(comma + 1));
+    if (name.size() <= longest_name && Url::is_node_name(name)) announcement.name = name;
+  }
+  while (!rest.empty()) {
+    const auto [key, value] = split_line(take_line(rest));
+    if (key == nonce_key && value.size() < nonce_end) announcement.nonce = value;
+  }
+  return announcement;
+}
+
+std::string write_request(const NodeId& asker) {
+  return std::string(request_title) + "\n" + asker.text_with_braces() + "\n";
+}
+
+std::optional<NodeId> read_request(std::string_view packet) {
+  if (packet.size() > longest_packet || !packet.starts_with(request_title)) return {};
+  std::string_view rest = packet;
+  take_line(rest);
+  return NodeId::parse(take_line(rest));
+}
+
+std::string new_nonce() {
+  constexpr std::string_view characters =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
+  constexpr std::size_t length = 16;
+  std::random_device random;
+  std::uniform_int_distribution<std::size_t> pick(0, characters.size() - 1);
+  std::string nonce;
+  for (std::size_t i = 0; i < length; ++i) nonce.push_back(characters[pick(random)]);
+  return nonce;
+}
+
+}  // namespace rr::discovery

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/discovery/service_infos.hpp"
+
+#include <utility>
+
+#include "rr/error.hpp"
+
+namespace rr::discovery {
+
+ServiceInfos::ServiceInfos(std::shared_ptr<ServiceWatch> watch,
+                           std::shared_ptr<endpoint::Core> core, std::vector<std::string> types,
+                           ServiceFilter filter)
+    : MatchingServices(core, std::move(types), std::move(filter)),
+      watch_(std::move(watch)),
+      teller_(std::make_shared<subscription::Teller>(core)) {}
+
+void ServiceInfos::check_open() const {
+  if (is_closed_) throw Error(ErrorCode::invalid_operation, "the subscription is closed");
+}
+
+void ServiceInfos::close() {
+  {
+    const std::lock_guard lock(told_mutex_);
+    if (std::exchange(is_closed_, true)) return;
+    told_.clear();
+    on_detected_.end(*teller_);
+    on_changed_.end(*teller_);
+    on_lost_.end(*teller_);
+  }
+  watch_->remove(*this);
+}
+
+bool ServiceInfos::is_open() const {
+  const std::lock_guard lock(told_mutex_);
+  return !is_closed_;
+}
+
+std::vector<FoundService> ServiceInfos::services() const {
+  std::vector<FoundService> result;
+  const std::lock_guard lock(told_mutex_);
+  for (const auto& [key, service] : told_) result.push_back(service);
+  return result;
+}
+
+Subscription ServiceInfos::on_detected(Function<void(const FoundService&)> function) {
+  const std::lock_guard lock(told_mutex_);
+  check_open();
+  const auto listener = on_detected_.add(std::move(function));
+  for (const auto& [key, service] : told_) {
+    teller_->add([listener, service = service] { listener->call(service); });
+  }
+  return Subscription(listener);
+}
+
+Subscription ServiceInfos::on_changed(Function<void(const FoundService&)> function) {
+  const std::lock_guard lock(told_mutex_);
+  check_open();
+  return Subscription(on_changed_.add(std::move(function)));
+}
+
+Subscription ServiceInfos::on_lost(Function<void(const FoundService&)> function) {
+  const std::lock_guard lock(told_mutex_);
+  check_open();
+  return Subscription(on_lost_.add(std::move(function)));
+}
+
+void ServiceInfos::came(const std::string& key, const FoundService& service) {
+  const std::lock_guard lock(told_mutex_);
+  if (is_closed_) return;
+  told_[key] = service;
+  on_detected_.tell(*teller_, service);
+}
+
+void ServiceInfos::changed(const std::string& key, const FoundService& service) {
+  const std::lock_guard lock(told_mutex_);
+  if (is_closed_) return;
+  told_[key] = service;
+  on_changed_.tell(*teller_, service);
+}
+
+void ServiceInfos::went(const std::string& key, const FoundService& service, bool /*is_silent*/) {
+  const std::lock_guard lock(told_mutex_);
+  if (told_.erase(key) != 0) on_lost_.tell(*teller_, service);
+}
+
+}  // namespace rr::discovery

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rr/discovery.hpp"
+#include "rr/service_filter.hpp"
+#include "runtime/cpp/src/channel/time.hpp"
+#include "runtime/cpp/src/discovery/alarm.hpp"
+#include "runtime/cpp/src/discovery/index_client.hpp"
+#include "runtime/cpp/src/discovery/node_table.hpp"
+#include "runtime/cpp/src/subscription/host.hpp"
+#include "runtime/cpp/src/subscription/teller.hpp"
+
+namespace rr::discovery {
+
+/// Who follows the services of all nodes. Told one thing at a time, on a thread of the node.
+class ServiceFollower {
+ public:
+  virtual ~ServiceFollower() = default;
+  /// All services of a node, as they are from now on.
+  virtual void services_are(const DetectedNode& node,
+                            const std::vector<FoundService>& services) = 0;
+  /// Nothing has been heard of the node for too long.
+  virtual void node_lost(const NodeId& node) = 0;
+  /// The node is shut down: the last call, on the thread that does it.
+  virtual void watch_ended() {}
+};
+
+/// Knows the services of the nodes that have announced themselves: asks their service indexes when
+/// they come and when they announce a change, while there is a follower or somebody looks (05,
+/// section 6.2).
+class ServiceWatch : public std::enable_shared_from_this<ServiceWatch> {
+ public:
+  explicit ServiceWatch(subscription::Host host);
+
+  // From the table of nodes
+  void heard(const KnownNode& node);
+  void lost(const NodeId& node);
+  void end();
+
+  void add(std::shared_ptr<ServiceFollower> follower);
+  void remove(const ServiceFollower& follower);
+  /// Runs something between what followers are told.
+  void run(std::function<void()> work) { teller_->add(std::move(work)); }
+  /// Tells one follower all that is known, once more.
+  void repeat(const std::shared_ptr<ServiceFollower>& follower);
+
+  /// Asks all nodes whose services are not known as they are, and waits for the answers until the
+  /// deadline; then all services that are known. Throws rr::Error (operation_cancelled).
+  std::vector<FoundService> look(channel::Time deadline);
+
+ private:
+  enum class Phase : std::uint8_t { idle, waiting, asking };
+  struct Row {
+    KnownNode known;
+    Phase phase = Phase::idle;
+    channel::Time due{};
+    unsigned failures = 0;
+    bool is_fetched = false;
+    bool is_outdated = true;
+    std::vector<FoundService> services;
+    std::deque<std::string> seen_nonces;
+    std::deque<channel::Time> refreshes;
+    std::shared_ptr<Question> question;  // while asking
+  };
+  using Followers = std::vector<std::shared_ptr<ServiceFollower>>;
+
+  // Under the lock
+  void plan(Row& row, channel::Time now);
+  void plan_all(channel::Time now);
+  void set_alarm();
+  [[nodiscard]] bool is_busy() const;
+  [[nodiscard]] std::size_t asked_of_sender(const std::string& sender) const;
+
+  void begin_due();
+  void ask(const KnownNode& known, const std::shared_ptr<Question>& question);
+  void answered(const KnownNode& known, const std::shared_ptr<Question>& question,
+                std::optional<std::vector<FoundService>> services);
+  void tell(const Followers& followers, const DetectedNode& node,
+            const std::vector<FoundService>& services);
+
+  const subscription::Host host_;
+  const std::shared_ptr<subscription::Teller> teller_;
+  std::mutex mutex_;
+  bool has_ended_ = false;
+  std::map<NodeId, Row> rows_;
+  Followers followers_;
+  std::vector<std::shared_ptr<channel::Interruption>> lookers_;  // each wakes one
+  std::shared_ptr<Alarm> alarm_;
+  std::size_t asking_ = 0;
+};
+
+}  // namespace rr::discovery

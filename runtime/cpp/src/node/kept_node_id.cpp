@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/node/kept_node_id.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "rr/error.hpp"
+#include "rr/url.hpp"
+
+namespace rr {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::streamsize longest_id = 256;
+
+// The text in a file without the blanks around it; nothing when it cannot be read.
+std::optional<std::string> read_trimmed(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return std::nullopt;
+  std::string text(static_cast<std::size_t>(longest_id), '\0');
+  stream.read(text.data(), longest_id);
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  constexpr const char* blanks = " \t\r\n\v\f";
+  text.erase(0, std::min(text.find_first_not_of(blanks), text.size()));
+  text.erase(text.find_last_not_of(blanks) + 1);
+  return text;
+}
+
+fs::path id_file(const channel::NodeDirectories& directories, const std::string& name) {
+  const fs::path configured = directories.user_config / "nodeids" / name;
+  std::error_code error;
+  if (!directories.is_root || fs::exists(configured, error)) return configured;
+  return directories.user_state / "nodeids" / name;
+}
+
+}  // namespace
+
+KeptNodeId::KeptNodeId(const std::string& name) {
+  // It becomes the name of a file.
+  if (!Url::is_node_name(name)) {
+    throw Error(ErrorCode::invalid_argument, "`" + name + "` is no name for a node");
+  }
+  const auto directories = channel::NodeDirectories::of_user();
+  try {
+    lock_.emplace(directories.user_run / "nodeids" / (name + ".pid"));
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::invalid_operation) throw;
+    throw Error(ErrorCode::invalid_operation,
+                "a node named `" + name + "` runs already: " + error.message());
+  }
+  lock_->write(std::to_string(::getpid()));
+
+  const fs::path file = id_file(directories, name);
+  const auto text = read_trimmed(file);
+  if (text && !text->empty()) {
+    const auto id = NodeId::parse(*text);
+    if (!id || id->is_any()) {
+      throw Error(ErrorCode::invalid_configuration, file.string() + " holds no node id");
+    }
+    id_ = *id;
+    return;
+  }
+  id_ = NodeId::random();
+  channel::LockedFile(file).write(id_.text_with_braces());
+}
+
+}  // namespace rr

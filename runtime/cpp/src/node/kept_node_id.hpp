@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "rr/node_id.hpp"
+#include "runtime/cpp/src/channel/directories.hpp"
+
+namespace rr {
+
+/// The id that the nodes of this user have by a name: kept in a file, made when it is missing, and
+/// used by one node at a time (04, section 7.4).
+class KeptNodeId {
+ public:
+  /// Throws rr::Error: invalid_operation when a node of this name runs, invalid_configuration for a
+  /// file that holds no id, system_resource_error when it cannot be read or made.
+  explicit KeptNodeId(const std::string& name);
+
+  [[nodiscard]] const NodeId& id() const { return id_; }
+
+ private:
+  std::optional<channel::LockedFile> lock_;  // while this lives
+  NodeId id_;
+};
+
+}  // namespace rr

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rr/setup.hpp"
+
+#include <array>
+#include <cstdio>
+#include <optional>
+#include <ostream>
+#include <utility>
+
+#include "rr/error.hpp"
+#include "rr/wire.hpp"
+#include "runtime/cpp/src/node/kept_node_id.hpp"
+
+namespace rr {
+namespace {
+
+// The most that the protocol allows (04, section 3).
+constexpr std::uint32_t jumbo_size = 100 * 1024 * 1024;
+
+constexpr std::array<std::string_view, 4> level_names = {"debug", "info", "warning", "error"};
+
+// Prints what is at least as grave as `least`.
+std::function<void(LogLevel, std::string_view)> printing_log(const std::string& least) {
+  std::size_t first = 0;
+  while (first < level_names.size() && level_names[first] != least) ++first;
+  if (first == level_names.size()) return {};
+  return [first](LogLevel level, std::string_view text) {
+    const auto number = static_cast<std::size_t>(level);
+    if (number < first) return;
+    const std::string line =
+        "robotraconteur: " + std::string(level_names[number]) + ": " + std::string(text) + "\n";
+    std::fwrite(line.data(), 1, line.size(), stderr);
+  };
+}
+
+void apply_limits(const SetupOptions& setup, NodeOptions& options) {
+  if (setup.disable_timeouts) {
+    constexpr auto never = std::chrono::milliseconds::max();
+    options.request_timeout = options.receive_timeout = options.client_timeout = never;
+    options.generator_timeout = never;
+  }
+  if (setup.disable_message4) {
+    options.client_offer.message_v4 = options.server_offer.message_v4 = false;
+  }
+  if (setup.disable_stringtable || setup.disable_message4) {
+    options.client_offer.string_table = options.server_offer.string_table = false;
+  }
+  if (setup.jumbo_message) options.limits.message_size = jumbo_size;
+}
+
+// A channel whose flags a set-up knows, and what it does with them.
+struct ChannelRow {
+  std::string_view scheme;
+  std::string_view flag;
+  bool (*is_wanted)(const SetupOptions&);
+  std::string (*url)(const SetupOptions&);  ///< to listen at
+};
+
+// Those that are listened to; one that this program has no channel for is left out.
+constexpr std::array channels = {
+    ChannelRow{"rr+tcp", "tcp-start-server",
+               [](const SetupOptions& setup) {
+                 return setup.tcp_enable && setup.tcp_start_server && !setup.require_tls;
+               },
+               [](const SetupOptions& setup) {
+                 const std::string host = setup.tcp_listen_localhost ? "localhost" : "*";
+                 return "rr+tcp://" + host + ":" + std::to_string(setup.tcp_port);
+               }},
+    ChannelRow{"rrs+tcp", "require-tls",
+               [](const SetupOptions& setup) {
+                 return setup.tcp_enable && setup.tcp_start_server && setup.require_tls;
+               },
+               [](const SetupOptions& setup) {
+                 const std::string host = setup.tcp_listen_localhost ? "localhost" : "*";
+                 return "rrs+tcp://" + host + ":" + std::to_string(setup.tcp_port);
+               }},
+    ChannelRow{
+        "rr+local", "local-start-server",
+        [](const SetupOptions& setup) { return setup.local_enable && setup.local_start_server; },
+        [](const SetupOptions&) { return std::string("rr+local:///"); }},
+    ChannelRow{
+        "rr+intra", "intra-start-server",
+        [](const SetupOptions& setup) { return setup.intra_enable && setup.intra_start_server; },
+        [](const SetupOptions&) { return std::string("rr+intra:///"); }},
+};
+
+// What may be asked for, and nobody here does.
+void report_missing(const SetupOptions& setup, const NodeOptions& options) {
+  const auto warn = [&](const char* flag, const char* why) {
+    if (options.log) {
+      options.log(LogLevel::warning, "the flag " + std::string(flag) + " does nothing: " + why);
+    }
+  };
+  if (setup.hardware_enable) warn("hardware-enable", "there are no channels to hardware");
+  if (setup.local_tap_enable) {
+    warn("local-tap-enable", "messages are recorded by NodeOptions::tap");
+  }
+}
+
+bool keeps_its_id(const SetupOptions& setup) {
+  const bool is_local = setup.local_start_server || setup.local_start_client;
+  return !setup.node.name.empty() && setup.node.id.is_any() && setup.local_enable && is_local;
+}
+
+DiscoveryNetwork network_of(const SetupOptions& setup) {
+  return {.link_local = setup.tcp_ipv6_discovery, .ipv4_broadcast = setup.tcp_ipv4_discovery};
+}
+
+}  // namespace
+
+struct NodeSetup::State {
+  SetupOptions options;
+  std::vector<std::string> arguments;
+  std::optional<KeptNodeId> kept_id;  // goes after the node
+  std::optional<Node> node;
+  std::uint16_t port = 0;
+};
+
+NodeSetup::NodeSetup(SetupOptions options, int argc, const char* const* argv)
+    : state_(std::make_unique<State>()) {
+  State& state = *state_;
+  state.options = std::move(options);
+  SetupOptions& setup = state.options;
+  state.arguments = setup.take(argc, argv);
+  if (keeps_its_id(setup)) {
+    state.kept_id.emplace(setup.node.name);
+    setup.node.id = state.kept_id->id();
+  }
+  NodeOptions node_options = setup.node;
+  if (!node_options.log) node_options.log = printing_log(setup.log_level);
+  apply_limits(setup, node_options);
+  report_missing(setup, node_options);
+  const auto log = node_options.log;
+  state.node.emplace(std::move(node_options));
+  Node& node = *state.node;
+  setup.node.id = node.id();
+
+  for (const ChannelRow& row : channels) {
+    if (!row.is_wanted(setup)) continue;
+    if (node.has_channel(row.scheme)) {
+      const std::uint16_t port = node.listen(row.url(setup));
+      if (row.scheme == "rr+tcp" || row.scheme == "rrs+tcp") state.port = port;
+    } else if (row.flag == "require-tls") {
+      throw Error(ErrorCode::invalid_configuration,
+                  "TLS is required, and this program has no channel for `rrs+tcp`");
+    } else if (log) {
+      log(LogLevel::info, "the flag " + std::string(row.flag) + " does nothing: no channel for `" +
+                              std::string(row.scheme) + "`");
+    }
+  }
+  const Discovery discovery = node.discovery();
+  const bool has_network = setup.tcp_ipv4_discovery || setup.tcp_ipv6_discovery;
+  if (setup.tcp_enable && setup.discovery_announce_enable && has_network) {
+    discovery.announce({.network = network_of(setup)});
+  }
+  if (setup.discovery_listening_enable) {
+    // Another program may hold the port for itself; the node works without discovery.
+    try {
+      discovery.listen({.network = network_of(setup), .local = setup.local_enable});
+    } catch (const Error& error) {
+      if (log) log(LogLevel::warning, error.message());
+    }
+  }
+}
+
+NodeSetup::~NodeSetup() = default;
+
+Node& NodeSetup::node() const { return *state_->node; }
+const SetupOptions& NodeSetup::options() const { return state_->options; }
+const std::vector<std::string>& NodeSetup::arguments() const { return state_->arguments; }
+std::uint16_t NodeSetup::port() const { return state_->port; }
+
+void print_candidate_urls(std::ostream& out, const Node& node, std::string_view service) {
+  for (const std::string& url : node.candidate_urls(service)) out << url << '\n';
+}
+
+}  // namespace rr
