@@ -124,6 +124,12 @@ std::string take_port(Options& options, const std::string& value) {
   return options.recording.port ? "" : "`" + value + "` is no port";
 }
 
+std::string take_days(Options& options, const std::string& value) {
+  options.days = number_in<int>(value);
+  const bool is_right = options.days && *options.days > 0 && *options.days <= 36500;
+  return is_right ? "" : "`" + value + "` is no number of days from 1 to 36500";
+}
+
 constexpr CommandSet reading = {Command::generate, Command::check, Command::describe,
                                 Command::model, Command::view};
 
@@ -172,6 +178,12 @@ constexpr std::array commands = {
                "does otherwise than in the recording. Endpoints, node ids, message, request and\n"
                "generator numbers, and the times of wire values may differ; values of wires may\n"
                "be missing.\n"},
+    CommandRow{Command::ca, "ca", "init DIR | issue NODE | revoke NODE [OPTION...]",
+               "make and use an authority for nodes' certificates",
+               "init makes an authority in a folder; issue makes the certificate and key of a\n"
+               "node there, below nodes, and revoke adds the certificate to the list of revoked\n"
+               "ones. A node is its id, or a file that has it. Nodes trust the authority that\n"
+               "are given its ca.pem. Keep ca.key to yourself.\n"},
 };
 
 constexpr std::array options = {
@@ -303,6 +315,18 @@ constexpr std::array options = {
               {Command::replay},
               "send as soon as the answers before have come,\nnot at the recorded times",
               take_recording_switch<&RecordingOptions::is_fast>},
+    OptionRow{"--ca",
+              "",
+              "DIR",
+              {Command::ca},
+              "folder of the authority; default: the current\nfolder",
+              take_text<&Options::authority_folder>},
+    OptionRow{"--days",
+              "",
+              "NUMBER",
+              {Command::ca},
+              "how long it is valid; default: 825, of an\nauthority 3650",
+              take_days},
 };
 
 /// `text` in a column that begins behind `indent` blanks; the first line stands there already.

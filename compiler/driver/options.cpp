@@ -130,6 +130,9 @@ class ArgumentReader {
       return "no code given";
     }
     if (command_.command == Command::record) return missing_to_record();
+    if (command_.command == Command::ca) {
+      return options_.inputs.size() == 2 ? "" : "give `init DIR`, `issue NODE` or `revoke NODE`";
+    }
     if (options_.inputs.empty() && command_.command != Command::explain) return "no file given";
     if (command_.command == Command::replay) return missing_to_replay();
     if (!options_.inputs.empty() && options_.lists_codes) return "`--list` takes no codes";

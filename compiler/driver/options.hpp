@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,12 +17,13 @@
 /// `--help` alike.
 namespace robdef {
 
-enum class Command { generate, check, describe, model, view, explain, inspect, record, replay };
+enum class Command { generate, check, describe, model, view, explain, inspect, record, replay, ca };
 
 /// What the user asked for. Which parts mean something depends on the command.
 struct Options {
   Command command{};
-  /// Definition files; for explain: codes and rules; for inspect and replay: recordings.
+  /// Definition files; for explain: codes and rules; for inspect and replay: recordings; for ca:
+  /// what to do and with what.
   std::vector<std::string> inputs;
   /// Folders in which imports are looked for: those of `-I`, then those of the environment.
   ast::SearchPath search_path;
@@ -37,6 +39,8 @@ struct Options {
   bool lists_codes = false;
   bool is_json = false;
   RecordingOptions recording;
+  std::string authority_folder = ".";  ///< of `ca`
+  std::optional<int> days;             ///< of `ca`; none: as usual
 };
 
 /// Text that answers the command line itself: help or the version.

@@ -7,7 +7,7 @@ _robdef() {
   COMPREPLY=()
   if [ "$COMP_CWORD" = 1 ]; then
     mapfile -t COMPREPLY < <(compgen -W \
-      'generate check describe model view explain inspect record replay --help --version' -- "$word")
+      'generate check describe model view explain inspect record replay ca --help --version' -- "$word")
     return
   fi
   case $previous in
@@ -59,12 +59,15 @@ _robdef() {
       inspect) options='--json --entries --path --connection --summary --help' ;;
       record) options='--connect --listen --everywhere --output -o --drop --help' ;;
       replay) options='--connect --listen --everywhere --connection --fast --help' ;;
+      ca) options='--ca --days --help' ;;
     esac
     mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")
   elif [ "$command" = explain ]; then
     mapfile -t COMPREPLY < <(compgen -W \
       "$(robdef explain --list 2>/dev/null | cut -d ' ' -f 1)" -- "$word")
-  elif [ "$command" = inspect ] || [ "$command" = replay ]; then
+  elif [ "$command" = ca ] && [ "$COMP_CWORD" = 2 ]; then
+    mapfile -t COMPREPLY < <(compgen -W 'init issue revoke' -- "$word")
+  elif [ "$command" = ca ] || [ "$command" = inspect ] || [ "$command" = replay ]; then
     mapfile -t COMPREPLY < <(compgen -f -- "$word")
   else
     mapfile -t COMPREPLY < <(

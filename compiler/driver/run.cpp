@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compiler/driver/explain.hpp"
+#include "compiler/driver/authority.hpp"
 #include "compiler/driver/recordings.hpp"
 
 namespace robdef {
@@ -53,6 +54,8 @@ ExitStatus answer(std::span<const std::string> arguments, std::string_view impor
       return record(options, out, err);
     case Command::replay:
       return replay(options, out, err);
+    case Command::ca:
+      return run_authority(options, out, err);
     default:
       return compile(options, out, err);
   }
