@@ -162,7 +162,7 @@ class StreamConnection final : public Connection,
   void take_answers(const Message& message, const Entry& first, const MemoryRef& owner,
                     Laters& laters);
   void refuse_stream(const Scratch& scratch, std::size_t size);
-  bool take_read_turn();
+  bool take_read_turn(bool until_end = false);
   void read_as_reactor(bool until_end);
   bool leave_read_turn(Scratch& scratch, bool may_dispatch);
   bool hand_on(Scratch& scratch, bool may_dispatch, bool& must_post);
@@ -299,7 +299,8 @@ class StreamConnection final : public Connection,
 
   std::atomic<Time> last_sent_;
   std::atomic<Time> last_received_;
-  std::atomic<bool> was_heard_{false};  // a whole message has come
+  std::atomic<bool> is_end_in_sight_{false};  // the reactor has been told of it, once
+  std::atomic<bool> was_heard_{false};        // a whole message has come
   // What a client has put around its messages.
   static constexpr unsigned web_tls_way = 1;
   static constexpr unsigned web_socket_way = 2;

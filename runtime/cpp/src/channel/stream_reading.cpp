@@ -47,13 +47,16 @@ void StreamConnection::on_ready(std::uint32_t events) {
   const auto self = shared_from_this();  // the reactor's reference may go meanwhile
   if ((events & EPOLLOUT) != 0 && has_unsent_) flush();
   constexpr std::uint32_t end_events = EPOLLRDHUP | EPOLLHUP | EPOLLERR;
-  if ((events & (EPOLLIN | end_events)) != 0 && take_read_turn()) {
-    read_as_reactor((events & end_events) != 0);
+  const bool until_end = (events & end_events) != 0;
+  if ((events & (EPOLLIN | end_events)) != 0 && take_read_turn(until_end)) {
+    read_as_reactor(until_end);
   }
 }
 
-bool StreamConnection::take_read_turn() {
+// An end that is told of while nobody may read is not told of again.
+bool StreamConnection::take_read_turn(bool until_end) {
   const std::lock_guard lock(turns_);
+  if (until_end) is_end_in_sight_.store(true, std::memory_order_relaxed);
   if (is_read_ || is_stalled_) {
     read_again_ = true;
     return false;
@@ -70,7 +73,8 @@ void StreamConnection::read_as_reactor(bool until_end) {
     bool is_full = false;
     const Time last_received = last_received_.load(std::memory_order_relaxed);
     const Received received = receive(*scratch, false, is_full);
-    const bool has_more = received == Received::some && (is_full || until_end);
+    const bool is_end_near = until_end || is_end_in_sight_.load(std::memory_order_relaxed);
+    const bool has_more = received == Received::some && (is_full || is_end_near);
     const bool may_stay = is_busy(last_received);
     const bool is_again = leave_read_turn(*scratch, true);
     if (!is_again && !has_more) {

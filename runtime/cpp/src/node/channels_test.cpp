@@ -123,7 +123,6 @@ TEST(Channels, OnesOwnIsUsedByItsScheme) {
 // What slow and silent clients do not hold up.
 TEST(Handshakes, AThousandSlowOnesDoNotHoldUpAClient) {
   Pair pair({.first_message_timeout = std::chrono::seconds(30)});
-  if (pair.port == 0) GTEST_SKIP() << "there is no port";
   std::vector<RawSocket> slow;
   for (int i = 0; i < 1000; ++i) slow.emplace_back(pair.port);
   constexpr std::string_view begins[] = {"RRAC", "GET ", "\x16\x03\x01\x02"};
@@ -138,7 +137,6 @@ TEST(Handshakes, AThousandSlowOnesDoNotHoldUpAClient) {
 
 TEST(Handshakes, OfOneByteAtATimeEndInTime) {
   Pair pair({.first_message_timeout = std::chrono::milliseconds(300)});
-  if (pair.port == 0) GTEST_SKIP() << "there is no port";
   const RawSocket slow(pair.port);
   const auto begin = Clock::now();
   std::thread writer([&] {

@@ -25,6 +25,7 @@ struct Pair {
         client(with_channel(std::move(client_options))) {
     service = server.register_service("counter", object, std::move(service_options));
     place = listen_by_channel(server, port);
+    if (port == 0) port = server.listen_tcp(0, "127.0.0.1");  // for peers that are no nodes
   }
 
   [[nodiscard]] std::string url(const std::string& name = "counter") const {
@@ -38,7 +39,7 @@ struct Pair {
   Node server;
   Node client;
   Service service;
-  std::uint16_t port = 0;  ///< of those channels that have one
+  std::uint16_t port = 0;  ///< of TCP, which the server listens at whatever the channel
   std::string place;
 };
 
