@@ -146,7 +146,7 @@ class IntraSpace::Channel final : public MessageChannel {
 
  private:
   [[noreturn]] static void fail(const Url& url) {
-    throw Error(ErrorCode::connection_error,
+    throw Error(ErrorCode::node_not_found,
                 "no node " +
                     (url.node_id.is_any() ? "`" + url.node_name + "`" : url.node_id.text()) +
                     " listens in this process");

@@ -167,7 +167,7 @@ class LocalChannel final : public Channel {
       addresses.push_back(address_of(path));
     }
     if (addresses.empty()) {
-      throw Error(ErrorCode::connection_error,
+      throw Error(ErrorCode::node_not_found,
                   "no node " +
                       (url.node_id.is_any() ? "`" + url.node_name + "`" : url.node_id.text()) +
                       " listens on this machine");

@@ -95,8 +95,7 @@ TEST(Intra, FindsNodesByNameInTheirSpaceOnly) {
   const std::string url = "rr+intra:///?nodename=intra.node&service=counter";
   EXPECT_EQ(inside.connect<CounterStub>(url)->add(1, 2), 3);
   Node outside;
-  EXPECT_EQ(error_of([&] { outside.connect<CounterStub>(url); }).code(),
-            ErrorCode::connection_error);
+  EXPECT_EQ(error_of([&] { outside.connect<CounterStub>(url); }).code(), ErrorCode::node_not_found);
   server.shutdown();
   EXPECT_TRUE(space->nodes().empty());
 }
