@@ -149,6 +149,12 @@ std::string take_interface(Options& options, const std::string& value) {
   return value.empty() ? "the value is empty" : "";
 }
 
+std::string take_days(Options& options, const std::string& value) {
+  options.days = number_in<int>(value);
+  const bool is_right = options.days && *options.days > 0 && *options.days <= 36500;
+  return is_right ? "" : "`" + value + "` is no number of days from 1 to 36500";
+}
+
 constexpr CommandSet reading = {Command::generate, Command::check, Command::describe,
                                 Command::model, Command::view};
 
@@ -203,6 +209,12 @@ constexpr std::array commands = {
                "Listens to the announcements of nodes and asks them for their services. Prints\n"
                "nodes and services with + when they come, * when they change and - when they\n"
                "are lost, until it is interrupted.\n"},
+    CommandRow{Command::ca, "ca", "init DIR | issue NODE | revoke NODE [OPTION...]",
+               "make and use an authority for nodes' certificates",
+               "init makes an authority in a folder; issue makes the certificate and key of a\n"
+               "node there, below nodes, and revoke adds the certificate to the list of revoked\n"
+               "ones. A node is its id, or a file that has it. Nodes trust the authority that\n"
+               "are given its ca.pem. Keep ca.key to yourself.\n"},
 };
 
 constexpr std::array options = {
@@ -385,6 +397,18 @@ constexpr std::array options = {
               {Command::discover},
               "port of discovery; default: 48653",
               take_discovery_port},
+    OptionRow{"--ca",
+              "",
+              "DIR",
+              {Command::ca},
+              "folder of the authority; default: the current\nfolder",
+              take_text<&Options::authority_folder>},
+    OptionRow{"--days",
+              "",
+              "NUMBER",
+              {Command::ca},
+              "how long it is valid; default: 825, of an\nauthority 3650",
+              take_days},
 };
 
 /// `text` in a column that begins behind `indent` blanks; the first line stands there already.

@@ -139,6 +139,9 @@ class ArgumentReader {
       return "no code given";
     }
     if (command_.command == Command::record) return missing_to_record();
+    if (command_.command == Command::ca) {
+      return options_.inputs.size() == 2 ? "" : "give `init DIR`, `issue NODE` or `revoke NODE`";
+    }
     if (command_.command == Command::discover) {
       return options_.inputs.empty() ? "" : "`robdef discover` takes no files";
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,6 +29,7 @@ enum class Command {
   inspect,
   record,
   replay,
+  ca,
   discover,
   get,
   set,
@@ -40,8 +42,8 @@ enum class Command {
 /// What the user asked for. Which parts mean something depends on the command.
 struct Options {
   Command command{};
-  /// Definition files; for explain: codes and rules; for inspect and replay: recordings; for what
-  /// uses a running service: its URL, and members or a path.
+  /// Definition files; for explain: codes and rules; for inspect and replay: recordings; for ca: what
+  /// to do and with what; for what uses a running service: its URL, and members or a path.
   std::vector<std::string> inputs;
   /// Folders in which imports are looked for: those of `-I`, then those of the environment.
   ast::SearchPath search_path;
@@ -59,6 +61,8 @@ struct Options {
   RecordingOptions recording;
   DiscoverOptions discover;
   LiveOptions live;
+  std::string authority_folder = ".";  ///< of `ca`
+  std::optional<int> days;             ///< of `ca`; none: as usual
 };
 
 /// Text that answers the command line itself: help or the version.

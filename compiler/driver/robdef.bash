@@ -23,7 +23,7 @@ _robdef() {
   COMPREPLY=()
   if [ "$COMP_CWORD" = 1 ]; then
     mapfile -t COMPREPLY < <(compgen -W \
-      'generate check describe model view explain inspect record replay discover get set call watch connect
+      'generate check describe model view explain inspect record replay ca discover get set call watch connect
       --help --version' -- "$word")
     return
   fi
@@ -84,6 +84,7 @@ _robdef() {
       record) options='--connect --listen --everywhere --output -o --drop --help' ;;
       discover) options='--once --type --format --wait --ipv4 --interface --port --help' ;;
       replay) options='--connect --listen --everywhere --connection --fast --help' ;;
+      ca) options='--ca --days --help' ;;
     esac
     mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")
   elif [ "$command" = explain ]; then
@@ -91,7 +92,9 @@ _robdef() {
       "$(robdef explain --list 2>/dev/null | cut -d ' ' -f 1)" -- "$word")
   elif [[ $command == @(get|set|call|watch|connect) || $COMP_LINE == *describe*://* ]]; then
     _robdef_members
-  elif [ "$command" = inspect ] || [ "$command" = replay ]; then
+  elif [ "$command" = ca ] && [ "$COMP_CWORD" = 2 ]; then
+    mapfile -t COMPREPLY < <(compgen -W 'init issue revoke' -- "$word")
+  elif [ "$command" = ca ] || [ "$command" = inspect ] || [ "$command" = replay ]; then
     mapfile -t COMPREPLY < <(compgen -f -- "$word")
   else
     mapfile -t COMPREPLY < <(

@@ -8,6 +8,7 @@
 
 #include "compiler/driver/discover.hpp"
 #include "compiler/driver/explain.hpp"
+#include "compiler/driver/authority.hpp"
 #include "compiler/driver/live/commands.hpp"
 #include "compiler/driver/recordings.hpp"
 
@@ -55,6 +56,8 @@ ExitStatus answer(std::span<const std::string> arguments, std::string_view impor
       return record(options, out, err);
     case Command::replay:
       return replay(options, out, err);
+    case Command::ca:
+      return run_authority(options, out, err);
     case Command::discover:
       return discover(options, out, err);
     case Command::get:

@@ -5,15 +5,19 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "rr/node_id.hpp"
 #include "rr/wire.hpp"
 
 namespace rr {
 
+class IntraSpace;
+class MessageChannel;
 class Tap;
 
 enum class LogLevel : std::uint8_t { debug, info, warning, error };
@@ -23,6 +27,51 @@ struct Offer {
   bool message_v4 = true;        ///< the compact message format
   bool string_table = true;      ///< codes for frequent strings; needs message_v4
   bool combined_connect = true;  ///< connecting to a service in one step instead of four
+};
+
+/// TLS of a node (04, section 6; docs/security.md). Files are read when the node is made; lists of
+/// revoked certificates again whenever they have changed.
+struct TlsOptions {
+  /// The node's certificate with those between it and its authority: PEM, or `.p12` without a
+  /// password, which holds the key too. Empty for none; the node's id must be the certificate's.
+  std::string certificate_file{};
+  /// Its key, PEM without a password; empty when it is in the same file.
+  std::string key_file{};
+  /// Certificates, PEM, of the authorities that are trusted, besides those that the environment
+  /// names: ROBOTRACONTEUR_SSL_CERT_FILE and, of a folder, ROBOTRACONTEUR_SSL_CERT_DIR.
+  std::vector<std::string> authority_files{};
+  /// Lists, PEM, of the certificates that authorities have revoked.
+  std::vector<std::string> revocation_files{};
+  /// Nodes that are trusted for their certificate alone: its SHA-256 as 64 hexadecimal digits. Such
+  /// a node is refused with any other, be its authority trusted or not.
+  std::map<NodeId, std::string> pins{};
+  /// Clients that do not use TLS are refused, except by local and in-process channels.
+  bool is_required = false;
+  /// Clients have to prove which node they are, when they use TLS.
+  bool must_certify_clients = false;
+};
+
+/// Web sockets of a node, on the ports of TCP (04, section 2.2).
+struct WebSocketOptions {
+  bool is_enabled = true;
+  /// Origins of pages that may connect: `scheme://host[:port]`, `*.` before a host for those below
+  /// it, `scheme://` for all of that scheme.
+  std::vector<std::string> origins{"null",
+                                   "file://",
+                                   "chrome-extension://",
+                                   "http://robotraconteur.com",
+                                   "http://*.robotraconteur.com",
+                                   "https://robotraconteur.com",
+                                   "https://*.robotraconteur.com"};
+};
+
+/// Local sockets of a node (04, section 7).
+struct LocalOptions {
+  /// Instead of the user's and the system's run directories, and those that the environment names.
+  std::string user_run_dir{};
+  std::string system_run_dir{};
+  std::chrono::milliseconds heartbeat_period{30'000};
+  std::chrono::milliseconds receive_timeout{600'000};
 };
 
 /// How a node behaves. The defaults are those of the existing implementations. Times over a hundred
@@ -75,6 +124,14 @@ struct NodeOptions {
   std::size_t send_queue_limit = 64 * 1024 * 1024;
   /// Bytes of requests that wait for their handlers before a connection is read no further.
   std::size_t request_queue_limit = 1024 * 1024;
+
+  TlsOptions tls{};
+  WebSocketOptions web_socket{};
+  LocalOptions local{};
+  /// Where nodes find each other by `rr+intra`; null: all of the process do.
+  std::shared_ptr<IntraSpace> intra{};
+  /// Channels of one's own by the schemes of their URLs, which must be other than ours.
+  std::map<std::string, std::shared_ptr<MessageChannel>> channels{};
 
   /// Hears every message that the node sends and receives (rr/tap.hpp); none by default.
   std::shared_ptr<Tap> tap{};

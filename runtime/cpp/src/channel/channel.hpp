@@ -4,8 +4,10 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "rr/options.hpp"
@@ -33,11 +35,16 @@ class AcceptedCount {
   std::atomic<std::size_t> count_{0};
 };
 
+class Tls;
+class WebSockets;
+
 /// What channels work with.
 struct Ground {
   std::shared_ptr<Reactor> reactor;
   std::shared_ptr<const NodeOptions> options;  ///< with the id filled in
   std::shared_ptr<AcceptedCount> accepted;
+  std::shared_ptr<const Tls> tls{};           ///< always, in a node
+  std::shared_ptr<WebSockets> web_sockets{};  ///< likewise
 };
 
 /// Somebody who listens; ends with the object.
@@ -46,6 +53,8 @@ class Listener {
   virtual ~Listener() = default;
   /// Where: `rr+tcp://0.0.0.0:6257`, the actual port filled in; several for several families.
   [[nodiscard]] virtual std::vector<std::string> urls() const = 0;
+  /// What the node offers has changed, which `nonce`, 16 letters and digits, tells those who watch.
+  virtual void services_changed(const std::string& /*nonce*/) {}
 };
 
 /// Gives each new incoming connection its receiver. Called on a thread of the node.
@@ -56,6 +65,7 @@ using AcceptHandler = std::function<std::shared_ptr<Receiver>(std::shared_ptr<Co
 class Channel {
  public:
   virtual ~Channel() = default;
+  [[nodiscard]] virtual ChannelTraits traits(std::string_view scheme) const = 0;
   /// Connects, and agrees with the other side on how to talk. Blocks until the deadline. Messages
   /// go to what `make_receiver` returns for the connection. Throws rr::Error.
   virtual std::shared_ptr<Connection> connect(const Url& url, Time deadline,
@@ -64,7 +74,15 @@ class Channel {
   virtual std::unique_ptr<Listener> listen(const Url& url, AcceptHandler accept) = 0;
 };
 
-std::unique_ptr<Channel> make_tcp_channel(Ground ground);
+/// What can be used with an `rr::Node`: scheme and channel, ours and those of the options. Throws
+/// rr::Error (invalid_argument) when the options give one of our schemes to another channel.
+std::map<std::string, std::shared_ptr<Channel>> all_channels(const Ground& ground);
+
+std::shared_ptr<Channel> make_tcp_channel(Ground ground);
+std::shared_ptr<Channel> make_local_channel(Ground ground);
+/// A channel over one that carries whole messages.
+std::shared_ptr<Channel> make_message_channel(Ground ground, std::string scheme,
+                                              std::shared_ptr<MessageChannel> channel);
 
 /// A connection over one end of a connected stream socket, as a server: for tests, fuzzing, and
 /// sockets that come from elsewhere. Takes over the descriptor. Throws rr::Error (connection_error)

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "rr/buffer.hpp"
+#include "rr/channel.hpp"
 #include "rr/error.hpp"
 #include "rr/node_id.hpp"
 #include "rr/reader.hpp"
@@ -85,6 +86,8 @@ class Connection {
   [[nodiscard]] const std::string& remote_name() const { return remote_name_; }
   /// The address of this side as it may stand in a URL: `rr+tcp://10.0.0.5:2355`; empty if unknown.
   [[nodiscard]] virtual std::string local_url() const = 0;
+  /// What the way between the two sides is like.
+  [[nodiscard]] virtual ChannelTraits traits() const = 0;
 
   /// The two endpoints that the connection carries: what a message without them is taken to have.
   void set_endpoints(std::uint32_t own, std::uint32_t remote) {

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "rr/reader.hpp"
+#include "runtime/cpp/src/channel/carrier.hpp"
 
 namespace rr::channel {
 namespace {
@@ -220,8 +221,8 @@ void Outbox::fill(Segment& segment, Writer& message) {
   }
 }
 
-std::ptrdiff_t Outbox::send(int socket, std::span<const Piece> more) {
-  if (empty() && more.size() == 1) {  // nearly always
+std::ptrdiff_t Outbox::send(int socket, std::span<const Piece> more, Carrier* carrier) {
+  if (empty() && more.size() == 1 && carrier == nullptr) {  // nearly always
     const ssize_t sent = ::send(socket, more[0].data, more[0].size, MSG_DONTWAIT | MSG_NOSIGNAL);
     if (sent == static_cast<ssize_t>(more[0].size)) return sent;
     if (sent >= 0 || errno == EAGAIN || errno == EWOULDBLOCK) return std::max<ssize_t>(sent, 0);
@@ -248,7 +249,9 @@ std::ptrdiff_t Outbox::send(int socket, std::span<const Piece> more) {
       if (skip != piece.size) add_piece(piece.data + skip, piece.size - skip);
     }
     if (count == 0) break;
-    const std::ptrdiff_t result = send_pieces(socket, std::span(pieces.data(), count));
+    const std::span used(pieces.data(), count);
+    const std::ptrdiff_t result =
+        carrier == nullptr ? send_pieces(socket, used) : carrier->send(used);
     if (result < 0) return -1;
     const auto sent = static_cast<std::size_t>(result);
     drop(std::min(sent, own));

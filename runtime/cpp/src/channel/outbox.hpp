@@ -12,6 +12,8 @@
 
 namespace rr::channel {
 
+class Carrier;
+
 /// Bytes that wait to be sent on one connection: what the socket did not take, and answers that
 /// leave together. Owns memory only while there are some.
 class Outbox {
@@ -39,8 +41,8 @@ class Outbox {
 
   /// Sends on a socket: what waits, then `more`, without blocking, in as few calls as possible.
   /// What is sent of the outbox is dropped from it. Returns the bytes of `more` that were sent, or
-  /// -1, with errno, when the connection is broken.
-  std::ptrdiff_t send(int socket, std::span<const Piece> more);
+  /// -1, with errno, when the connection is broken. With a carrier it is that which takes them.
+  std::ptrdiff_t send(int socket, std::span<const Piece> more, Carrier* carrier = nullptr);
 
   void clear();
 

@@ -8,6 +8,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -96,6 +97,7 @@ void Address::set_port(std::uint16_t port) {
 }
 
 std::string Address::text() const {
+  if (family() == AF_UNIX) return reinterpret_cast<const sockaddr_un&>(storage).sun_path;
   std::array<char, NI_MAXHOST> host{};
   if (getnameinfo(reinterpret_cast<const sockaddr*>(&storage), size, host.data(), host.size(),
                   nullptr, 0, NI_NUMERICHOST) != 0) {
@@ -136,9 +138,9 @@ std::vector<Address> resolve_for_listening(const std::string& host, std::uint16_
   return addresses;
 }
 
-std::string url_of(const Address& address) {
-  return address.size == 0 || address.family() == AF_UNIX ? std::string()
-                                                          : "rr+tcp://" + address.text();
+std::string url_of(const Address& address, std::string_view scheme) {
+  if (address.size == 0 || address.family() == AF_UNIX) return {};
+  return std::string(scheme) + "://" + address.text();
 }
 
 namespace {

@@ -45,8 +45,8 @@ struct Address {
   [[nodiscard]] std::string text() const;
 };
 
-/// As a URL of TCP; empty for what is none.
-std::string url_of(const Address& address);
+/// As a URL of TCP with this scheme; empty for what is none.
+std::string url_of(const Address& address, std::string_view scheme = "rr+tcp");
 
 /// All addresses of a host: a name, or digits; IPv6 with an optional `%scope`. A link-local address
 /// without scope gives one address for each interface. Throws rr::Error (connection_error).

@@ -14,10 +14,21 @@ static_assert(std::atomic<Time>::is_always_lock_free);
 
 StreamConnection::StreamConnection(Role role, Descriptor socket, std::shared_ptr<Reactor> reactor,
                                    std::shared_ptr<const NodeOptions> options)
+    : StreamConnection(role, std::move(socket), std::move(reactor), options, tcp_terms(*options),
+                       nullptr) {}
+
+StreamConnection::StreamConnection(Role role, Descriptor socket, std::shared_ptr<Reactor> reactor,
+                                   std::shared_ptr<const NodeOptions> options, LinkTerms terms,
+                                   std::unique_ptr<Carrier> carrier)
     : role_(role),
       socket_(std::move(socket)),
       reactor_(std::move(reactor)),
       options_(std::move(options)),
+      terms_(std::move(terms)),
+      largest_size_(terms_.traits.message_limit == 0
+                        ? options_->limits.message_size
+                        : std::min(options_->limits.message_size, terms_.traits.message_limit)),
+      carrier_(std::move(carrier)),
       tap_(options_->tap.get()),
       last_sent_(coarse_now()),
       last_received_(coarse_now()),
@@ -57,6 +68,11 @@ void StreamConnection::start(std::shared_ptr<Receiver> receiver) {
     const std::lock_guard lock(turns_);
     if (is_closing_) return;
     receiver_ = std::move(receiver);
+    if (carrier_) {
+      carrier_->set_on_room([reactor = reactor_.get(), weak = weak_from_this()] {
+        if (const auto self = weak.lock()) reactor->post([self] { self->flush(); });
+      });
+    }
     reactor_->begin_connection();
     self_ = shared_from_this();
     // A client's first call follows at once and reads by itself.
@@ -72,12 +88,22 @@ void StreamConnection::start(std::shared_ptr<Receiver> receiver) {
                      after(Clock::now(), std::min(soon, heartbeat_period())));
 }
 
-std::string StreamConnection::local_url() const { return url_of(local_address(socket_.get())); }
+std::string StreamConnection::local_url() const {
+  if (!terms_.local_url.empty()) return terms_.local_url;
+  return url_of(local_address(socket_.get()), scheme());
+}
+
+ChannelTraits StreamConnection::traits() const {
+  ChannelTraits traits = terms_.traits;
+  traits.message_limit = largest_size_;
+  traits.is_encrypted = is_encrypted();
+  return traits;
+}
 
 std::uint32_t StreamConnection::largest_message() const {
-  const std::uint32_t size = options_->limits.message_size;
+  const std::uint32_t size = largest_size_;
   if (is_authorised_.load(std::memory_order_relaxed)) return size;
-  return std::min(size, options_->size_before_connect);
+  return std::min(size, terms_.size_before_connect);
 }
 
 Limits StreamConnection::limits() const {
@@ -85,7 +111,7 @@ Limits StreamConnection::limits() const {
 }
 
 Milliseconds StreamConnection::heartbeat_period() const {
-  const Milliseconds period = options_->heartbeat_period;
+  const Milliseconds period = terms_.heartbeat_period;
   return role_ == Role::server ? period + period / 5 : period;
 }
 
@@ -103,7 +129,7 @@ void StreamConnection::look_after() {
     return;
   }
   const Time last_sent = last_sent_;
-  if (last_sent - last_received_.load() > options_->receive_timeout) {
+  if (last_sent - last_received_.load() > terms_.receive_timeout) {
     close(Error(ErrorCode::connection_error, "the other side does not answer any more"));
     return;
   }
@@ -162,6 +188,7 @@ void StreamConnection::finish_close() {
     must_post = is_closed_pending_ && !is_dispatched_ && absent_ == 0;
     if (must_post) loosen_turn();
   }
+  if (carrier_) carrier_->end();
   if (on_gone_) on_gone_(*this);
   if (must_post) laters.emplace_back([keep = shared_from_this()] { keep->drain_posted(); });
   for (std::function<void()>& later : laters) reactor_->post(std::move(later));

@@ -12,9 +12,12 @@
 #include "rr/options.hpp"
 #include "rr/tap.hpp"
 #include "runtime/cpp/src/channel/capabilities.hpp"
+#include "runtime/cpp/src/channel/carrier.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/channel/flusher.hpp"
 #include "runtime/cpp/src/channel/inbox.hpp"
+#include "runtime/cpp/src/channel/layered_carrier.hpp"
+#include "runtime/cpp/src/channel/link_terms.hpp"
 #include "runtime/cpp/src/channel/outbox.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
@@ -45,9 +48,12 @@ class StreamConnection final : public Connection,
  public:
   enum class Role : std::uint8_t { client, server };
 
-  /// `on_gone`, if any, is called once when the connection has ended, on any thread.
   StreamConnection(Role role, Descriptor socket, std::shared_ptr<Reactor> reactor,
                    std::shared_ptr<const NodeOptions> options);
+  /// The same of another channel than TCP, or with a carrier; null for none.
+  StreamConnection(Role role, Descriptor socket, std::shared_ptr<Reactor> reactor,
+                   std::shared_ptr<const NodeOptions> options, LinkTerms terms,
+                   std::unique_ptr<Carrier> carrier);
   ~StreamConnection();
 
   /// Before start(): who the other side is and what was agreed with it.
@@ -55,6 +61,8 @@ class StreamConnection final : public Connection,
                      const Agreement& agreement);
   /// Before set_agreement(): the messages that did it, when the node has a tap.
   void tell_handshake(std::span<const std::byte> request, std::span<const std::byte> answer);
+  /// Before start(): what the other side has proved to be.
+  void set_certified_node(const NodeId& node) { certified_node_ = node; }
   /// Before start(): called once when the connection has ended, on any thread.
   void set_on_gone(std::function<void(StreamConnection&)> on_gone) {
     on_gone_ = std::move(on_gone);
@@ -63,6 +71,7 @@ class StreamConnection final : public Connection,
   void start(std::shared_ptr<Receiver> receiver);
 
   [[nodiscard]] std::string local_url() const override;
+  [[nodiscard]] ChannelTraits traits() const override;
   void check_size(const Writer& message) const override;
   using Connection::reply;
   using Connection::send;
@@ -146,12 +155,14 @@ class StreamConnection final : public Connection,
 
   // Reading (stream_reading.cpp)
   Received receive(Scratch& scratch, bool may_block, bool& is_full);
+  Received take_bytes(Scratch& scratch, std::size_t received);
+  Received fail_reading(const Error& why);
   bool take(Scratch& scratch, const Frame& frame);
   bool take_packet(Scratch& scratch, const Frame& frame);
   void take_answers(const Message& message, const Entry& first, const MemoryRef& owner,
                     Laters& laters);
   void refuse_stream(const Scratch& scratch, std::size_t size);
-  bool take_read_turn();
+  bool take_read_turn(bool until_end = false);
   void read_as_reactor(bool until_end);
   bool leave_read_turn(Scratch& scratch, bool may_dispatch);
   bool hand_on(Scratch& scratch, bool may_dispatch, bool& must_post);
@@ -168,6 +179,26 @@ class StreamConnection final : public Connection,
   void end_absence();
   void handle_frame(Scratch& scratch, const Frame& frame, bool is_parsed);
   void complete(Message& message) const;
+
+  // What is carried otherwise than as plain bytes of the socket (stream_carried.cpp)
+  Received receive_carried(Scratch& scratch, bool may_block, bool& is_full);
+  Received receive_messages(Scratch& scratch, bool may_block);
+  Received receive_bytes(Scratch& scratch, bool may_block, bool& is_full);
+
+  // What a client asks for first (stream_opening.cpp)
+  [[nodiscard]] std::unique_ptr<Layer> asked_layer(std::byte first);
+  Received upgrade(Scratch& scratch, std::size_t size, std::unique_ptr<Layer> layer);
+  LayeredCarrier& layers();
+  void answer_start_tls(const Message& message, const Entry& entry);
+  Received begin_tls();
+  [[nodiscard]] bool is_encrypted() const;
+  [[nodiscard]] std::string scheme() const;
+  [[nodiscard]] bool is_certified(const Message& message) const;
+
+  [[nodiscard]] std::size_t carrier_unsent() const {
+    return carrier_ == nullptr ? 0 : carrier_->unsent();
+  }
+  [[nodiscard]] Carrier* sending_carrier();
 
   // Waiting callers (stream_waiting.cpp)
   bool follow(Waiter& waiter, Time deadline);
@@ -208,6 +239,10 @@ class StreamConnection final : public Connection,
   const Descriptor socket_;
   const std::shared_ptr<Reactor> reactor_;
   const std::shared_ptr<const NodeOptions> options_;
+  const LinkTerms terms_;
+  const std::uint32_t largest_size_;  // of a message
+  // Null for plain bytes; written with the read turn and under sending_.
+  std::unique_ptr<Carrier> carrier_;
   Tap* const tap_;  // of the options; null: none
   std::uint32_t tap_number_ = 0;
   std::shared_ptr<Receiver> receiver_;
@@ -241,6 +276,11 @@ class StreamConnection final : public Connection,
 
   Inbox inbox_;                       // with the read turn
   bool had_message_ = false;          // with the read turn
+  bool begins_tls_ = false;           // with the read turn: after the message that asked for it
+  bool is_mutual_ = false;            // with the read turn: and of the client wants a certificate
+  bool has_more_behind_ = false;      // with the read turn: bytes behind that message
+  bool is_layered_ = false;           // with the read turn: the carrier is a LayeredCarrier
+  NodeId certified_node_;             // what the other side has proved to be; with the read turn
   bool has_receive_timeout_ = false;  // with the read turn
   unsigned busy_receives_ = 0;        // with the read turn
   std::uint32_t busy_leads_ = 0;      // with the read turn
@@ -259,7 +299,13 @@ class StreamConnection final : public Connection,
 
   std::atomic<Time> last_sent_;
   std::atomic<Time> last_received_;
-  std::atomic<bool> was_heard_{false};  // a whole message has come
+  std::atomic<bool> is_end_in_sight_{false};  // the reactor has been told of it, once
+  std::atomic<bool> was_heard_{false};        // a whole message has come
+  // What a client has put around its messages.
+  static constexpr unsigned web_tls_way = 1;
+  static constexpr unsigned web_socket_way = 2;
+  static constexpr unsigned start_tls_way = 4;
+  std::atomic<unsigned> ways_{0};
   std::atomic<Time> close_at_{never};
   const Time created_;
   LifeTimer life_timer_{*this};

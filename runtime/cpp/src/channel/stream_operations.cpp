@@ -9,6 +9,7 @@
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/operations.hpp"
 #include "runtime/cpp/src/channel/stream_connection.hpp"
+#include "runtime/cpp/src/channel/tls.hpp"
 
 namespace rr::channel {
 
@@ -75,6 +76,11 @@ void StreamConnection::answer_stream_op(const Message& message, const Entry& ent
     answer_create_connection(message, entry);
     return;
   }
+  const bool has_tls = terms_.tls != nullptr && terms_.tls->has_certificate() && !is_encrypted();
+  if (entry.member == start_tls && role_ == Role::server && has_tls) {
+    answer_start_tls(message, entry);
+    return;
+  }
   Writer& writer = thread_writer();
   writer.reset(version());
   const std::size_t end = writer.position();
@@ -114,6 +120,8 @@ void StreamConnection::answer_create_connection(const Message& message, const En
       answer = answer_codes(*codes, options_->server_offer);
     if (!answer) error = ErrorCode::protocol_error;
   }
+  const bool lacks_tls = terms_.is_tls_required && !is_encrypted();
+  if (lacks_tls) error = ErrorCode::connection_error;
 
   if (error == ErrorCode::none && is_first) {
     set_agreement(message.sender_node, std::string(message.sender_name),
@@ -125,6 +133,9 @@ void StreamConnection::answer_create_connection(const Message& message, const En
   const std::size_t end = writer.position();
   std::uint32_t count = 0;
   if (error == ErrorCode::node_not_found) count += write_error(writer, error, "Node not found");
+  if (lacks_tls) {
+    count += write_error(writer, error, "this node serves encrypted connections only");
+  }
   if (error == ErrorCode::protocol_error) {
     count += write_error(writer, error, "Invalid capabilities");
   }

@@ -47,13 +47,16 @@ void StreamConnection::on_ready(std::uint32_t events) {
   const auto self = shared_from_this();  // the reactor's reference may go meanwhile
   if ((events & EPOLLOUT) != 0 && has_unsent_) flush();
   constexpr std::uint32_t end_events = EPOLLRDHUP | EPOLLHUP | EPOLLERR;
-  if ((events & (EPOLLIN | end_events)) != 0 && take_read_turn()) {
-    read_as_reactor((events & end_events) != 0);
+  const bool until_end = (events & end_events) != 0;
+  if ((events & (EPOLLIN | end_events)) != 0 && take_read_turn(until_end)) {
+    read_as_reactor(until_end);
   }
 }
 
-bool StreamConnection::take_read_turn() {
+// An end that is told of while nobody may read is not told of again.
+bool StreamConnection::take_read_turn(bool until_end) {
   const std::lock_guard lock(turns_);
+  if (until_end) is_end_in_sight_.store(true, std::memory_order_relaxed);
   if (is_read_ || is_stalled_) {
     read_again_ = true;
     return false;
@@ -70,7 +73,8 @@ void StreamConnection::read_as_reactor(bool until_end) {
     bool is_full = false;
     const Time last_received = last_received_.load(std::memory_order_relaxed);
     const Received received = receive(*scratch, false, is_full);
-    const bool has_more = received == Received::some && (is_full || until_end);
+    const bool is_end_near = until_end || is_end_in_sight_.load(std::memory_order_relaxed);
+    const bool has_more = received == Received::some && (is_full || is_end_near);
     const bool may_stay = is_busy(last_received);
     const bool is_again = leave_read_turn(*scratch, true);
     if (!is_again && !has_more) {
@@ -91,6 +95,7 @@ StreamConnection::Received StreamConnection::receive(Scratch& scratch, bool may_
   scratch.waiting.clear();
   scratch.parsed = 0;
   if (is_closing_.load(std::memory_order_relaxed)) return Received::end;
+  if (carrier_ != nullptr) return receive_carried(scratch, may_block, is_full);
   const std::span<std::byte> room = inbox_.room(scratch);
   int flags = may_block ? 0 : MSG_DONTWAIT;
   if (may_block && inbox_.is_assembling()) flags = MSG_WAITALL;
@@ -102,30 +107,48 @@ StreamConnection::Received StreamConnection::receive(Scratch& scratch, bool may_
     return Received::nothing;
   }
   if (size <= 0) {
-    const std::lock_guard lock(turns_);
-    begin_close(Error(ErrorCode::connection_error,
-                      size == 0 ? "the other side closed the connection" : "the connection broke"));
-    return Received::end;
+    return fail_reading({ErrorCode::connection_error, size == 0
+                                                          ? "the other side closed the connection"
+                                                          : "the connection broke"});
   }
   last_received_.store(coarse_now(), std::memory_order_relaxed);
   const auto received = static_cast<std::size_t>(size);
   is_full = received == room.size();
+  return take_bytes(scratch, received);
+}
+
+// With the read turn.
+StreamConnection::Received StreamConnection::fail_reading(const Error& why) {
+  const std::lock_guard lock(turns_);
+  begin_close(why);
+  return Received::end;
+}
+
+// Cuts what was received into the inbox's room.
+StreamConnection::Received StreamConnection::take_bytes(Scratch& scratch, std::size_t received) {
   bool is_right = true;
   const bool fits = inbox_.receive(scratch, received, limits(), [&](const Frame& frame) {
     is_right = take(scratch, frame);
     return is_right;
   });
+  if (begins_tls_) return begin_tls();
   if (fits && is_right) return Received::some;
-  if (!had_message_) refuse_stream(scratch, received);
-  const std::lock_guard lock(turns_);
-  begin_close(Error(ErrorCode::protocol_error, "the other side sent bytes that are no message"));
-  return Received::end;
+  if (!had_message_) {
+    try {
+      auto layer = asked_layer(scratch.bytes.front());
+      if (layer != nullptr) return upgrade(scratch, received, std::move(layer));
+    } catch (const Error& error) {
+      return fail_reading(error);
+    }
+    refuse_stream(scratch, received);
+  }
+  return fail_reading({ErrorCode::protocol_error, "the other side sent bytes that are no message"});
 }
 
 // What speaks another protocol is told so before the connection ends (04, section 2.1).
 void StreamConnection::refuse_stream(const Scratch& scratch, std::size_t size) {
   constexpr std::string_view magic = "RRAC";
-  if (role_ != Role::server ||
+  if (role_ != Role::server || carrier_ != nullptr ||
       std::memcmp(scratch.bytes.data(), magic.data(), std::min(size, magic.size())) == 0) {
     return;
   }
@@ -146,11 +169,14 @@ bool StreamConnection::take(Scratch& scratch, const Frame& frame) {
                     message, first)) {
     return false;
   }
-  if (!had_message_) {
+  if (!was_heard_.load(std::memory_order_relaxed)) {
     had_message_ = true;
     was_heard_ = true;
   }
+  if (begins_tls_) has_more_behind_ = true;
+  if (begins_tls_ || !is_certified(message)) return false;
   if (take_own(message, first)) return true;
+  if (terms_.is_tls_required && !is_encrypted()) return false;
   if (has_only_answers(message, first)) {
     take_answers(message, first, frame.owner, scratch.laters);
   } else if (role_ == Role::client && message.entry_count == 1 &&

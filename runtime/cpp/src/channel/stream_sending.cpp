@@ -82,12 +82,12 @@ bool StreamConnection::send_under_lock(Writer& message, const Sending& how, bool
   if (overtakes) outbox_.add_urgent(message);
   const std::span<const Piece> rest = overtakes ? std::span<const Piece>() : message.pieces();
   std::ptrdiff_t sent = 0;
-  if (!is_unsent) sent = outbox_.send(socket_.get(), rest);
+  if (!is_unsent) sent = outbox_.send(socket_.get(), rest, carrier_.get());
   last_sent_.store(how.now, std::memory_order_relaxed);
   bool is_broken = sent < 0;
   const bool is_left = !overtakes && sent != static_cast<std::ptrdiff_t>(message.size());
   if (is_left && !is_broken) queue_rest(message, static_cast<std::size_t>(sent), how, told);
-  has_rest = !is_broken && (is_left || (overtakes && !outbox_.empty()));
+  has_rest = !is_broken && (is_left || (overtakes && !outbox_.empty()) || carrier_unsent() != 0);
   if (has_rest) {
     is_broken = outbox_.size() > options_->send_queue_limit;
     has_unsent_ = true;
@@ -102,8 +102,7 @@ void StreamConnection::queue_rest(Writer& message, std::size_t sent, const Sendi
   if (how.newest != nullptr && tap_ != nullptr && !told) {
     queue_newest_and_tell(message, *how.newest);
   } else if (how.newest != nullptr && sent == 0) {
-    const Outbox::Queued queued =
-        outbox_.add_newest(message, how.newest->stream, how.newest->time);
+    const Outbox::Queued queued = outbox_.add_newest(message, how.newest->stream, how.newest->time);
     if (queued.mark != nullptr) *queued.mark = told.value_or(0);
   } else {
     outbox_.add(message, sent);
@@ -168,9 +167,10 @@ void StreamConnection::flush() {
   {
     const std::lock_guard lock(sending_);
     take_streamed();
-    if (outbox_.empty() || is_closing_) return;
-    is_broken = outbox_.send(socket_.get(), {}) < 0;
-    has_rest = !outbox_.empty();
+    if ((outbox_.empty() && carrier_unsent() == 0) || is_closing_) return;
+    is_broken = (carrier_ != nullptr && !carrier_->flush()) ||
+                outbox_.send(socket_.get(), {}, carrier_.get()) < 0;
+    has_rest = !outbox_.empty() || carrier_unsent() != 0;
     has_unsent_ = has_rest;
     note_waiting();
     last_sent_.store(coarse_now(), std::memory_order_relaxed);

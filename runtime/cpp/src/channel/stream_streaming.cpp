@@ -43,7 +43,7 @@ std::size_t StreamConnection::waiting_bytes() const {
 
 // Under sending_.
 void StreamConnection::note_waiting() {
-  outbox_bytes_.store(outbox_.size(), std::memory_order_relaxed);
+  outbox_bytes_.store(outbox_.size() + carrier_unsent(), std::memory_order_relaxed);
 }
 
 // Under sending_: what streams have left behind is next.
@@ -128,7 +128,12 @@ bool StreamConnection::wait_sent(std::size_t bytes, Time deadline) {
     if (waiting_bytes() <= bytes) return true;
     const Time now = Clock::now();
     if (now >= deadline) return false;
-    wait_for(socket_.get(), POLLOUT, std::min(deadline, now + std::chrono::seconds(1)));
+    const Time until = std::min(deadline, now + std::chrono::seconds(1));
+    if (Carrier* const carrier = sending_carrier()) {
+      carrier->wait_for_room(until);
+    } else {
+      wait_for(socket_.get(), POLLOUT, until);
+    }
   }
   return false;
 }

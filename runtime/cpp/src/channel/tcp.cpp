@@ -3,6 +3,7 @@
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/channel.hpp"
+#include "runtime/cpp/src/channel/connected.hpp"
 #include "runtime/cpp/src/channel/stream_connection.hpp"
 #include "runtime/cpp/src/channel/tcp_connect.hpp"
 #include "runtime/cpp/src/channel/tcp_listener.hpp"
@@ -10,19 +11,26 @@
 namespace rr::channel {
 namespace {
 
+bool is_encrypted(std::string_view scheme) {
+  return scheme.starts_with("rrs+") || scheme.ends_with("+wss");
+}
+
+/// Plain, and with web sockets and TLS around it, as the scheme says.
 class TcpChannel final : public Channel {
  public:
   explicit TcpChannel(Ground ground) : ground_(std::move(ground)) {}
 
+  [[nodiscard]] ChannelTraits traits(std::string_view scheme) const override {
+    return {.message_limit = ground_.options->limits.message_size,
+            .is_encrypted = is_encrypted(scheme)};
+  }
+
   std::shared_ptr<Connection> connect(const Url& url, Time deadline,
                                       const AcceptHandler& make_receiver) override {
-    Agreed agreed = connect_stream(url, *ground_.options, deadline);
-    auto connection = std::make_shared<StreamConnection>(
-        StreamConnection::Role::client, std::move(agreed.socket), ground_.reactor, ground_.options);
-    connection->tell_handshake(agreed.request, agreed.answer);
-    connection->set_agreement(agreed.remote_node, std::move(agreed.remote_name), agreed.agreement);
-    connection->start(make_receiver(connection));
-    return connection;
+    Agreed agreed = connect_stream(resolve(url.host, url.port), url, ground_, deadline);
+    LinkTerms terms = tcp_terms(*ground_.options, url.scheme == "tcp" ? "rr+tcp" : url.scheme);
+    terms.traits.is_encrypted = is_encrypted(url.scheme);
+    return connected(ground_, std::move(agreed), std::move(terms), make_receiver);
   }
 
   std::unique_ptr<Listener> listen(const Url& url, AcceptHandler accept) override {
@@ -35,25 +43,19 @@ class TcpChannel final : public Channel {
 
 }  // namespace
 
-std::unique_ptr<Channel> make_tcp_channel(Ground ground) {
-  return std::make_unique<TcpChannel>(std::move(ground));
+std::shared_ptr<Channel> make_tcp_channel(Ground ground) {
+  return std::make_shared<TcpChannel>(std::move(ground));
 }
 
-std::shared_ptr<Connection> adopt_socket(const Ground& ground, int descriptor,
-                                         const AcceptHandler& accept) {
-  Descriptor socket(descriptor);
-  if (!ground.accepted->add()) {
-    throw Error(ErrorCode::connection_error, "the node has as many connections as it may");
-  }
+std::shared_ptr<Connection> connected(const Ground& ground, Agreed agreed, LinkTerms terms,
+                                      const AcceptHandler& make_receiver) {
   auto connection = std::make_shared<StreamConnection>(
-      StreamConnection::Role::server, std::move(socket), ground.reactor, ground.options);
-  connection->set_on_gone([count = ground.accepted](StreamConnection&) { count->remove(); });
-  try {
-    connection->start(accept(connection));
-  } catch (const std::exception& error) {
-    connection->close(Error(ErrorCode::connection_error, error.what()));
-    throw;
-  }
+      StreamConnection::Role::client, std::move(agreed.socket), ground.reactor, ground.options,
+      std::move(terms), std::move(agreed.carrier));
+  connection->set_certified_node(agreed.certified_node);
+  connection->tell_handshake(agreed.request, agreed.answer);
+  connection->set_agreement(agreed.remote_node, std::move(agreed.remote_name), agreed.agreement);
+  connection->start(make_receiver(connection));
   return connection;
 }
 

@@ -1,32 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-#include <string>
+#include <cstdint>
+#include <string_view>
 #include <vector>
 
-#include "rr/node_id.hpp"
 #include "rr/options.hpp"
 #include "rr/url.hpp"
-#include "runtime/cpp/src/channel/capabilities.hpp"
+#include "runtime/cpp/src/channel/channel.hpp"
+#include "runtime/cpp/src/channel/handshake.hpp"
 #include "runtime/cpp/src/channel/socket.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 
 namespace rr::channel {
 
-/// A socket on which both sides have agreed how to talk.
-struct Agreed {
-  Descriptor socket;
-  NodeId remote_node;
-  std::string remote_name;
-  Agreement agreement;
-  // The two messages that did it.
-  std::vector<std::byte> request;
-  std::vector<std::byte> answer;
+/// What a client goes through with a connected socket.
+enum class OpeningStep : std::uint8_t {
+  web_tls,     ///< TLS as browsers do it
+  web_socket,  ///< the handshake of web sockets
+  start_tls,   ///< TLS as the protocol has it
+  agree,       ///< what every connection begins with
 };
 
-/// Tries all addresses of the URL's host, a new one every few milliseconds; the first with which
-/// the handshake succeeds wins. Throws rr::Error: operation_cancelled when an Interruption ends it.
-Agreed connect_stream(const Url& url, const NodeOptions& options, Time deadline);
+/// Those that the scheme of a URL asks for.
+std::vector<OpeningStep> opening_steps(std::string_view scheme);
+
+/// Tries addresses, a new one every few milliseconds; the first with which all steps succeed wins.
+/// Throws rr::Error: operation_cancelled when an Interruption ends it.
+Agreed connect_stream(const std::vector<Address>& addresses, const Url& url, const Ground& ground,
+                      Time deadline);
 
 }  // namespace rr::channel

@@ -8,6 +8,8 @@
 #include "rr/error.hpp"
 #include "rr/tap.hpp"
 #include "rr/url.hpp"
+#include "runtime/cpp/src/channel/tls.hpp"
+#include "runtime/cpp/src/channel/web_socket.hpp"
 
 namespace rr::endpoint {
 namespace {
@@ -21,7 +23,10 @@ std::shared_ptr<const NodeOptions> completed(NodeOptions options) {
                 "`" + options.name + "` is no name for a node: a letter, then letters, digits, " +
                     "`_`, `.` and `-`, 1024 at most");
   }
-  if (options.id.is_any()) options.id = NodeId::random();
+  if (options.id.is_any()) {
+    options.id = options.tls.certificate_file.empty() ? NodeId::random()
+                                                      : channel::certified_id(options.tls);
+  }
   for (channel::Milliseconds* const time :
        {&options.request_timeout, &options.connect_timeout, &options.first_message_timeout,
         &options.heartbeat_period, &options.receive_timeout, &options.keep_alive_period,
@@ -87,8 +92,9 @@ Core::Core(NodeOptions options)
   const auto period = std::clamp<channel::Milliseconds>(limit / 4, channel::Milliseconds(10),
                                                         channel::Milliseconds(longest_round));
   rounds_ = std::make_shared<Rounds>(reactor_, period);
-  const std::shared_ptr<channel::Channel> tcp = channel::make_tcp_channel(ground());
-  channels_ = {{"rr+tcp", tcp}, {"tcp", tcp}};
+  tls_ = std::make_shared<const channel::Tls>(options_->tls, options_->id);
+  web_sockets_ = std::make_shared<channel::WebSockets>(options_->web_socket.origins);
+  channels_ = channel::all_channels(ground());
 }
 
 Core::~Core() { stop(); }

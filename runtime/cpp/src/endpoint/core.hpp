@@ -35,7 +35,9 @@ class Core : public std::enable_shared_from_this<Core> {
 
   [[nodiscard]] const NodeOptions& options() const { return *options_; }
   [[nodiscard]] channel::Reactor& reactor() const { return *reactor_; }
-  [[nodiscard]] channel::Ground ground() const { return {reactor_, options_, accepted_}; }
+  [[nodiscard]] channel::Ground ground() const {
+    return {reactor_, options_, accepted_, tls_, web_sockets_};
+  }
   /// Starts the threads unless they run.
   void start() { reactor_->start(); }
   /// Waits for all threads to end. No connection may be left.
@@ -70,6 +72,8 @@ class Core : public std::enable_shared_from_this<Core> {
   std::shared_ptr<const NodeOptions> options_;
   std::shared_ptr<channel::Reactor> reactor_;
   std::shared_ptr<channel::AcceptedCount> accepted_;
+  std::shared_ptr<const channel::Tls> tls_;
+  std::shared_ptr<channel::WebSockets> web_sockets_;
   mutable std::mutex mutex_;
   std::shared_ptr<const TypeRegistry> types_;
   std::unordered_set<std::uint32_t> endpoints_;

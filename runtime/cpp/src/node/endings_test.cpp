@@ -160,7 +160,7 @@ TEST(Shutdown, AHandlerMayDestroyItsNode) {
 
 TEST(Shutdown, WorkAsideMayDestroyItsNode) {
   Pair pair;
-  auto client = std::make_unique<Node>();
+  auto client = std::make_unique<Node>(with_channel({}));
   auto other = client->async_connect<CounterStub>(pair.url());
   auto counter = client->connect<CounterStub>(pair.url());
   std::promise<void> destroyed;

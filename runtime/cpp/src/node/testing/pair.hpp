@@ -10,23 +10,26 @@
 
 #include "rr/node.hpp"
 #include "runtime/cpp/src/node/testing/counter.hpp"
+#include "runtime/cpp/src/node/testing/test_channel.hpp"
 
 namespace rr::testing {
 
-/// A node that offers a counter, and another that can connect to it, on the loopback interface.
+/// A node that offers a counter, and another that can connect to it by the channel of the test run
+/// (test_channel.hpp); by TCP on the loopback interface.
 struct Pair {
   explicit Pair(NodeOptions server_options = {}, NodeOptions client_options = {},
                 std::shared_ptr<Counter> offered = std::make_shared<Counter>(),
                 ServiceOptions service_options = {})
       : object(std::move(offered)),
-        server(std::move(server_options)),
-        client(std::move(client_options)) {
+        server(with_channel(std::move(server_options))),
+        client(with_channel(std::move(client_options))) {
     service = server.register_service("counter", object, std::move(service_options));
-    port = server.listen_tcp(0, "127.0.0.1");
+    place = listen_by_channel(server, port);
+    if (port == 0) port = server.listen_tcp(0, "127.0.0.1");  // for peers that are no nodes
   }
 
   [[nodiscard]] std::string url(const std::string& name = "counter") const {
-    return "rr+tcp://127.0.0.1:" + std::to_string(port) + "/?service=" + name;
+    return place + "service=" + name;
   }
   Client<CounterStub> connect(ConnectOptions options = {}) {
     return client.connect<CounterStub>(url(), std::move(options));
@@ -36,7 +39,8 @@ struct Pair {
   Node server;
   Node client;
   Service service;
-  std::uint16_t port = 0;
+  std::uint16_t port = 0;  ///< of TCP, which the server listens at whatever the channel
+  std::string place;
 };
 
 /// Waits until something holds, for some seconds at most; whether it does.

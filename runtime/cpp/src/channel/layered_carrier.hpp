@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "runtime/cpp/src/channel/carrier.hpp"
+#include "runtime/cpp/src/channel/layer.hpp"
+
+namespace rr::channel {
+
+/// A socket with protocols around what it carries, the innermost first.
+class LayeredCarrier final : public Carrier {
+ public:
+  explicit LayeredCarrier(int socket) : socket_(socket) {}
+
+  /// Puts one more around; `received` are bytes for it that came already. Not before the one below
+  /// is open.
+  void add(std::unique_ptr<Layer> layer, std::span<const std::byte> received = {});
+  /// Likewise as a client, who speaks first.
+  void begin(std::unique_ptr<Layer> layer);
+  /// The outermost one; null when there is none.
+  [[nodiscard]] const Layer* outermost() const;
+  [[nodiscard]] std::size_t count() const;
+  [[nodiscard]] bool is_open() const;
+  [[nodiscard]] bool is_encrypted() const;
+  /// The node that the other side has proved to be; zero when it has not.
+  [[nodiscard]] NodeId certified_node() const;
+
+  [[nodiscard]] bool carries_messages() const override { return false; }
+  std::ptrdiff_t receive(std::span<std::byte> room, bool may_block) override;
+  std::ptrdiff_t receive(Frame& message, bool may_block) override;
+  [[nodiscard]] bool has_received() const override { return plain_at_ != plain_.size(); }
+  std::ptrdiff_t send(std::span<const iovec> pieces) override;
+  [[nodiscard]] std::size_t unsent() const override {
+    return unsent_size_.load(std::memory_order_relaxed);
+  }
+  bool flush() override;
+  void wait_for_room(Time deadline) override;
+  void set_on_room(std::function<void()> /*on_room*/) override {}
+  void end() override {}
+  [[nodiscard]] std::string failure() const override;
+
+ private:
+  void pass(std::span<const std::byte> wire, std::size_t layer);
+  void say(std::size_t layers, Bytes bytes);
+  bool flush_under_lock();
+  void fail(std::string why);
+
+  const int socket_;
+  mutable std::mutex mutex_;  // guards what follows but plain_
+  std::vector<std::unique_ptr<Layer>> layers_;
+  Bytes unsent_;
+  std::size_t unsent_at_ = 0;
+  std::atomic<std::size_t> unsent_size_{0};
+  std::string failure_;
+  bool has_failed_ = false;
+
+  Bytes plain_;  // with the read turn
+  std::size_t plain_at_ = 0;
+};
+
+}  // namespace rr::channel

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/channel/opening.hpp"
+
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "rr/error.hpp"
+#include "rr/reader.hpp"
+#include "runtime/cpp/src/channel/tls.hpp"
+#include "runtime/cpp/src/channel/web_socket.hpp"
+
+namespace rr::channel {
+namespace {
+
+constexpr std::size_t smallest_header = 10;
+
+[[noreturn]] void fail(std::string message) {
+  throw Error(ErrorCode::connection_error, std::move(message));
+}
+
+}  // namespace
+
+std::vector<OpeningStep> opening_steps(std::string_view scheme) {
+  std::vector<OpeningStep> steps;
+  if (scheme == "rr+wss" || scheme == "rrs+wss") steps.push_back(OpeningStep::web_tls);
+  if (scheme.ends_with("+ws") || scheme.ends_with("+wss")) steps.push_back(OpeningStep::web_socket);
+  if (scheme.starts_with("rrs+")) steps.push_back(OpeningStep::start_tls);
+  steps.push_back(OpeningStep::agree);
+  return steps;
+}
+
+Opening::Opening(const Address& address, const Url& url, const Ground& ground)
+    : url_(url),
+      ground_(ground),
+      options_(*ground.options),
+      steps_(opening_steps(url.scheme)),
+      socket_(::socket(address.family(), SOCK_STREAM | SOCK_CLOEXEC, 0)),
+      place_(address.text()) {
+  if (!socket_) fail(std::strerror(errno));
+  // The socket blocks, which connecting must not.
+  const timeval no_time{0, 1};
+  setsockopt(socket_.get(), SOL_SOCKET, SO_SNDTIMEO, &no_time, sizeof no_time);
+  if (connect(socket_.get(), reinterpret_cast<const sockaddr*>(&address.storage), address.size) ==
+      0) {
+    connected();
+  } else if (errno != EINPROGRESS && errno != EAGAIN && errno != EINTR) {
+    fail("cannot connect to " + place_ + ": " + std::strerror(errno));
+  }
+}
+
+pollfd Opening::wanted() const {
+  const bool has_unsent = carrier_ != nullptr && carrier_->unsent() != 0;
+  const int events = is_connected_ ? POLLIN | (has_unsent ? POLLOUT : 0) : POLLOUT;
+  return {socket_.get(), static_cast<short>(events), 0};
+}
+
+std::optional<Agreed> Opening::go_on() {
+  if (!is_connected_) {
+    int error = 0;
+    socklen_t size = sizeof error;
+    getsockopt(socket_.get(), SOL_SOCKET, SO_ERROR, &error, &size);
+    if (error != 0) fail("cannot connect to " + place_ + ": " + std::strerror(error));
+    connected();
+    return std::nullopt;
+  }
+  const OpeningStep step = steps_[step_];
+  if (step == OpeningStep::web_tls || step == OpeningStep::web_socket) {
+    if (go_on_with_layer()) ++step_, next_step();
+    return std::nullopt;
+  }
+  if (step == OpeningStep::start_tls && !request_.empty()) {
+    if (!receive_answer()) return std::nullopt;
+    said_node_ = check_start_tls(answer_, url_, options_, place_);
+    request_.clear();
+    begin_layer(ground_.tls->make_client(said_node_));
+    return std::nullopt;
+  }
+  if (step == OpeningStep::start_tls) {
+    if (go_on_with_layer()) ++step_, next_step();
+    return std::nullopt;
+  }
+  if (!receive_answer()) return std::nullopt;
+  return finish();
+}
+
+void Opening::connected() {
+  is_connected_ = true;
+  const timeval for_ever{};
+  setsockopt(socket_.get(), SOL_SOCKET, SO_SNDTIMEO, &for_ever, sizeof for_ever);
+  set_stream_options(socket_.get());
+  next_step();
+}
+
+LayeredCarrier& Opening::carrier() {
+  if (!carrier_) carrier_ = std::make_unique<LayeredCarrier>(socket_.get());
+  return *carrier_;
+}
+
+void Opening::begin_layer(std::unique_ptr<Layer> layer) { carrier().begin(std::move(layer)); }
+
+void Opening::next_step() {
+  answer_.clear();
+  answer_size_ = 0;
+  switch (steps_[step_]) {
+    case OpeningStep::web_tls:
+      begin_layer(ground_.tls->make_web_client(url_.host));
+      break;
+    case OpeningStep::web_socket:
+      begin_layer(ground_.web_sockets->make_client(url_));
+      break;
+    case OpeningStep::start_tls:
+      request_ = start_tls_request(url_, ground_.tls->has_certificate());
+      send(request_);
+      break;
+    case OpeningStep::agree:
+      request_ = create_connection_request(url_, options_);
+      send(request_);
+      break;
+  }
+}
+
+// A new socket has room for one small message.
+void Opening::send(std::span<const std::byte> message) {
+  std::ptrdiff_t sent = 0;
+  if (carrier_) {
+    const iovec piece{const_cast<std::byte*>(message.data()), message.size()};
+    sent = carrier_->send({&piece, 1});
+  } else {
+    sent = ::send(socket_.get(), message.data(), message.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  }
+  if (sent != static_cast<std::ptrdiff_t>(message.size())) {
+    fail("the connection to " + place_ + " broke");
+  }
+}
+
+std::ptrdiff_t Opening::receive(std::span<std::byte> room) {
+  const std::ptrdiff_t size = carrier_
+                                  ? carrier_->receive(room, false)
+                                  : recv(socket_.get(), room.data(), room.size(), MSG_DONTWAIT);
+  const int error = errno;
+  if (carrier_) carrier_->flush();
+  if (size > 0) return size;
+  if (size < 0 && (error == EAGAIN || error == EWOULDBLOCK || error == EINTR)) return 0;
+  fail_reading(size);
+}
+
+void Opening::fail_reading(std::ptrdiff_t size) const {
+  const std::string failure = carrier_ ? carrier_->failure() : std::string();
+  if (!failure.empty()) fail(place_ + ": " + failure);
+  fail(size == 0 ? place_ + " closed the connection" : "the connection to " + place_ + " broke");
+}
+
+// True when the layer that has begun is open.
+bool Opening::go_on_with_layer() {
+  std::array<std::byte, 1> none{};
+  if (!carrier_->is_open() && receive(none) != 0) {
+    throw Error(ErrorCode::protocol_error, place_ + " speaks before it was asked");
+  }
+  return carrier_->is_open();
+}
+
+// No more than the answer, so that nothing behind it gets lost. True when it is whole.
+bool Opening::receive_answer() {
+  while (true) {
+    const std::size_t have = answer_.size();
+    const std::size_t wanted = answer_size_ == 0 ? smallest_header : answer_size_;
+    answer_.resize(wanted);
+    const std::ptrdiff_t size = receive(std::span(answer_).subspan(have));
+    answer_.resize(have + static_cast<std::size_t>(size));
+    if (answer_.size() != wanted) return false;
+    if (answer_size_ != 0) return true;
+    Limits limits = options_.limits;
+    limits.message_size = static_cast<std::uint32_t>(longest_answer);
+    answer_size_ = message_size(answer_, limits);
+    if (answer_size_ == 0) {
+      throw Error(ErrorCode::protocol_error, place_ + " speaks another protocol");
+    }
+  }
+}
+
+std::optional<Agreed> Opening::finish() {
+  Agreed agreed;
+  if (carrier_) agreed.certified_node = carrier_->certified_node();
+  check_create_connection(answer_, url_, options_, place_, agreed);
+  agreed.socket = std::move(socket_);
+  agreed.carrier = std::move(carrier_);
+  agreed.request = std::move(request_);
+  return agreed;
+}
+
+}  // namespace rr::channel

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+// The protocol is Boost.Beast's; it is given memory to read from and write to instead of a socket.
+#include "runtime/cpp/src/channel/web_socket.hpp"
+
+#include <array>
+#include <boost/asio/bind_executor.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/rfc7230.hpp>
+#include <boost/beast/websocket/stream.hpp>
+#include <optional>
+#include <utility>
+
+#include "rr/error.hpp"
+#include "runtime/cpp/src/channel/memory_stream.hpp"
+
+namespace rr::channel {
+
+// Timers of the library, which are never started, are registered here.
+struct WebSockets::Home {
+  boost::asio::io_context context;
+};
+
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+namespace websocket = boost::beast::websocket;
+
+constexpr const char* protocol_name = "robotraconteur.robotraconteur.com";
+// 04, section 2.2.
+constexpr std::uint32_t longest_header = 8192;
+constexpr std::size_t read_size = 16 * 1024;
+
+using Stream = websocket::stream<MemoryStream, false>;
+using Request = http::request<http::empty_body>;
+
+std::span<const std::byte> bytes_of(std::string_view text) {
+  return std::as_bytes(std::span(text.data(), text.size()));
+}
+
+// What both sides have in common: frames.
+class WebSocketLayer : public Layer {
+ public:
+  explicit WebSocketLayer(std::shared_ptr<WebSockets> owner, WebSockets::Home& home)
+      : owner_(std::move(owner)),
+        executor_(home.context, ends_),
+        stream_(std::in_place, home.context, ends_) {
+    stream_->binary(true);
+    stream_->auto_fragment(false);
+    stream_->read_message_max(
+        0);  // a message of ours may be of any number of frames, or one of many
+  }
+  ~WebSocketLayer() override {
+    stream_.reset();
+    ends_.reading.reset();
+    ends_.work.clear();
+  }
+
+  void send(std::span<const std::byte> plain, Bytes& wire) override {
+    stream_->async_write(asio::buffer(plain.data(), plain.size()),
+                         bound([](beast::error_code, std::size_t) {}));
+    ends_.run();
+    take_out(wire);
+  }
+  [[nodiscard]] bool is_open() const override { return is_open_; }
+  [[nodiscard]] bool has_ended() const override { return has_ended_; }
+
+ protected:
+  void take_frames(std::span<const std::byte> wire, Bytes& plain, Bytes& reply) {
+    append(ends_.in, wire);
+    plain_ = &plain;
+    ends_.run();
+    plain_ = nullptr;
+    take_out(reply);
+    if (!failure_.empty()) throw Error(ErrorCode::connection_error, failure_);
+  }
+  void open() {
+    is_open_ = true;
+    read_on();
+  }
+  void fail(std::string why) {
+    if (failure_.empty()) failure_ = std::move(why);
+  }
+  void take_out(Bytes& to) {
+    append(to, ends_.out);
+    ends_.out.clear();
+  }
+
+  // To be called when what it ends has happened, in MemoryEnds::run().
+  template <class Handler>
+  asio::executor_binder<Handler, MemoryExecutor> bound(Handler handler) {
+    return asio::bind_executor(executor_, std::move(handler));
+  }
+  [[nodiscard]] Stream& stream() { return *stream_; }
+  [[nodiscard]] MemoryEnds& ends() { return ends_; }
+
+ private:
+  void read_on() {
+    const auto handle = [this](beast::error_code error, std::size_t size) {
+      if (error) {
+        has_ended_ = true;
+        if (error != websocket::error::closed) {
+          fail("the other side breaks the web socket protocol: " + error.message());
+        }
+        return;
+      }
+      if (size != 0 && stream_->got_text()) {
+        fail("the other side sends text where messages are bytes");
+        return;
+      }
+      append(*plain_, std::span(buffer_).first(size));
+      read_on();
+    };
+    stream_->async_read_some(asio::buffer(buffer_), bound(handle));
+  }
+
+  const std::shared_ptr<WebSockets> owner_;  // of what the stream lives in
+  MemoryEnds ends_;
+  const MemoryExecutor executor_;
+  std::optional<Stream> stream_;
+  std::array<std::byte, read_size> buffer_;
+  Bytes* plain_ = nullptr;
+  std::string failure_;
+  bool is_open_ = false;
+  bool has_ended_ = false;
+};
+
+class WebSocketClient final : public WebSocketLayer {
+ public:
+  WebSocketClient(std::shared_ptr<WebSockets> owner, WebSockets::Home& home, const Url& url)
+      : WebSocketLayer(std::move(owner), home),
+        host_((url.host.find(':') == std::string::npos ? url.host : "[" + url.host + "]") + ":" +
+              std::to_string(url.port)),
+        target_((url.path.empty() ? "/" : url.path) + (url.query.empty() ? "" : "?" + url.query)) {
+    stream().set_option(websocket::stream_base::decorator([](websocket::request_type& request) {
+      request.set(http::field::sec_websocket_protocol, protocol_name);
+      request.set(http::field::user_agent, "robdef");
+    }));
+  }
+
+  void begin(Bytes& wire) override {
+    const auto handle = [this](beast::error_code error) {
+      if (error == websocket::error::upgrade_declined) {
+        fail("the other side refuses web sockets: HTTP " + std::to_string(answer_.result_int()));
+      } else if (error) {
+        fail("the other side does not speak web sockets: " + error.message());
+      } else if (answer_.count(http::field::sec_websocket_protocol) != 0 &&
+                 !beast::iequals(answer_[http::field::sec_websocket_protocol], protocol_name)) {
+        fail("the other side speaks another protocol over web sockets");
+      } else {
+        open();
+      }
+    };
+    stream().async_handshake(answer_, host_, target_, bound(handle));
+    ends().run();
+    take_out(wire);
+  }
+  void receive(std::span<const std::byte> wire, Bytes& plain, Bytes& reply) override {
+    take_frames(wire, plain, reply);
+  }
+
+ private:
+  const std::string host_;
+  const std::string target_;
+  websocket::response_type answer_;
+};
+
+class WebSocketServer final : public WebSocketLayer {
+ public:
+  WebSocketServer(std::shared_ptr<WebSockets> owner, WebSockets::Home& home,
+                  const std::vector<std::string>& origins)
+      : WebSocketLayer(std::move(owner), home), origins_(origins) {
+    parser_.header_limit(longest_header);
+  }
+
+  void begin(Bytes& /*wire*/) override {}
+  void receive(std::span<const std::byte> wire, Bytes& plain, Bytes& reply) override {
+    if (is_open()) {
+      take_frames(wire, plain, reply);
+      return;
+    }
+    append(head_, wire);
+    beast::error_code error;
+    const std::size_t used = parser_.put(asio::const_buffer(head_.data(), head_.size()), error);
+    head_.erase(head_.begin(), head_.begin() + static_cast<std::ptrdiff_t>(used));
+    if (error == http::error::need_more) {
+      if (head_.size() > longest_header) refuse(http::status::bad_request, reply);
+      return;
+    }
+    if (error) refuse(http::status::bad_request, reply);
+    if (!parser_.is_header_done()) return;
+    const http::status status = judge(parser_.get());
+    if (status != http::status::switching_protocols) refuse(status, reply);
+    accept(reply);
+    const Bytes rest = std::exchange(head_, {});
+    take_frames(rest, plain, reply);
+  }
+
+ private:
+  // In the order of 04, section 2.2.
+  [[nodiscard]] http::status judge(const Request& request) const {
+    if (request.method() != http::verb::get) return http::status::not_found;
+    if (request.version() != 11) return http::status::bad_request;
+    const std::string_view target(request.target().data(), request.target().size());
+    const std::string_view path = target.substr(0, target.find('?'));
+    const bool has_one_query = target.find('?') == target.rfind('?');
+    if ((path != "/" && path != "*") || !has_one_query) return http::status::not_found;
+    if (!http::token_list(request[http::field::upgrade]).exists("websocket") ||
+        request.count(http::field::sec_websocket_key) == 0 ||
+        !http::token_list(request[http::field::sec_websocket_version]).exists("13")) {
+      return http::status::upgrade_required;
+    }
+    if (request.count(http::field::sec_websocket_protocol) != 0 &&
+        !http::token_list(request[http::field::sec_websocket_protocol]).exists(protocol_name)) {
+      return http::status::upgrade_required;
+    }
+    const auto origin = request[http::field::origin];
+    if (request.count(http::field::origin) != 0 &&
+        !is_allowed_origin({origin.data(), origin.size()}, origins_)) {
+      return http::status::forbidden;
+    }
+    return http::status::switching_protocols;
+  }
+
+  [[noreturn]] void refuse(http::status status, Bytes& reply) {
+    const auto reason = http::obsolete_reason(status);
+    append(reply, bytes_of("HTTP/1.1 " + std::to_string(static_cast<unsigned>(status)) + " " +
+                           std::string(reason) +
+                           "\r\nUpgrade: websocket\r\nSec-WebSocket-Protocol: " + protocol_name +
+                           "\r\nSec-WebSocket-Version: 13\r\nConnection: close\r\n"
+                           "Content-Length: 0\r\n\r\n"));
+    throw Error(ErrorCode::connection_error,
+                "a web socket was refused: HTTP " + std::to_string(static_cast<unsigned>(status)));
+  }
+
+  // The library accepts; its answer is put into the words that clients of this protocol know.
+  void accept(Bytes& reply) {
+    bool is_accepted = false;
+    stream().async_accept(parser_.get(),
+                          bound([&](beast::error_code error) { is_accepted = !error; }));
+    ends().run();
+    Bytes answer;
+    take_out(answer);
+    if (!is_accepted) refuse(http::status::bad_request, reply);
+    http::response_parser<http::empty_body> parsed;
+    beast::error_code error;
+    parsed.put(asio::const_buffer(answer.data(), answer.size()), error);
+    append(reply, bytes_of("HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\n"
+                           "Connection: Upgrade\r\nSec-WebSocket-Accept: " +
+                           std::string(parsed.get()[http::field::sec_websocket_accept]) +
+                           "\r\nSec-WebSocket-Protocol: " + protocol_name +
+                           "\r\nSec-WebSocket-Version: 13\r\n\r\n"));
+    open();
+  }
+
+  const std::vector<std::string>& origins_;
+  http::request_parser<http::empty_body> parser_;
+  Bytes head_;  // of the request, that the parser has not used
+};
+
+}  // namespace
+
+WebSockets::WebSockets(std::vector<std::string> origins)
+    : origins_(std::move(origins)), home_(std::make_unique<Home>()) {}
+WebSockets::~WebSockets() = default;
+
+std::unique_ptr<Layer> WebSockets::make_client(const Url& url) {
+  return std::make_unique<WebSocketClient>(shared_from_this(), *home_, url);
+}
+
+std::unique_ptr<Layer> WebSockets::make_server() {
+  return std::make_unique<WebSocketServer>(shared_from_this(), *home_, origins_);
+}
+
+}  // namespace rr::channel

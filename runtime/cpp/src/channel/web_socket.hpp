@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rr/url.hpp"
+#include "runtime/cpp/src/channel/layer.hpp"
+
+namespace rr::channel {
+
+/// Web sockets around streams (04, sections 2.2 and 2.3), those of one node. Any thread may use it.
+class WebSockets : public std::enable_shared_from_this<WebSockets> {
+ public:
+  /// Pages of these origins may connect, and what says no origin.
+  explicit WebSockets(std::vector<std::string> origins);
+  ~WebSockets();
+  WebSockets(const WebSockets&) = delete;
+  WebSockets& operator=(const WebSockets&) = delete;
+
+  /// As the client of a URL.
+  [[nodiscard]] std::unique_ptr<Layer> make_client(const Url& url);
+  [[nodiscard]] std::unique_ptr<Layer> make_server();
+
+  struct Home;  // what the protocol's library wants to live in
+
+ private:
+  const std::vector<std::string> origins_;
+  const std::unique_ptr<Home> home_;
+};
+
+/// Whether a page of an origin may connect: compared without regard to case and with the scheme's
+/// default port filled in; `*.` stands for any host below, and what ends in `://` for all of that
+/// scheme (04, section 2.2).
+bool is_allowed_origin(std::string_view origin, const std::vector<std::string>& allowed);
+
+}  // namespace rr::channel
