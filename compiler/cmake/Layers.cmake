@@ -35,6 +35,8 @@ set(robdef_layers
   "runtime/cpp/bench: runtime/cpp/include/rr runtime/cpp/src"
   "runtime/cpp/stress: runtime/cpp/include/rr runtime/cpp/src/node/testing"
 
+  "runtime/arduino:"
+
   "conformance: runtime/cpp/include/rr runtime/cpp/src/replay"
   "benchmarks: runtime/cpp/include/rr compiler"
   "examples: runtime/cpp/include/rr")
@@ -127,6 +129,7 @@ function(robdef_check_layers root result)
   file(GLOB_RECURSE sources RELATIVE "${root}"
     "${root}/compiler/*.cpp" "${root}/compiler/*.hpp"
     "${root}/runtime/cpp/*.cpp" "${root}/runtime/cpp/*.hpp"
+    "${root}/runtime/arduino/*.cpp" "${root}/runtime/arduino/*.hpp"
     "${root}/conformance/*.cpp" "${root}/conformance/*.hpp"
     "${root}/benchmarks/*.cpp" "${root}/benchmarks/*.hpp"
     "${root}/examples/*.cpp" "${root}/examples/*.hpp")

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Arduino.h>
+#include <stdint.h>
+
+#include "protocol.h"
+#include "status.h"
+#include "values.h"
+
+namespace rr {
+
+/// What a host asks of a member.
+struct Request {
+  serial::Kind kind;
+  uint8_t object;  ///< number of the object, 0 for the root
+  uint8_t member;  ///< place in the object's definition, from 0
+  Reader values;
+};
+
+/// A text in flash.
+struct FlashText {
+  const char* bytes;  ///< in PROGMEM
+  uint16_t count;
+};
+
+/// What a board serves; all of it constant. Made by the generator.
+struct Served {
+  const FlashText* texts;  ///< in RAM: first what is served, then the definitions
+  uint8_t textCount;
+  const uint8_t* hash;  ///< in PROGMEM: 8 bytes
+  /// Calls a member of the sketch. `service` is what the link was made with.
+  Status (*handle)(void* service, Request& request, Writer& reply);
+  /// Writes the value of a wire. False where there is none to send.
+  bool (*writeWire)(void* service, uint8_t slot, Writer& body);
+};
+
+/// The memory of a link. The generator makes it, large enough for all members of the definition.
+struct Memory {
+  uint8_t* request;  ///< a whole frame from the host
+  uint8_t* reply;    ///< a whole frame to the host
+  uint8_t* out;      ///< a whole frame that the host did not ask for
+  uint8_t* queue;    ///< events, packets and callbacks that wait
+  uint8_t* open;     ///< a bit for each wire and pipe: whether the host wants it
+  uint8_t* changed;  ///< likewise: whether there is a new value
+  uint8_t requestSize;
+  uint8_t replySize;
+  uint8_t outSize;
+  uint8_t slots;  ///< wires and pipes
+  uint16_t queueSize;
+};
+
+/// The board's end of the serial protocol (docs/serial-protocol.md). Nothing here waits: what
+/// cannot be sent now is sent by a later poll().
+class Link {
+ public:
+  Link(const Served& served, const Memory& memory, void* service);
+
+  /// Begins to serve. `stream` has been started, and lives as long as the link.
+  void begin(Stream& stream);
+  /// Takes what has come, calls members, and sends what is to be sent. Call it from loop(), often:
+  /// the serial port keeps 63 bytes only.
+  void poll();
+  /// Whether a host has begun a session.
+  bool isConnected() const { return session_ != 0; }
+
+  /// Whether the host wants a wire or pipe.
+  bool isOpen(uint8_t slot) const;
+  /// Opens or closes one, as the host asked.
+  Status setOpen(uint8_t slot, bool isOpen);
+  /// That a wire has a new value, which is asked for when it can be sent.
+  void markChanged(uint8_t slot);
+
+  /// Begins an event, packet or callback, which is sent again until the host has it. Values are to
+  /// be written then, and after them finish() to be called. False when there is no session.
+  bool start(serial::Kind kind, uint8_t object, uint8_t member);
+  Writer& values() { return pending_; }
+  /// False when the values do not fit into what is left of the queue: nothing is sent.
+  bool finish();
+
+ private:
+  enum class Phase : uint8_t { Idle, Lead, Code, Data, Trail };
+
+  void receive(uint8_t byte);
+  void append(uint8_t byte);
+  void forgetReceived();
+  void handleFrame();
+  void beginSession(Reader body);
+  void handleRequest(serial::Kind kind);
+  Status writeText(Reader body, Writer& reply);
+  void answer(serial::Kind kind, uint8_t length);
+  void finishFrame(uint8_t* frame, serial::Kind kind, uint8_t sequence, uint8_t length);
+  void startSending(const uint8_t* frame);
+  void chooseNext();
+  void sendQueued();
+  void sendWire();
+  void removeQueued();
+  void send();
+  uint8_t nextByte();
+  void afterBlock();
+
+  const Served& served_;
+  const Memory& memory_;
+  void* const service_;
+  Stream* stream_;
+  Writer pending_;
+  serial::Kind pendingKind_;
+
+  uint16_t session_;
+  uint8_t sequence_;  ///< of the last request
+
+  // Receiving.
+  uint8_t received_;  ///< bytes of the frame
+  uint8_t block_;     ///< bytes to come before the next zero
+  bool isBroken_;     ///< the frame is too long
+  bool isStarted_;    ///< something has come since the last zero
+
+  // Sending.
+  Phase phase_;
+  bool isPaced_;  ///< the stream says how much it takes
+  bool hasReply_;
+  bool isAnswering_;  ///< what is being sent is the reply
+  bool isQueuedSent_;
+  uint8_t outSequence_;
+  uint8_t run_;
+  uint8_t sendLeft_;
+  const uint8_t* sendAt_;
+
+  uint16_t queueCount_;  ///< bytes
+  uint16_t queuedAt_;    ///< when the first of the queue was last sent, in milliseconds
+  uint16_t patience_;    ///< until it is sent again
+  uint8_t nextSlot_;
+};
+
+}  // namespace rr
