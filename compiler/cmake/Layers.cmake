@@ -10,6 +10,8 @@ set(robdef_layers
   "compiler/model: compiler/diagnostics compiler/syntax compiler/output/json.hpp"
   "compiler/output: compiler/diagnostics"
   "compiler/backends: compiler/diagnostics compiler/model compiler/output"
+  # A sketch is C++ too: words and literals are the same.
+  "compiler/backends/arduino: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/words.hpp compiler/backends/cpp/constants.hpp compiler/backends/cpp/literal_text.hpp compiler/backends/cpp/names.hpp"
   "compiler/backends/cpp: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/words.hpp"
   # Uses generated code, which stands on the runtime.
   "compiler/backends/cpp/generated_test.cpp: compiler/model runtime/cpp/include/rr"
@@ -35,7 +37,9 @@ set(robdef_layers
   "runtime/cpp/bench: runtime/cpp/include/rr runtime/cpp/src"
   "runtime/cpp/stress: runtime/cpp/include/rr runtime/cpp/src/node/testing"
 
-  "runtime/arduino:"
+  # Both ends of the protocol read its numbers from one file.
+  "runtime/cpp/src/serial: runtime/cpp/include/rr runtime/cpp/src/dynamic runtime/arduino/src/rr/protocol.h"
+  "runtime/arduino: runtime/cpp/src/serial"
 
   "conformance: runtime/cpp/include/rr runtime/cpp/src/replay"
   "benchmarks: runtime/cpp/include/rr compiler"

@@ -130,6 +130,9 @@ ExitStatus deliver(const Product& product, const Options& options, const Sources
       err << "robdef: " << failure << '\n';
       return exit_errors;
     }
+    if (options.format == Format::text) {
+      for (const std::string& note : product.files.notes()) err << note << '\n';
+    }
   }
   return exit_fine;
 }

@@ -50,6 +50,24 @@ struct Memory {
   uint16_t queueSize;
 };
 
+/// Reads what the request has, which must be all of it.
+inline bool readValues(Reader&) { return true; }
+template <class First, class... Rest>
+bool readValues(Reader& reader, First& first, Rest&... rest) {
+  return read(reader, first) && readValues(reader, rest...);
+}
+template <class... Values>
+bool readAll(Request& request, Values&... values) {
+  return readValues(request.values, values...) && request.values.isComplete();
+}
+
+/// Answers with a value if all went well.
+template <class Value>
+Status answer(Writer& reply, Status status, const Value& value) {
+  if (status == Status::Ok) write(reply, value);
+  return status;
+}
+
 /// The board's end of the serial protocol (docs/serial-protocol.md). Nothing here waits: what
 /// cannot be sent now is sent by a later poll().
 class Link {
