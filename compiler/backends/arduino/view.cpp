@@ -77,20 +77,19 @@ void add_sizes(const Sizes& sizes, const ServiceTexts& texts, ServiceView& view)
   const std::uint64_t queue =
       std::min<std::uint64_t>(std::max(2 * sizes.queue_most, sizes.queue_sum),
                               std::max<std::uint64_t>(300, sizes.queue_most));
-  const std::uint64_t slot_bytes = (sizes.slots + 7) / 8;
   const auto text_of = [](std::uint64_t number) { return std::to_string(number); };
   view.request_size = text_of(sizes.request + overhead);
   view.reply_size = text_of(sizes.reply + overhead);
   view.out_size = text_of(sizes.out + overhead);
   view.queue_size = text_of(std::max<std::uint64_t>(queue, 1));
   view.slots = text_of(sizes.slots);
-  view.slot_bytes = text_of(std::max<std::uint64_t>(slot_bytes, 1));
+  view.slot_bytes = text_of(std::max<std::uint64_t>(sizes.slots, 1));
 
   std::uint64_t members = 0;
   for (const GroupView& group : view.groups) members += group.members.size();
   // Measured on an ATmega328P with avr-gcc 5.4; the core is that of a sketch with a serial port.
   const std::uint64_t ram = sizes.request + sizes.reply + sizes.out + 3 * overhead + queue +
-                            2 * slot_bytes + 4 * view.texts.size() + 78;
+                            sizes.slots + 4 * view.texts.size() + 78;
   const std::uint64_t flash = 2600 + (sizes.has_double ? 900 : 0) + 90 * members + texts.bytes;
   view.estimate = view.path + ": about " + text_of(flash) + " bytes of flash and " + text_of(ram) +
                   " of RAM, besides the core (about 1600 and 185) and the sketch's own";

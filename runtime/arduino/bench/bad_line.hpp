@@ -24,7 +24,7 @@ class BadLine {
     for (const std::uint8_t byte : bytes) {
       if (happens(rates_.half)) break;
       if (happens(rates_.burst)) {
-        for (unsigned count = random_() % 20; count > 0; --count) result.push_back(any());
+        for (auto count = random_() % 20; count > 0; --count) result.push_back(any());
       }
       if (happens(rates_.drop)) continue;
       if (happens(rates_.damage)) {

@@ -98,7 +98,7 @@ std::vector<uint8_t> bytes_of(std::initializer_list<int> numbers) {
 WiredBoard::WiredBoard()
     : texts_{{first_text, sizeof first_text - 1}, {second_text, sizeof second_text - 1}},
       served_{texts_, 2, hash, &WiredBoard::handle, &WiredBoard::write_wire},
-      memory_{request_,        reply_,        out_,        queue_, open_,        changed_,
+      memory_{request_,        reply_,        out_,        queue_, flags_,
               sizeof request_, sizeof reply_, sizeof out_, 2,      sizeof queue_},
       link(served_, memory_, this) {
   link.begin(line);

@@ -68,8 +68,7 @@ class WiredBoard {
   std::uint8_t reply_[64]{};
   std::uint8_t out_[37]{};
   std::uint8_t queue_[40]{};
-  std::uint8_t open_[1]{};
-  std::uint8_t changed_[1]{};
+  std::uint8_t flags_[2]{};
   FlashText texts_[2];
   Served served_;
   Memory memory_;

@@ -15,33 +15,22 @@
 
 using example::light::Color;
 
-const uint8_t redPin = 9;
-const uint8_t greenPin = 10;
-const uint8_t bluePin = 11;
+/// Red, green, blue.
+const uint8_t pins[3] = {9, 10, 11};
 const uint8_t sensorPin = A0;
 /// Lux for each step of the converter.
 const double luxOfStep = 0.5;
 
 class Lamp {
  public:
-  void begin() {
-    pinMode(redPin, OUTPUT);
-    pinMode(greenPin, OUTPUT);
-    pinMode(bluePin, OUTPUT);
-    show();
-  }
-
   rr::Status getColor(Color& value) {
     value = color_;
     return rr::Status::Ok;
   }
   rr::Status setColor(const Color& value) {
-    if (!isPart(value.red) || !isPart(value.green) || !isPart(value.blue)) {
-      return rr::Status::OutOfRange;
-    }
-    isFading_ = false;
-    color_ = value;
-    show();
+    if (!isColor(value)) return rr::Status::OutOfRange;
+    aim(value);
+    rest();
     return rr::Status::Ok;
   }
   rr::Status getBrightness(double& value) {
@@ -52,33 +41,24 @@ class Lamp {
     return getBrightness(value);
   }
   rr::Status fade(const Color& target, double duration) {
-    if (!isPart(target.red) || !isPart(target.green) || !isPart(target.blue)) {
-      return rr::Status::OutOfRange;
-    }
-    if (!(duration >= 0) || duration > 3600) return rr::Status::OutOfRange;
-    from_ = color_;
-    to_ = target;
-    begun_ = millis();
-    duration_ = static_cast<uint32_t>(duration * 1000);
+    if (!isColor(target) || !(duration >= 0) || duration > 60) return rr::Status::OutOfRange;
+    aim(target);
+    begun_ = static_cast<uint16_t>(millis());
+    duration_ = static_cast<uint16_t>(duration * 1000);
     isFading_ = true;
     return rr::Status::Ok;
   }
 
-  /// True once when a fade has ended.
+  /// Goes on with a fade. True once when it has ended.
   bool advance() {
     if (!isFading_) return false;
-    const uint32_t passed = millis() - begun_;
+    const uint16_t passed = static_cast<uint16_t>(millis()) - begun_;
     if (passed < duration_) {
-      const float part = static_cast<float>(passed) / static_cast<float>(duration_);
-      color_.red = from_.red + part * (to_.red - from_.red);
-      color_.green = from_.green + part * (to_.green - from_.green);
-      color_.blue = from_.blue + part * (to_.blue - from_.blue);
-      show();
+      // In steps of 1/256: whole numbers are quick.
+      show((static_cast<uint32_t>(passed) << 8) / duration_);
       return false;
     }
-    color_ = to_;
-    isFading_ = false;
-    show();
+    rest();
     return true;
   }
   const Color& color() const {
@@ -89,35 +69,59 @@ class Lamp {
   static bool isPart(float value) {
     return value >= 0 && value <= 1;
   }
-  void show() {
-    analogWrite(redPin, static_cast<int>(color_.red * 255));
-    analogWrite(greenPin, static_cast<int>(color_.green * 255));
-    analogWrite(bluePin, static_cast<int>(color_.blue * 255));
+  static bool isColor(const Color& value) {
+    return isPart(value.red) && isPart(value.green) && isPart(value.blue);
+  }
+  static uint8_t levelOf(float part) {
+    return static_cast<uint16_t>(part * 255);
+  }
+  void aim(const Color& target) {
+    target_ = target;
+    to_[0] = levelOf(target.red);
+    to_[1] = levelOf(target.green);
+    to_[2] = levelOf(target.blue);
+  }
+  /// What is so many 256th of the way to the target.
+  void show(uint16_t part) {
+    for (uint8_t index = 0; index < 3; ++index) {
+      const uint16_t sum = to_[index] * part + from_[index] * (256 - part);
+      analogWrite(pins[index], sum >> 8);
+    }
+  }
+  void rest() {
+    show(256);
+    memcpy(from_, to_, sizeof from_);
+    color_ = target_;
+    isFading_ = false;
   }
 
+  /// The one that was reached last.
   Color color_ = {0, 0, 0};
-  Color from_ = {0, 0, 0};
-  Color to_ = {0, 0, 0};
-  uint32_t begun_ = 0;
-  uint32_t duration_ = 0;
+  Color target_ = {0, 0, 0};
+  /// Levels of the pins.
+  uint8_t from_[3] = {0, 0, 0};
+  uint8_t to_[3] = {0, 0, 0};
+  /// In milliseconds.
+  uint16_t begun_ = 0;
+  uint16_t duration_ = 0;
   bool isFading_ = false;
 };
 
 Lamp lamp;
 example::light::LightService<Lamp> service(lamp);
-uint32_t lastSample = 0;
+uint16_t lastSample = 0;
 
 void setup() {
   Serial.begin(BAUD);
-  lamp.begin();
   service.begin(Serial);
 }
 
 void loop() {
   service.poll();
   if (lamp.advance()) service.root().fireFaded(lamp.color());
-  if (millis() - lastSample >= 100) {
-    lastSample = millis();
+  const uint16_t now = static_cast<uint16_t>(millis());
+  if (static_cast<uint16_t>(now - lastSample) >= 100) {
+    lastSample = now;
     service.root().sensorChanged();
   }
 }

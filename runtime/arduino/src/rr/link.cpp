@@ -17,48 +17,28 @@ constexpr uint8_t bodyAt = 3;
 /// At most as many bytes are taken by one poll(), so that the rest of loop() has its turn.
 constexpr uint8_t bytesOfPoll = 64;
 
-bool bitOf(const uint8_t* bits, uint8_t index) {
-  return (bits[index >> 3] & (1 << (index & 7))) != 0;
+uint16_t wordAt(const uint8_t* bytes) {
+  return static_cast<uint16_t>(bytes[0] | static_cast<uint16_t>(bytes[1]) << 8);
 }
-void setBit(uint8_t* bits, uint8_t index, bool value) {
-  const uint8_t mask = static_cast<uint8_t>(1 << (index & 7));
-  uint8_t& place = bits[index >> 3];
-  place = static_cast<uint8_t>(value ? place | mask : place & ~mask);
+void putWord(uint8_t* bytes, uint16_t word) {
+  bytes[0] = static_cast<uint8_t>(word & 0xFF);
+  bytes[1] = static_cast<uint8_t>(word >> 8);
 }
+
+constexpr uint8_t helloLength = 7;
+constexpr uint8_t textLength = 3;
 
 }  // namespace
 
 Link::Link(const Served& served, const Memory& memory, void* service)
-    : served_(served),
-      memory_(memory),
-      service_(service),
-      stream_(nullptr),
-      pending_(nullptr, 0),
-      pendingKind_(Kind::Event),
-      session_(0),
-      sequence_(0),
-      received_(0),
-      block_(0),
-      isBroken_(false),
-      isStarted_(false),
-      phase_(Phase::Idle),
-      isPaced_(false),
-      hasReply_(false),
-      isAnswering_(false),
-      isQueuedSent_(false),
-      outSequence_(0),
-      run_(0),
-      sendLeft_(0),
-      sendAt_(nullptr),
-      queueCount_(0),
-      queuedAt_(0),
-      patience_(100),
-      nextSlot_(0) {}
+    : served_(served), memory_(memory), service_(service), stream_(nullptr), pending_(nullptr, 0) {
+  memset(&state_, 0, sizeof state_);
+}
 
 void Link::begin(Stream& stream) {
   stream_ = &stream;
   // Nothing waits to be sent yet, so a stream that says 0 does not say how much it takes at all.
-  isPaced_ = stream.availableForWrite() > 0;
+  state_.isPaced = stream.availableForWrite() > 0;
   finishFrame(memory_.out, Kind::Started, 0, 0);
   startSending(memory_.out);
 }
@@ -73,86 +53,82 @@ void Link::poll() {
 void Link::receive(uint8_t byte) {
   if (byte == 0) {
     // A block that is cut off has lost bytes, or the zero is a damaged byte.
-    if (isStarted_ && block_ == 0 && !isBroken_) handleFrame();
+    if (state_.isStarted && state_.block == 0 && !state_.isBroken) handleFrame();
     forgetReceived();
-  } else if (block_ != 0) {
+  } else if (state_.block != 0) {
     append(byte);
-    --block_;
+    --state_.block;
   } else {
-    if (isStarted_) append(0);
-    isStarted_ = true;
-    block_ = static_cast<uint8_t>(byte - 1);
+    if (state_.isStarted) append(0);
+    state_.isStarted = true;
+    state_.block = static_cast<uint8_t>(byte - 1);
   }
 }
 
 void Link::append(uint8_t byte) {
-  if (received_ == memory_.requestSize) {
-    isBroken_ = true;
+  if (state_.received == memory_.requestSize) {
+    state_.isBroken = true;
   } else {
-    memory_.request[received_++] = byte;
+    memory_.request[state_.received++] = byte;
   }
 }
 
 void Link::forgetReceived() {
-  received_ = 0;
-  block_ = 0;
-  isBroken_ = false;
-  isStarted_ = false;
+  state_.received = 0;
+  state_.block = 0;
+  state_.isBroken = false;
+  state_.isStarted = false;
 }
 
 void Link::handleFrame() {
   const uint8_t* const frame = memory_.request;
-  if (received_ < serial::frameOverhead) return;
-  if (frame[lengthAt] != received_ - serial::frameOverhead) return;
+  if (state_.received < serial::frameOverhead) return;
+  if (frame[lengthAt] != state_.received - serial::frameOverhead) return;
   uint16_t crc = serial::crcStart;
-  for (uint8_t index = 0; index < received_; ++index) crc = serial::crcOf(crc, frame[index]);
+  for (uint8_t index = 0; index < state_.received; ++index) crc = serial::crcOf(crc, frame[index]);
   if (crc != 0) return;
 
   const Kind kind = static_cast<Kind>(frame[kindAt]);
   const uint8_t sequence = frame[sequenceAt];
   if (kind == Kind::Ack) {
-    if (isQueuedSent_ && sequence == outSequence_) removeQueued();
+    if (state_.isQueuedSent && sequence == state_.outSequence) removeQueued();
   } else if (kind == Kind::Hello) {
-    beginSession(Reader(frame + bodyAt, frame[lengthAt]));
-  } else if (session_ == 0) {
-    sequence_ = sequence;
+    if (frame[lengthAt] == helloLength) beginSession(frame + bodyAt);
+  } else if (state_.session == 0) {
+    state_.sequence = sequence;
     answer(Kind::NoSession, 0);
-  } else if (sequence == sequence_) {
+  } else if (sequence == state_.sequence) {
     // The answer has been lost, or is on its way.
-    if (!isAnswering_) hasReply_ = true;
-  } else if (sequence == static_cast<uint8_t>(sequence_ + 1)) {
-    sequence_ = sequence;
+    if (!state_.isAnswering) state_.hasReply = true;
+  } else if (sequence == static_cast<uint8_t>(state_.sequence + 1)) {
+    state_.sequence = sequence;
     handleRequest(kind);
   }
 }
 
-void Link::beginSession(Reader body) {
-  uint8_t mark[2] = {0, 0};
-  uint8_t version = 0;
-  uint16_t session = 0;
-  uint16_t patience = 0;
-  if (!body.take(mark, 1) || !body.take(mark + 1, 1) || mark[0] != 'R' || mark[1] != 'D') return;
-  if (!read(body, version) || !read(body, session) || !read(body, patience)) return;
-  if (session == 0) return;
+void Link::beginSession(const uint8_t* body) {
+  if (body[0] != 'R' || body[1] != 'D') return;
+  const uint16_t session = wordAt(body + 3);
   // A copy of the hello of this session that comes late must not begin it again.
-  if (session == session_ && sequence_ != 0) return;
-  if (version == serial::protocolVersion) {
-    session_ = session;
-    patience_ = patience;
-    queueCount_ = 0;
-    isQueuedSent_ = false;
-    for (uint8_t slot = 0; slot < memory_.slots; ++slot) setBit(memory_.open, slot, false);
+  if (session == 0 || (session == state_.session && state_.sequence != 0)) return;
+  if (body[2] == serial::protocolVersion) {
+    state_.session = session;
+    state_.patience = wordAt(body + 5);
+    state_.queueCount = 0;
+    state_.isQueuedSent = false;
+    memset(memory_.flags, 0, memory_.slots);
   }
-  sequence_ = 0;
-  Writer reply(memory_.reply + bodyAt,
-               static_cast<uint8_t>(memory_.replySize - serial::frameOverhead));
-  write(reply, serial::protocolVersion);
-  write(reply, session);
-  reply.putByte(static_cast<uint8_t>(memory_.requestSize - serial::frameOverhead));
-  reply.putByte(static_cast<uint8_t>(memory_.replySize - serial::frameOverhead));
-  reply.putByte(served_.textCount);
-  for (uint8_t index = 0; index < 8; ++index) reply.putByte(pgm_read_byte(served_.hash + index));
-  answer(Kind::Reply, reply.count());
+  state_.sequence = 0;
+  uint8_t* const reply = memory_.reply + bodyAt;
+  reply[0] = serial::protocolVersion;
+  putWord(reply + 1, session);
+  reply[3] = static_cast<uint8_t>(memory_.requestSize - serial::frameOverhead);
+  reply[4] = static_cast<uint8_t>(memory_.replySize - serial::frameOverhead);
+  reply[5] = served_.textCount;
+  for (uint8_t index = 0; index < 8; ++index) {
+    reply[6 + index] = pgm_read_byte(served_.hash + index);
+  }
+  answer(Kind::Reply, 14);
 }
 
 void Link::handleRequest(Kind kind) {
@@ -163,7 +139,7 @@ void Link::handleRequest(Kind kind) {
   uint8_t member = 0;
   Status status = Status::Ok;
   if (kind == Kind::Text) {
-    status = writeText(body, reply);
+    status = body.left() == textLength ? writeText(body.at(), reply) : Status::DataTypeMismatch;
   } else if (kind != Kind::Ping) {
     if (read(body, object) && read(body, member)) {
       reply.putByte(member);
@@ -184,40 +160,32 @@ void Link::handleRequest(Kind kind) {
   answer(Kind::Error, reply.count());
 }
 
-Status Link::writeText(Reader body, Writer& reply) {
-  uint8_t number = 0;
-  uint16_t offset = 0;
-  if (!read(body, number) || !read(body, offset)) return Status::DataSerializationError;
+Status Link::writeText(const uint8_t* body, Writer& reply) {
+  const uint8_t number = body[0];
+  uint16_t offset = wordAt(body + 1);
   if (number >= served_.textCount) return Status::OutOfRange;
   const FlashText& text = served_.texts[number];
   if (offset > text.count) return Status::OutOfRange;
-  write(reply, number);
-  write(reply, offset);
-  uint16_t left = static_cast<uint16_t>(text.count - offset);
-  if (left > reply.room()) left = reply.room();
-  while (left-- != 0) reply.putByte(pgm_read_byte(text.bytes + offset++));
+  uint8_t* const bytes = reply.at();
+  bytes[0] = number;
+  putWord(bytes + 1, offset);
+  uint8_t count = textLength;
+  while (count < reply.room() && offset < text.count) {
+    bytes[count++] = pgm_read_byte(text.bytes + offset++);
+  }
+  reply.skip(count);
   return Status::Ok;
 }
-
-bool Link::isOpen(uint8_t slot) const { return session_ != 0 && bitOf(memory_.open, slot); }
-
-Status Link::setOpen(uint8_t slot, bool isOpen) {
-  setBit(memory_.open, slot, isOpen);
-  setBit(memory_.changed, slot, isOpen);
-  return Status::Ok;
-}
-
-void Link::markChanged(uint8_t slot) { setBit(memory_.changed, slot, true); }
 
 void Link::sendWire() {
-  for (uint8_t count = 0; count < memory_.slots; ++count) {
-    const uint8_t slot = nextSlot_;
-    nextSlot_ = static_cast<uint8_t>(slot + 1 == memory_.slots ? 0 : slot + 1);
-    if (!isOpen(slot) || !bitOf(memory_.changed, slot)) continue;
-    setBit(memory_.changed, slot, false);
+  for (uint8_t count = memory_.slots; count != 0; --count) {
+    if (++state_.nextSlot >= memory_.slots) state_.nextSlot = 0;
+    uint8_t& flags = memory_.flags[state_.nextSlot];
+    if (flags != (openFlag | changedFlag)) continue;
+    flags = openFlag;
     Writer body(memory_.out + bodyAt,
                 static_cast<uint8_t>(memory_.outSize - serial::frameOverhead));
-    if (!served_.writeWire(service_, slot, body) || !body.isGood()) continue;
+    if (!served_.writeWire(service_, state_.nextSlot, body) || !body.isGood()) continue;
     finishFrame(memory_.out, Kind::WireValue, 0, body.count());
     startSending(memory_.out);
     return;

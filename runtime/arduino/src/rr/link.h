@@ -41,8 +41,7 @@ struct Memory {
   uint8_t* reply;    ///< a whole frame to the host
   uint8_t* out;      ///< a whole frame that the host did not ask for
   uint8_t* queue;    ///< events, packets and callbacks that wait
-  uint8_t* open;     ///< a bit for each wire and pipe: whether the host wants it
-  uint8_t* changed;  ///< likewise: whether there is a new value
+  uint8_t* flags;    ///< of each wire and pipe
   uint8_t requestSize;
   uint8_t replySize;
   uint8_t outSize;
@@ -80,14 +79,20 @@ class Link {
   /// the serial port keeps 63 bytes only.
   void poll();
   /// Whether a host has begun a session.
-  bool isConnected() const { return session_ != 0; }
+  bool isConnected() const { return state_.session != 0; }
 
   /// Whether the host wants a wire or pipe.
-  bool isOpen(uint8_t slot) const;
+  bool isOpen(uint8_t slot) const {
+    return state_.session != 0 && (memory_.flags[slot] & openFlag) != 0;
+  }
   /// Opens or closes one, as the host asked.
-  Status setOpen(uint8_t slot, bool isOpen);
+  Status setOpen(uint8_t slot, bool isOpen) {
+    // What is opened gets the value that is there.
+    memory_.flags[slot] = isOpen ? openFlag | changedFlag : 0;
+    return Status::Ok;
+  }
   /// That a wire has a new value, which is asked for when it can be sent.
-  void markChanged(uint8_t slot);
+  void markChanged(uint8_t slot) { memory_.flags[slot] |= changedFlag; }
 
   /// Begins an event, packet or callback, which is sent again until the host has it. Values are to
   /// be written then, and after them finish() to be called. False when there is no session.
@@ -97,15 +102,18 @@ class Link {
   bool finish();
 
  private:
+  static constexpr uint8_t openFlag = 1;
+  static constexpr uint8_t changedFlag = 2;
+
   enum class Phase : uint8_t { Idle, Lead, Code, Data, Trail };
 
   void receive(uint8_t byte);
   void append(uint8_t byte);
   void forgetReceived();
   void handleFrame();
-  void beginSession(Reader body);
+  void beginSession(const uint8_t* body);
   void handleRequest(serial::Kind kind);
-  Status writeText(Reader body, Writer& reply);
+  Status writeText(const uint8_t* body, Writer& reply);
   void answer(serial::Kind kind, uint8_t length);
   void finishFrame(uint8_t* frame, serial::Kind kind, uint8_t sequence, uint8_t length);
   void startSending(const uint8_t* frame);
@@ -122,32 +130,33 @@ class Link {
   void* const service_;
   Stream* stream_;
   Writer pending_;
-  serial::Kind pendingKind_;
 
-  uint16_t session_;
-  uint8_t sequence_;  ///< of the last request
-
-  // Receiving.
-  uint8_t received_;  ///< bytes of the frame
-  uint8_t block_;     ///< bytes to come before the next zero
-  bool isBroken_;     ///< the frame is too long
-  bool isStarted_;    ///< something has come since the last zero
-
-  // Sending.
-  Phase phase_;
-  bool isPaced_;  ///< the stream says how much it takes
-  bool hasReply_;
-  bool isAnswering_;  ///< what is being sent is the reply
-  bool isQueuedSent_;
-  uint8_t outSequence_;
-  uint8_t run_;
-  uint8_t sendLeft_;
-  const uint8_t* sendAt_;
-
-  uint16_t queueCount_;  ///< bytes
-  uint16_t queuedAt_;    ///< when the first of the queue was last sent, in milliseconds
-  uint16_t patience_;    ///< until it is sent again
-  uint8_t nextSlot_;
+  /// All zero at first, which costs less than to name each.
+  struct State {
+    serial::Kind pendingKind;
+    uint16_t session;  ///< 0: none
+    uint8_t sequence;  ///< of the last request
+    // Receiving.
+    uint8_t received;  ///< bytes of the frame
+    uint8_t block;     ///< bytes to come before the next zero
+    bool isBroken;     ///< the frame is too long
+    bool isStarted;    ///< something has come since the last zero
+    // Sending.
+    Phase phase;
+    bool isPaced;  ///< the stream says how much it takes
+    bool hasReply;
+    bool isAnswering;  ///< what is being sent is the reply
+    bool isQueuedSent;
+    uint8_t outSequence;
+    uint8_t run;
+    uint8_t sendLeft;
+    const uint8_t* sendAt;
+    uint16_t queueCount;  ///< bytes
+    uint16_t queuedAt;    ///< when the first of the queue was last sent, in milliseconds
+    uint16_t patience;    ///< until it is sent again
+    uint8_t nextSlot;
+  };
+  State state_;
 };
 
 }  // namespace rr

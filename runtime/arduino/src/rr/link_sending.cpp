@@ -27,63 +27,64 @@ void Link::finishFrame(uint8_t* frame, Kind kind, uint8_t sequence, uint8_t leng
 }
 
 void Link::answer(Kind kind, uint8_t length) {
-  finishFrame(memory_.reply, kind, sequence_, length);
+  finishFrame(memory_.reply, kind, state_.sequence, length);
   // An older answer that is on its way is cut off by the zero in front of this one.
-  if (isAnswering_) phase_ = Phase::Idle;
-  isAnswering_ = false;
-  hasReply_ = true;
+  if (state_.isAnswering) state_.phase = Phase::Idle;
+  state_.isAnswering = false;
+  state_.hasReply = true;
 }
 
 bool Link::start(Kind kind, uint8_t object, uint8_t member) {
-  if (session_ == 0 || queueCount_ + entryOverhead > memory_.queueSize) return false;
-  const uint16_t room = static_cast<uint16_t>(memory_.queueSize - queueCount_ - entryOverhead);
+  if (state_.session == 0 || state_.queueCount + entryOverhead > memory_.queueSize) return false;
+  const uint16_t room =
+      static_cast<uint16_t>(memory_.queueSize - state_.queueCount - entryOverhead);
   const uint8_t limit = static_cast<uint8_t>(memory_.outSize - serial::frameOverhead);
-  pending_ = Writer(memory_.queue + queueCount_ + entryOverhead,
+  pending_ = Writer(memory_.queue + state_.queueCount + entryOverhead,
                     room < limit ? static_cast<uint8_t>(room) : limit);
-  pendingKind_ = kind;
+  state_.pendingKind = kind;
   pending_.putByte(object);
   pending_.putByte(member);
   // Whose call it belongs to: the host knows by its number.
-  if (kind == Kind::Ask) pending_.putByte(sequence_);
+  if (kind == Kind::Ask) pending_.putByte(state_.sequence);
   return true;
 }
 
 bool Link::finish() {
   if (!pending_.isGood()) return false;
-  memory_.queue[queueCount_] = pending_.count();
-  memory_.queue[queueCount_ + 1] = static_cast<uint8_t>(pendingKind_);
-  queueCount_ = static_cast<uint16_t>(queueCount_ + entryOverhead + pending_.count());
+  memory_.queue[state_.queueCount] = pending_.count();
+  memory_.queue[state_.queueCount + 1] = static_cast<uint8_t>(state_.pendingKind);
+  state_.queueCount = static_cast<uint16_t>(state_.queueCount + entryOverhead + pending_.count());
   return true;
 }
 
 void Link::removeQueued() {
   const uint16_t size = static_cast<uint16_t>(memory_.queue[0] + entryOverhead);
-  queueCount_ = static_cast<uint16_t>(queueCount_ - size);
-  memmove(memory_.queue, memory_.queue + size, queueCount_);
-  isQueuedSent_ = false;
+  state_.queueCount = static_cast<uint16_t>(state_.queueCount - size);
+  memmove(memory_.queue, memory_.queue + size, state_.queueCount);
+  state_.isQueuedSent = false;
 }
 
 void Link::sendQueued() {
   const uint8_t length = memory_.queue[0];
   memcpy(memory_.out + 3, memory_.queue + entryOverhead, length);
-  if (!isQueuedSent_) ++outSequence_;
-  isQueuedSent_ = true;
-  queuedAt_ = static_cast<uint16_t>(millis());
-  finishFrame(memory_.out, static_cast<Kind>(memory_.queue[1]), outSequence_, length);
+  if (!state_.isQueuedSent) ++state_.outSequence;
+  state_.isQueuedSent = true;
+  state_.queuedAt = static_cast<uint16_t>(millis());
+  finishFrame(memory_.out, static_cast<Kind>(memory_.queue[1]), state_.outSequence, length);
   startSending(memory_.out);
 }
 
 void Link::chooseNext() {
-  isAnswering_ = false;
-  if (hasReply_) {
-    hasReply_ = false;
-    isAnswering_ = true;
+  state_.isAnswering = false;
+  if (state_.hasReply) {
+    state_.hasReply = false;
+    state_.isAnswering = true;
     startSending(memory_.reply);
     return;
   }
-  if (queueCount_ != 0) {
-    const uint16_t age = static_cast<uint16_t>(static_cast<uint16_t>(millis()) - queuedAt_);
-    if (!isQueuedSent_ || age >= patience_) {
+  if (state_.queueCount != 0) {
+    const uint16_t age = static_cast<uint16_t>(static_cast<uint16_t>(millis()) - state_.queuedAt);
+    if (!state_.isQueuedSent || age >= state_.patience) {
       sendQueued();
       return;
     }
@@ -92,55 +93,55 @@ void Link::chooseNext() {
 }
 
 void Link::startSending(const uint8_t* frame) {
-  sendAt_ = frame;
-  sendLeft_ = static_cast<uint8_t>(frame[2] + serial::frameOverhead);
-  phase_ = Phase::Lead;
+  state_.sendAt = frame;
+  state_.sendLeft = static_cast<uint8_t>(frame[2] + serial::frameOverhead);
+  state_.phase = Phase::Lead;
 }
 
 void Link::send() {
-  int room = isPaced_ ? stream_->availableForWrite() : blindBytes;
+  int room = state_.isPaced ? stream_->availableForWrite() : blindBytes;
   while (room-- > 0) {
-    if (phase_ == Phase::Idle) chooseNext();
-    if (phase_ == Phase::Idle) return;
+    if (state_.phase == Phase::Idle) chooseNext();
+    if (state_.phase == Phase::Idle) return;
     stream_->write(nextByte());
   }
 }
 
 uint8_t Link::nextByte() {
-  switch (phase_) {
+  switch (state_.phase) {
     case Phase::Code:
-      run_ = 0;
-      while (run_ < sendLeft_ && sendAt_[run_] != 0) ++run_;
-      phase_ = Phase::Data;
+      state_.run = 0;
+      while (state_.run < state_.sendLeft && state_.sendAt[state_.run] != 0) ++state_.run;
+      state_.phase = Phase::Data;
       {
-        const uint8_t code = static_cast<uint8_t>(run_ + 1);
-        if (run_ == 0) afterBlock();
+        const uint8_t code = static_cast<uint8_t>(state_.run + 1);
+        if (state_.run == 0) afterBlock();
         return code;
       }
     case Phase::Data: {
-      const uint8_t byte = *sendAt_++;
-      --sendLeft_;
-      if (--run_ == 0) afterBlock();
+      const uint8_t byte = *state_.sendAt++;
+      --state_.sendLeft;
+      if (--state_.run == 0) afterBlock();
       return byte;
     }
     case Phase::Trail:
-      phase_ = Phase::Idle;
+      state_.phase = Phase::Idle;
       return 0;
     default:
-      phase_ = Phase::Code;
+      state_.phase = Phase::Code;
       return 0;
   }
 }
 
 void Link::afterBlock() {
-  if (sendLeft_ == 0) {
-    phase_ = Phase::Trail;
+  if (state_.sendLeft == 0) {
+    state_.phase = Phase::Trail;
     return;
   }
   // The zero itself is not sent.
-  ++sendAt_;
-  --sendLeft_;
-  phase_ = Phase::Code;
+  ++state_.sendAt;
+  --state_.sendLeft;
+  state_.phase = Phase::Code;
 }
 
 }  // namespace rr

@@ -10,30 +10,29 @@ uint8_t place(uint8_t index, uint8_t size) { return static_cast<uint8_t>(size - 
 uint8_t place(uint8_t index, uint8_t) { return index; }
 #endif
 
-// A double of the machine and the bits of an IEEE number of eight bytes. Overloads on the size, so
-// that the one that is not needed is not there.
+// How a double of the machine travels. Chosen by its size, so that the other one is not there.
 template <size_t Size>
-struct Bits;
+struct Travel;
 template <>
-struct Bits<4> {
-  static uint64_t of(const void* value) {
+struct Travel<4> {
+  static bool write(Writer& writer, const void* value) {
     uint32_t single = 0;
     memcpy(&single, value, 4);
-    return widen(single);
+    const WideBits wide = widen(single);
+    return writer.put(&wide.low, 4) && writer.put(&wide.high, 4);
   }
-  static void into(void* value, uint64_t wide) {
+  static bool read(Reader& reader, void* value) {
+    WideBits wide = {0, 0};
+    if (!reader.take(&wide.low, 4) || !reader.take(&wide.high, 4)) return false;
     const uint32_t single = narrow(wide);
     memcpy(value, &single, 4);
+    return true;
   }
 };
 template <>
-struct Bits<8> {
-  static uint64_t of(const void* value) {
-    uint64_t wide = 0;
-    memcpy(&wide, value, 8);
-    return wide;
-  }
-  static void into(void* value, uint64_t wide) { memcpy(value, &wide, 8); }
+struct Travel<8> {
+  static bool write(Writer& writer, const void* value) { return writer.put(value, 8); }
+  static bool read(Reader& reader, void* value) { return reader.take(value, 8); }
 };
 
 }  // namespace
@@ -78,69 +77,63 @@ bool read(Reader& reader, bool& value) {
   return true;
 }
 
-bool read(Reader& reader, double& value) {
-  uint64_t wide = 0;
-  if (!reader.take(&wide, 8)) return false;
-  Bits<sizeof(double)>::into(&value, wide);
-  return true;
+bool read(Reader& reader, double& value) { return Travel<sizeof(double)>::read(reader, &value); }
+
+bool write(Writer& writer, const double& value) {
+  return Travel<sizeof(double)>::write(writer, &value);
 }
 
-bool write(Writer& writer, double value) {
-  const uint64_t wide = Bits<sizeof(double)>::of(&value);
-  return writer.put(&wide, 8);
-}
-
-// The halves are worked on apart: shifts of 64 bits cost an AVR a loop each.
-uint64_t widen(uint32_t single) {
-  const uint32_t sign = single & 0x80000000UL;
-  uint32_t exponent = (single >> 23) & 0xFF;
+// Shifts are written so that as few bytes as possible are moved bit by bit.
+WideBits widen(uint32_t single) {
+  const uint16_t sign = static_cast<uint16_t>(single >> 16) & 0x8000U;
+  uint16_t exponent = (static_cast<uint16_t>(single >> 16) >> 7) & 0xFF;
   uint32_t fraction = single & 0x7FFFFFUL;
-  if (exponent == 0 && fraction != 0) {  // subnormal: there are enough exponents here
-    exponent = 1;
-    while ((fraction & 0x800000UL) == 0) {
-      fraction <<= 1;
-      --exponent;
-    }
-    fraction &= 0x7FFFFFUL;
-    exponent += 1023 - 127;
-  } else if (exponent == 0xFF) {
+  if (exponent == 0xFF) {
     exponent = 0x7FF;
-  } else if (exponent != 0) {
-    exponent += 1023 - 127;
+  } else if (exponent != 0 || fraction != 0) {
+    if (exponent == 0) {  // subnormal: there are enough exponents here
+      exponent = 1;
+      while ((fraction & 0x800000UL) == 0) {
+        fraction <<= 1;
+        --exponent;
+      }
+      fraction &= 0x7FFFFFUL;
+    }
+    exponent = static_cast<uint16_t>(exponent + 1023 - 127);
   }
-  const uint32_t high = sign | ((exponent & 0x7FF) << 20) | (fraction >> 3);
-  return (static_cast<uint64_t>(high) << 32) | (fraction << 29);
+  const uint16_t top = static_cast<uint16_t>(sign | static_cast<uint16_t>(exponent << 4));
+  const uint8_t bottom = static_cast<uint8_t>(static_cast<uint8_t>(fraction) << 5);
+  const WideBits wide = {static_cast<uint32_t>(bottom) << 24,
+                         (static_cast<uint32_t>(top) << 16) + (fraction >> 3)};
+  return wide;
 }
 
-uint32_t narrow(uint64_t wide) {
-  const uint32_t high = static_cast<uint32_t>(wide >> 32);
-  const uint32_t low = static_cast<uint32_t>(wide);
-  const uint32_t sign = high & 0x80000000UL;
-  const uint16_t exponent = static_cast<uint16_t>((high >> 20) & 0x7FF);
-  // 24 bits with the leading one, and whether anything was behind them.
-  uint32_t fraction = ((high & 0xFFFFFUL) << 3) | (low >> 29);
-  uint32_t rest = low << 3;
+uint32_t narrow(WideBits wide) {
+  const uint32_t sign = wide.high & 0x80000000UL;
+  const int16_t exponent =
+      static_cast<int16_t>((static_cast<uint16_t>(wide.high >> 16) >> 4) & 0x7FF);
+  // 23 bits, and whether anything was behind them.
+  uint32_t fraction = ((wide.high & 0xFFFFFUL) << 3) | (static_cast<uint8_t>(wide.low >> 24) >> 5);
+  uint32_t rest = wide.low << 3;
   if (exponent == 0x7FF) {
     const bool isNumber = fraction == 0 && rest == 0;
     return sign | 0x7F800000UL | (isNumber ? 0 : fraction | 0x400000UL);
   }
-  const int16_t target = static_cast<int16_t>(static_cast<int16_t>(exponent) - (1023 - 127));
+  int16_t target = static_cast<int16_t>(exponent - (1023 - 127));
   if (target >= 0xFF) return sign | 0x7F800000UL;
   if (target < -23) return sign;
-  uint32_t result = sign;
   if (target <= 0) {  // becomes subnormal
     fraction |= 0x800000UL;
-    for (int16_t shift = target; shift <= 0; ++shift) {
+    for (; target <= 0; ++target) {
       rest = (rest >> 1) | (fraction << 31) | (rest & 1);
       fraction >>= 1;
     }
-  } else {
-    result |= static_cast<uint32_t>(target) << 23;
+    target = 0;
   }
-  result += fraction;
   // A carry out of the fraction goes into the exponent, as it should.
+  const uint32_t result = (static_cast<uint32_t>(target) << 23) + fraction;
   const bool isUp = rest > 0x80000000UL || (rest == 0x80000000UL && (fraction & 1) != 0);
-  return isUp ? result + 1 : result;
+  return sign | (isUp ? result + 1 : result);
 }
 
 }  // namespace rr

@@ -94,6 +94,8 @@ class Writer {
   bool putByte(uint8_t byte) { return put(&byte, 1); }
   /// Where the next byte goes.
   uint8_t* at() { return start_ + count_; }
+  /// That so many bytes were put at at(), for which there was room.
+  void skip(uint8_t count) { count_ = static_cast<uint8_t>(count_ + count); }
   /// Takes back everything.
   void clear();
 
@@ -117,22 +119,28 @@ bool read(Reader& reader, bool& value);
 /// Where a double has four bytes it becomes the nearest of those, or infinite.
 bool read(Reader& reader, double& value);
 
-inline bool write(Writer& writer, int8_t value) { return writer.put(&value, 1); }
-inline bool write(Writer& writer, uint8_t value) { return writer.put(&value, 1); }
-inline bool write(Writer& writer, int16_t value) { return writer.put(&value, 2); }
-inline bool write(Writer& writer, uint16_t value) { return writer.put(&value, 2); }
-inline bool write(Writer& writer, int32_t value) { return writer.put(&value, 4); }
-inline bool write(Writer& writer, uint32_t value) { return writer.put(&value, 4); }
-inline bool write(Writer& writer, int64_t value) { return writer.put(&value, 8); }
-inline bool write(Writer& writer, uint64_t value) { return writer.put(&value, 8); }
-inline bool write(Writer& writer, float value) { return writer.put(&value, 4); }
+// By reference, for put() wants an address.
+inline bool write(Writer& writer, const int8_t& value) { return writer.put(&value, 1); }
+inline bool write(Writer& writer, const uint8_t& value) { return writer.put(&value, 1); }
+inline bool write(Writer& writer, const int16_t& value) { return writer.put(&value, 2); }
+inline bool write(Writer& writer, const uint16_t& value) { return writer.put(&value, 2); }
+inline bool write(Writer& writer, const int32_t& value) { return writer.put(&value, 4); }
+inline bool write(Writer& writer, const uint32_t& value) { return writer.put(&value, 4); }
+inline bool write(Writer& writer, const int64_t& value) { return writer.put(&value, 8); }
+inline bool write(Writer& writer, const uint64_t& value) { return writer.put(&value, 8); }
+inline bool write(Writer& writer, const float& value) { return writer.put(&value, 4); }
 inline bool write(Writer& writer, bool value) { return writer.putByte(value ? 1 : 0); }
-bool write(Writer& writer, double value);
+bool write(Writer& writer, const double& value);
 
-/// The bits of a double of eight bytes from those of a float, exactly, and back, rounded to the
-/// nearest, of two equally near ones to the even one.
-uint64_t widen(uint32_t single);
-uint32_t narrow(uint64_t wide);
+/// The bits of a double of eight bytes. In halves: an AVR shifts 64 bits one by one.
+struct WideBits {
+  uint32_t low;
+  uint32_t high;
+};
+/// Those of a float, exactly, and back, rounded to the nearest, of two equally near ones to the
+/// even one.
+WideBits widen(uint32_t single);
+uint32_t narrow(WideBits wide);
 
 template <class T>
 bool read(Reader& reader, Complex<T>& value) {

@@ -27,6 +27,10 @@ object Echo
     event added(uint32 count)
 end
 )robdef";
+const rr::FlashText rrTexts[] = {
+    { rrText0, sizeof rrText0 - 1 },
+    { rrText1, sizeof rrText1 - 1 },
+};
 const uint8_t rrHash[] PROGMEM = { 246, 224, 154, 74, 181, 29, 78, 201 };
 
 /// What the root says by itself. False: not connected, not wanted, or too much waits.
@@ -56,24 +60,7 @@ template <class EchoDevice>
 class EchoService {
  public:
   explicit EchoService(EchoDevice& root)
-      : root_(root),
-        texts_{
-            { rrText0, sizeof rrText0 - 1},
-            { rrText1, sizeof rrText1 - 1},
-        },
-        served_{texts_, 2, rrHash, &EchoService::handle, &EchoService::writeWire},
-        memory_{request_,
-                reply_,
-                out_,
-                queue_,
-                open_,
-                changed_,
-                sizeof request_,
-                sizeof reply_,
-                sizeof out_,
-                0,
-                sizeof queue_},
-        link_(served_, memory_, this) {}
+      : root_(root), link_(served_, memory_, this) {}
 
   /// Begins to serve. The stream has been started.
   void begin(Stream& stream) { link_.begin(stream); }
@@ -145,17 +132,35 @@ class EchoService {
   }
 
   EchoDevice& root_;
-  uint8_t request_[37];
-  uint8_t reply_[37];
-  uint8_t out_[12];
-  uint8_t queue_[18];
-  uint8_t open_[1];
-  uint8_t changed_[1];
-  const rr::FlashText texts_[2];
-  const rr::Served served_;
-  const rr::Memory memory_;
   rr::Link link_;
+
+  // There is one service of a kind in a sketch, so its memory has a fixed place.
+  static uint8_t request_[37];
+  static uint8_t reply_[37];
+  static uint8_t out_[12];
+  static uint8_t queue_[18];
+  static uint8_t flags_[1];
+  static const rr::Served served_;
+  static const rr::Memory memory_;
 };
+
+template <class EchoDevice>
+uint8_t EchoService<EchoDevice>::request_[37];
+template <class EchoDevice>
+uint8_t EchoService<EchoDevice>::reply_[37];
+template <class EchoDevice>
+uint8_t EchoService<EchoDevice>::out_[12];
+template <class EchoDevice>
+uint8_t EchoService<EchoDevice>::queue_[18];
+template <class EchoDevice>
+uint8_t EchoService<EchoDevice>::flags_[1];
+template <class EchoDevice>
+const rr::Served EchoService<EchoDevice>::served_ = {
+    rrTexts, 2, rrHash, &EchoService::handle, &EchoService::writeWire};
+template <class EchoDevice>
+const rr::Memory EchoService<EchoDevice>::memory_ = {
+    request_,       reply_,        out_,        queue_,    flags_,
+    sizeof request_, sizeof reply_, sizeof out_, 0, sizeof queue_};
 
 }  // namespace echo
 }  // namespace example

@@ -17,6 +17,10 @@ const char rrText1[] PROGMEM =
 object Nothing
 end
 )robdef";
+const rr::FlashText rrTexts[] = {
+    { rrText0, sizeof rrText0 - 1 },
+    { rrText1, sizeof rrText1 - 1 },
+};
 const uint8_t rrHash[] PROGMEM = { 61, 128, 23, 226, 189, 243, 90, 236 };
 
 /// What the root says by itself. False: not connected, not wanted, or too much waits.
@@ -36,24 +40,7 @@ template <class NothingDevice>
 class NothingService {
  public:
   explicit NothingService(NothingDevice& root)
-      : root_(root),
-        texts_{
-            { rrText0, sizeof rrText0 - 1},
-            { rrText1, sizeof rrText1 - 1},
-        },
-        served_{texts_, 2, rrHash, &NothingService::handle, &NothingService::writeWire},
-        memory_{request_,
-                reply_,
-                out_,
-                queue_,
-                open_,
-                changed_,
-                sizeof request_,
-                sizeof reply_,
-                sizeof out_,
-                0,
-                sizeof queue_},
-        link_(served_, memory_, this) {}
+      : root_(root), link_(served_, memory_, this) {}
 
   /// Begins to serve. The stream has been started.
   void begin(Stream& stream) { link_.begin(stream); }
@@ -96,17 +83,35 @@ class NothingService {
   }
 
   NothingDevice& root_;
-  uint8_t request_[37];
-  uint8_t reply_[37];
-  uint8_t out_[5];
-  uint8_t queue_[1];
-  uint8_t open_[1];
-  uint8_t changed_[1];
-  const rr::FlashText texts_[2];
-  const rr::Served served_;
-  const rr::Memory memory_;
   rr::Link link_;
+
+  // There is one service of a kind in a sketch, so its memory has a fixed place.
+  static uint8_t request_[37];
+  static uint8_t reply_[37];
+  static uint8_t out_[5];
+  static uint8_t queue_[1];
+  static uint8_t flags_[1];
+  static const rr::Served served_;
+  static const rr::Memory memory_;
 };
+
+template <class NothingDevice>
+uint8_t NothingService<NothingDevice>::request_[37];
+template <class NothingDevice>
+uint8_t NothingService<NothingDevice>::reply_[37];
+template <class NothingDevice>
+uint8_t NothingService<NothingDevice>::out_[5];
+template <class NothingDevice>
+uint8_t NothingService<NothingDevice>::queue_[1];
+template <class NothingDevice>
+uint8_t NothingService<NothingDevice>::flags_[1];
+template <class NothingDevice>
+const rr::Served NothingService<NothingDevice>::served_ = {
+    rrTexts, 2, rrHash, &NothingService::handle, &NothingService::writeWire};
+template <class NothingDevice>
+const rr::Memory NothingService<NothingDevice>::memory_ = {
+    request_,       reply_,        out_,        queue_,    flags_,
+    sizeof request_, sizeof reply_, sizeof out_, 0, sizeof queue_};
 
 }  // namespace empty
 }  // namespace example

@@ -235,6 +235,11 @@ pod Point
     field single y
 end
 )robdef";
+const rr::FlashText rrTexts[] = {
+    { rrText0, sizeof rrText0 - 1 },
+    { rrText1, sizeof rrText1 - 1 },
+    { rrText2, sizeof rrText2 - 1 },
+};
 const uint8_t rrHash[] PROGMEM = { 118, 38, 255, 186, 27, 62, 87, 114 };
 
 /// What the root says by itself. False: not connected, not wanted, or too much waits.
@@ -383,25 +388,7 @@ template <class BoardDevice, class MotorDevice, class LampDevice>
 class BoardService {
  public:
   explicit BoardService(BoardDevice& root)
-      : root_(root),
-        texts_{
-            { rrText0, sizeof rrText0 - 1},
-            { rrText1, sizeof rrText1 - 1},
-            { rrText2, sizeof rrText2 - 1},
-        },
-        served_{texts_, 3, rrHash, &BoardService::handle, &BoardService::writeWire},
-        memory_{request_,
-                reply_,
-                out_,
-                queue_,
-                open_,
-                changed_,
-                sizeof request_,
-                sizeof reply_,
-                sizeof out_,
-                9,
-                sizeof queue_},
-        link_(served_, memory_, this) {}
+      : root_(root), link_(served_, memory_, this) {}
 
   /// Begins to serve. The stream has been started.
   void begin(Stream& stream) { link_.begin(stream); }
@@ -799,17 +786,35 @@ class BoardService {
   }
 
   BoardDevice& root_;
-  uint8_t request_[85];
-  uint8_t reply_[84];
-  uint8_t out_[23];
-  uint8_t queue_[62];
-  uint8_t open_[2];
-  uint8_t changed_[2];
-  const rr::FlashText texts_[3];
-  const rr::Served served_;
-  const rr::Memory memory_;
   rr::Link link_;
+
+  // There is one service of a kind in a sketch, so its memory has a fixed place.
+  static uint8_t request_[85];
+  static uint8_t reply_[84];
+  static uint8_t out_[23];
+  static uint8_t queue_[62];
+  static uint8_t flags_[9];
+  static const rr::Served served_;
+  static const rr::Memory memory_;
 };
+
+template <class BoardDevice, class MotorDevice, class LampDevice>
+uint8_t BoardService<BoardDevice, MotorDevice, LampDevice>::request_[85];
+template <class BoardDevice, class MotorDevice, class LampDevice>
+uint8_t BoardService<BoardDevice, MotorDevice, LampDevice>::reply_[84];
+template <class BoardDevice, class MotorDevice, class LampDevice>
+uint8_t BoardService<BoardDevice, MotorDevice, LampDevice>::out_[23];
+template <class BoardDevice, class MotorDevice, class LampDevice>
+uint8_t BoardService<BoardDevice, MotorDevice, LampDevice>::queue_[62];
+template <class BoardDevice, class MotorDevice, class LampDevice>
+uint8_t BoardService<BoardDevice, MotorDevice, LampDevice>::flags_[9];
+template <class BoardDevice, class MotorDevice, class LampDevice>
+const rr::Served BoardService<BoardDevice, MotorDevice, LampDevice>::served_ = {
+    rrTexts, 3, rrHash, &BoardService::handle, &BoardService::writeWire};
+template <class BoardDevice, class MotorDevice, class LampDevice>
+const rr::Memory BoardService<BoardDevice, MotorDevice, LampDevice>::memory_ = {
+    request_,       reply_,        out_,        queue_,    flags_,
+    sizeof request_, sizeof reply_, sizeof out_, 9, sizeof queue_};
 
 }  // namespace everything
 }  // namespace example

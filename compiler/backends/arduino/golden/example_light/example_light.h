@@ -38,33 +38,35 @@ struct Color
     field single blue
 end
 
-## A lamp of three colours and a sensor of light.
+## A lamp of three colours and a light sensor.
 object Light
-    ## What the lamp shows, each part from 0 to 1.
+    ## Each part from 0 to 1.
     property Color color
-    ## Light that falls on the sensor, in lux.
+    ## In lux.
     property double brightness [readonly]
-    ## Go to another colour, in seconds.
+    ## Go to a colour, in up to 60 seconds.
     function void fade(Color target, double duration)
-    ## The fade has ended.
     event faded(Color color)
-    ## The sensor, ten times a second.
+    ## Ten times a second.
     wire double sensor [readonly]
 end
 )robdef";
-const uint8_t rrHash[] PROGMEM = { 165, 70, 233, 63, 98, 142, 111, 194 };
+const rr::FlashText rrTexts[] = {
+    { rrText0, sizeof rrText0 - 1 },
+    { rrText1, sizeof rrText1 - 1 },
+};
+const uint8_t rrHash[] PROGMEM = { 226, 35, 248, 75, 166, 11, 173, 122 };
 
 /// What the root says by itself. False: not connected, not wanted, or too much waits.
 class RootSender {
  public:
   RootSender(rr::Link& link, uint8_t index) : link_(link), index_(index) {}
-  /// The fade has ended.
   bool fireFaded(const ::example::light::Color& color) {
     if (!link_.start(rr::serial::Kind::Event, 0 + index_, 3)) return false;
     write(link_.values(), color);
     return link_.finish();
   }
-  /// The sensor, ten times a second.
+  /// Ten times a second.
   /// Its value is asked for with getSensor when it can be sent.
   void sensorChanged() { link_.markChanged(0 + index_); }
 
@@ -85,24 +87,7 @@ template <class LightDevice>
 class LightService {
  public:
   explicit LightService(LightDevice& root)
-      : root_(root),
-        texts_{
-            { rrText0, sizeof rrText0 - 1},
-            { rrText1, sizeof rrText1 - 1},
-        },
-        served_{texts_, 2, rrHash, &LightService::handle, &LightService::writeWire},
-        memory_{request_,
-                reply_,
-                out_,
-                queue_,
-                open_,
-                changed_,
-                sizeof request_,
-                sizeof reply_,
-                sizeof out_,
-                1,
-                sizeof queue_},
-        link_(served_, memory_, this) {}
+      : root_(root), link_(served_, memory_, this) {}
 
   /// Begins to serve. The stream has been started.
   void begin(Stream& stream) { link_.begin(stream); }
@@ -183,17 +168,35 @@ class LightService {
   }
 
   LightDevice& root_;
-  uint8_t request_[37];
-  uint8_t reply_[37];
-  uint8_t out_[20];
-  uint8_t queue_[34];
-  uint8_t open_[1];
-  uint8_t changed_[1];
-  const rr::FlashText texts_[2];
-  const rr::Served served_;
-  const rr::Memory memory_;
   rr::Link link_;
+
+  // There is one service of a kind in a sketch, so its memory has a fixed place.
+  static uint8_t request_[37];
+  static uint8_t reply_[37];
+  static uint8_t out_[20];
+  static uint8_t queue_[34];
+  static uint8_t flags_[1];
+  static const rr::Served served_;
+  static const rr::Memory memory_;
 };
+
+template <class LightDevice>
+uint8_t LightService<LightDevice>::request_[37];
+template <class LightDevice>
+uint8_t LightService<LightDevice>::reply_[37];
+template <class LightDevice>
+uint8_t LightService<LightDevice>::out_[20];
+template <class LightDevice>
+uint8_t LightService<LightDevice>::queue_[34];
+template <class LightDevice>
+uint8_t LightService<LightDevice>::flags_[1];
+template <class LightDevice>
+const rr::Served LightService<LightDevice>::served_ = {
+    rrTexts, 2, rrHash, &LightService::handle, &LightService::writeWire};
+template <class LightDevice>
+const rr::Memory LightService<LightDevice>::memory_ = {
+    request_,       reply_,        out_,        queue_,    flags_,
+    sizeof request_, sizeof reply_, sizeof out_, 1, sizeof queue_};
 
 }  // namespace light
 }  // namespace example

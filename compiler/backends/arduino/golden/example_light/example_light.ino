@@ -4,10 +4,10 @@
 
 #include "example_light.h"
 
-/// A lamp of three colours and a sensor of light.
+/// A lamp of three colours and a light sensor.
 class Light {
  public:
-  /// What the lamp shows, each part from 0 to 1.
+  /// Each part from 0 to 1.
   rr::Status getColor(::example::light::Color& value) {
     value = color_;
     return rr::Status::Ok;
@@ -16,19 +16,18 @@ class Light {
     color_ = value;
     return rr::Status::Ok;
   }
-  /// Light that falls on the sensor, in lux.
+  /// In lux.
   rr::Status getBrightness(double& value) {
     value = brightness_;
     return rr::Status::Ok;
   }
-  /// Go to another colour, in seconds.
+  /// Go to a colour, in up to 60 seconds.
   rr::Status fade(const ::example::light::Color& target, double duration) {
     (void)target;
     (void)duration;
     return rr::Status::NotImplemented;
   }
-  /// The fade has ended.
-  /// The sensor, ten times a second.
+  /// Ten times a second.
   rr::Status getSensor(double& value) {
     value = sensor_;
     return rr::Status::Ok;

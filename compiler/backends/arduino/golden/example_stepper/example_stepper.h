@@ -59,6 +59,10 @@ object Stepper
     wire int32 travel [readonly]
 end
 )robdef";
+const rr::FlashText rrTexts[] = {
+    { rrText0, sizeof rrText0 - 1 },
+    { rrText1, sizeof rrText1 - 1 },
+};
 const uint8_t rrHash[] PROGMEM = { 93, 183, 152, 158, 111, 2, 230, 163 };
 
 /// What the root says by itself. False: not connected, not wanted, or too much waits.
@@ -96,24 +100,7 @@ template <class StepperDevice>
 class StepperService {
  public:
   explicit StepperService(StepperDevice& root)
-      : root_(root),
-        texts_{
-            { rrText0, sizeof rrText0 - 1},
-            { rrText1, sizeof rrText1 - 1},
-        },
-        served_{texts_, 2, rrHash, &StepperService::handle, &StepperService::writeWire},
-        memory_{request_,
-                reply_,
-                out_,
-                queue_,
-                open_,
-                changed_,
-                sizeof request_,
-                sizeof reply_,
-                sizeof out_,
-                1,
-                sizeof queue_},
-        link_(served_, memory_, this) {}
+      : root_(root), link_(served_, memory_, this) {}
 
   /// Begins to serve. The stream has been started.
   void begin(Stream& stream) { link_.begin(stream); }
@@ -208,17 +195,35 @@ class StepperService {
   }
 
   StepperDevice& root_;
-  uint8_t request_[37];
-  uint8_t reply_[37];
-  uint8_t out_[16];
-  uint8_t queue_[26];
-  uint8_t open_[1];
-  uint8_t changed_[1];
-  const rr::FlashText texts_[2];
-  const rr::Served served_;
-  const rr::Memory memory_;
   rr::Link link_;
+
+  // There is one service of a kind in a sketch, so its memory has a fixed place.
+  static uint8_t request_[37];
+  static uint8_t reply_[37];
+  static uint8_t out_[16];
+  static uint8_t queue_[26];
+  static uint8_t flags_[1];
+  static const rr::Served served_;
+  static const rr::Memory memory_;
 };
+
+template <class StepperDevice>
+uint8_t StepperService<StepperDevice>::request_[37];
+template <class StepperDevice>
+uint8_t StepperService<StepperDevice>::reply_[37];
+template <class StepperDevice>
+uint8_t StepperService<StepperDevice>::out_[16];
+template <class StepperDevice>
+uint8_t StepperService<StepperDevice>::queue_[26];
+template <class StepperDevice>
+uint8_t StepperService<StepperDevice>::flags_[1];
+template <class StepperDevice>
+const rr::Served StepperService<StepperDevice>::served_ = {
+    rrTexts, 2, rrHash, &StepperService::handle, &StepperService::writeWire};
+template <class StepperDevice>
+const rr::Memory StepperService<StepperDevice>::memory_ = {
+    request_,       reply_,        out_,        queue_,    flags_,
+    sizeof request_, sizeof reply_, sizeof out_, 1, sizeof queue_};
 
 }  // namespace stepper
 }  // namespace example
