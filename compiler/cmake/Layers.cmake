@@ -39,7 +39,7 @@ set(robdef_layers
 
   # Both ends of the protocol read its numbers from one file.
   "runtime/cpp/src/serial: runtime/cpp/include/rr runtime/cpp/src/dynamic runtime/arduino/src/rr/protocol.h"
-  "runtime/arduino: runtime/cpp/src/serial"
+  "runtime/arduino: runtime/cpp/src/serial runtime/cpp/include/rr runtime/cpp/src/node/testing"
 
   "conformance: runtime/cpp/include/rr runtime/cpp/src/replay"
   "benchmarks: runtime/cpp/include/rr compiler"
@@ -51,7 +51,7 @@ set(robdef_outside_headers
   "^(antlr4|Robdef(Lexer|Parser))| compiler/syntax"
   "^boost/| runtime/cpp/include/rr/async.hpp"
   "^rr/async\\.hpp$| runtime/cpp/src runtime/cpp/stress examples conformance benchmarks compiler/backends"
-  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress conformance benchmarks"
+  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/serial runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress conformance benchmarks"
   "^fmt/| compiler benchmarks"
   "^nlohmann/| runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"
   "^png\\.h$| examples")

@@ -172,6 +172,13 @@ constexpr std::array commands = {
                "does otherwise than in the recording. Endpoints, node ids, message, request and\n"
                "generator numbers, and the times of wire values may differ; values of wires may\n"
                "be missing.\n"},
+    CommandRow{Command::bridge, "bridge", "BOARD... --listen PORT [--everywhere]",
+               "offer boards behind serial ports as services",
+               "A BOARD is the path of a port, as /dev/ttyACM0, perhaps with the rate and the\n"
+               "name of its service: /dev/ttyUSB0?baud=9600&name=lamp. The rate is 115200 if\n"
+               "nothing is said, the name that of the object which the sketch serves. Goes on\n"
+               "when boards are reset, or unplugged and plugged in again, until it is\n"
+               "interrupted.\n"},
 };
 
 constexpr std::array options = {
@@ -275,13 +282,13 @@ constexpr std::array options = {
     OptionRow{"--listen",
               "",
               "PORT",
-              {Command::record, Command::replay},
+              {Command::record, Command::replay, Command::bridge},
               "port to listen at; 0: any, which is printed",
               take_port},
     OptionRow{"--everywhere",
               "",
               "",
-              {Command::record, Command::replay},
+              {Command::record, Command::replay, Command::bridge},
               "accept connections of other machines, too",
               take_recording_switch<&RecordingOptions::listens_everywhere>},
     OptionRow{"--output",

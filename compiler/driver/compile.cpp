@@ -55,6 +55,7 @@ Product make_product(const Options& options, const model::Model& model, const So
     case Command::inspect:
     case Command::record:
     case Command::replay:
+    case Command::bridge:
       break;
   }
   return {};

@@ -130,6 +130,7 @@ class ArgumentReader {
       return "no code given";
     }
     if (command_.command == Command::record) return missing_to_record();
+    if (command_.command == Command::bridge) return missing_to_bridge();
     if (options_.inputs.empty() && command_.command != Command::explain) return "no file given";
     if (command_.command == Command::replay) return missing_to_replay();
     if (!options_.inputs.empty() && options_.lists_codes) return "`--list` takes no codes";
@@ -145,6 +146,11 @@ class ArgumentReader {
     if (wanted.connect.empty()) return "`--connect` is missing";
     if (!wanted.port) return "`--listen` is missing";
     return wanted.output.empty() ? "`--output` is missing" : "";
+  }
+
+  [[nodiscard]] std::string missing_to_bridge() const {
+    if (options_.inputs.empty()) return "no board given";
+    return options_.recording.port ? "" : "`--listen` is missing";
   }
 
   [[nodiscard]] std::string missing_to_replay() const {

@@ -16,7 +16,18 @@
 /// `--help` alike.
 namespace robdef {
 
-enum class Command { generate, check, describe, model, view, explain, inspect, record, replay };
+enum class Command {
+  generate,
+  check,
+  describe,
+  model,
+  view,
+  explain,
+  inspect,
+  record,
+  replay,
+  bridge
+};
 
 /// What the user asked for. Which parts mean something depends on the command.
 struct Options {

@@ -1,47 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <pthread.h>
-#include <signal.h>
-
-#include <cerrno>
-#include <ctime>
 #include <memory>
 #include <mutex>
 #include <ostream>
 #include <rr/error.hpp>
 #include <rr/tap.hpp>
 
+#include "compiler/driver/end_signals.hpp"
 #include "compiler/driver/recordings.hpp"
 #include "runtime/cpp/src/replay/proxy.hpp"
 
 namespace robdef {
-namespace {
-
-// The signals that ask the program to end are taken by whoever waits for them here, while this
-// lives. To be made before any thread is.
-class EndSignals {
- public:
-  EndSignals() {
-    sigemptyset(&signals_);
-    sigaddset(&signals_, SIGINT);
-    sigaddset(&signals_, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &signals_, &before_);
-  }
-  ~EndSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  EndSignals(const EndSignals&) = delete;
-  EndSignals& operator=(const EndSignals&) = delete;
-
-  // True when one came within a second.
-  [[nodiscard]] bool wait() const {
-    const timespec second{1, 0};
-    return sigtimedwait(&signals_, nullptr, &second) > 0;
-  }
-
- private:
-  sigset_t signals_{};
-  sigset_t before_{};
-};
-
-}  // namespace
 
 ExitStatus record(const Options& options, std::ostream& out, std::ostream& err) {
   const RecordingOptions& wanted = options.recording;

@@ -7,7 +7,7 @@ _robdef() {
   COMPREPLY=()
   if [ "$COMP_CWORD" = 1 ]; then
     mapfile -t COMPREPLY < <(compgen -W \
-      'generate check describe model view explain inspect record replay --help --version' -- "$word")
+      'generate check describe model view explain inspect record replay bridge --help --version' -- "$word")
     return
   fi
   case $previous in
@@ -58,13 +58,14 @@ _robdef() {
       explain) options='--list --json --help' ;;
       inspect) options='--json --entries --path --connection --summary --help' ;;
       record) options='--connect --listen --everywhere --output -o --drop --help' ;;
+      bridge) options='--listen --everywhere --help' ;;
       replay) options='--connect --listen --everywhere --connection --fast --help' ;;
     esac
     mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")
   elif [ "$command" = explain ]; then
     mapfile -t COMPREPLY < <(compgen -W \
       "$(robdef explain --list 2>/dev/null | cut -d ' ' -f 1)" -- "$word")
-  elif [ "$command" = inspect ] || [ "$command" = replay ]; then
+  elif [ "$command" = inspect ] || [ "$command" = replay ] || [ "$command" = bridge ]; then
     mapfile -t COMPREPLY < <(compgen -f -- "$word")
   else
     mapfile -t COMPREPLY < <(
