@@ -133,9 +133,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, DamagedBytes, ::testing::Values(1U, 2U, 3U));
 TEST(BadBoardLine, ComesBackWithinATenthOfASecond) {
   const BadLine::Rates rates{
       .damage = 0.05, .drop = 0.02, .twice = 0.02, .burst = 0.05, .half = 0.02};
-  for (unsigned seed = 1; seed <= 20; ++seed) {
-    SimulatedLine line(elf_dir + "echo115200.elf", 115200);
-    ASSERT_EQ(line.hello().kind, Outcome::Kind::reply);
+  for (unsigned seed = 1; seed <= 8; ++seed) {
     SimulatedLine noisy(elf_dir + "echo115200.elf", 115200, rates, seed);
     (void)noisy.hello();
     const Time end = noisy.board.now() + 300ms;
