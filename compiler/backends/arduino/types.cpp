@@ -119,6 +119,11 @@ BoardType BoardTypes::spell(const model::Type& type, const TypePlace& place) {
     refuse(type.span, "an array of any shape", "give the shape, as `double[3,3]`");
     return {};
   }
+  if (type.array == ArrayForm::fixed_shape &&
+      std::holds_alternative<const model::Record*>(type.base)) {
+    refuse(type.span, "an array of records with a shape", "give its length, as `Point[6]`");
+    return {};
+  }
   BoardType item = base(type, place);
   if (item.text.empty() || type.array == ArrayForm::none) return item;
   std::uint64_t count = type.element_count();
