@@ -2,6 +2,7 @@
 // The list of backends.
 #include <algorithm>
 
+#include "compiler/backends/arduino/backend.hpp"
 #include "compiler/backends/backend.hpp"
 #include "compiler/backends/cpp/backend.hpp"
 
@@ -9,7 +10,8 @@ namespace robdef {
 
 const std::vector<const Backend*>& backends() {
   static const cpp::CppBackend cpp;
-  static const std::vector<const Backend*> all{&cpp};
+  static const arduino::ArduinoBackend arduino;
+  static const std::vector<const Backend*> all{&cpp, &arduino};
   return all;
 }
 

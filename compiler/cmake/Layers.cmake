@@ -10,6 +10,8 @@ set(robdef_layers
   "compiler/model: compiler/diagnostics compiler/syntax compiler/output/json.hpp"
   "compiler/output: compiler/diagnostics"
   "compiler/backends: compiler/diagnostics compiler/model compiler/output"
+  # A sketch is C++ too: words and literals are the same.
+  "compiler/backends/arduino: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/words.hpp compiler/backends/cpp/constants.hpp compiler/backends/cpp/literal_text.hpp compiler/backends/cpp/names.hpp"
   "compiler/backends/cpp: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/words.hpp"
   # Uses generated code, which stands on the runtime.
   "compiler/backends/cpp/generated_test.cpp: compiler/model runtime/cpp/include/rr"
@@ -48,6 +50,10 @@ set(robdef_layers
   "runtime/cpp/bench: runtime/cpp/include/rr runtime/cpp/src"
   "runtime/cpp/stress: runtime/cpp/include/rr runtime/cpp/src/node/testing"
 
+  # Both ends of the protocol read its numbers from one file.
+  "runtime/cpp/src/serial: runtime/cpp/include/rr runtime/cpp/src/dynamic runtime/arduino/src/rr/protocol.h"
+  "runtime/arduino: runtime/cpp/src/serial runtime/cpp/include/rr runtime/cpp/src/node/testing"
+
   "conformance: runtime/cpp/include/rr runtime/cpp/src/replay"
   "benchmarks: runtime/cpp/include/rr compiler"
   "examples: runtime/cpp/include/rr")
@@ -59,7 +65,7 @@ set(robdef_outside_headers
   "^boost/| runtime/cpp/include/rr/async.hpp runtime/cpp/src/channel/web_socket.cpp runtime/cpp/src/channel/memory_stream.hpp"
   "^openssl/| runtime/cpp/src/channel"
   "^rr/async\\.hpp$| runtime/cpp/src runtime/cpp/stress examples conformance benchmarks compiler/backends"
-  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/channel runtime/cpp/src/discovery runtime/cpp/src/endpoint runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp conformance benchmarks"
+  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/serial runtime/cpp/src/channel runtime/cpp/src/discovery runtime/cpp/src/endpoint runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp conformance benchmarks"
   "^fmt/| compiler benchmarks"
   "^nlohmann/| runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"
   "^histedit\\.h$| compiler/driver/live/line_reader.cpp"
@@ -143,6 +149,7 @@ function(robdef_check_layers root result)
     "${root}/compiler/*.cpp" "${root}/compiler/*.hpp"
     "${root}/runtime/cpp/*.cpp" "${root}/runtime/cpp/*.hpp"
     "${root}/runtime/c/*.c" "${root}/runtime/c/*.cpp" "${root}/runtime/c/*.h" "${root}/runtime/c/*.hpp"
+    "${root}/runtime/arduino/*.cpp" "${root}/runtime/arduino/*.hpp"
     "${root}/conformance/*.cpp" "${root}/conformance/*.hpp"
     "${root}/benchmarks/*.cpp" "${root}/benchmarks/*.hpp"
     "${root}/examples/*.cpp" "${root}/examples/*.hpp")

@@ -215,6 +215,13 @@ constexpr std::array commands = {
                "node there, below nodes, and revoke adds the certificate to the list of revoked\n"
                "ones. A node is its id, or a file that has it. Nodes trust the authority that\n"
                "are given its ca.pem. Keep ca.key to yourself.\n"},
+    CommandRow{Command::bridge, "bridge", "BOARD... --listen PORT [--everywhere]",
+               "offer boards behind serial ports as services",
+               "A BOARD is the path of a port, as /dev/ttyACM0, perhaps with the rate and the\n"
+               "name of its service: /dev/ttyUSB0?baud=9600&name=lamp. The rate is 115200 if\n"
+               "nothing is said, the name that of the object which the sketch serves. Goes on\n"
+               "when boards are reset, or unplugged and plugged in again, until it is\n"
+               "interrupted.\n"},
 };
 
 constexpr std::array options = {
@@ -318,13 +325,13 @@ constexpr std::array options = {
     OptionRow{"--listen",
               "",
               "PORT",
-              {Command::record, Command::replay},
+              {Command::record, Command::replay, Command::bridge},
               "port to listen at; 0: any, which is printed",
               take_port},
     OptionRow{"--everywhere",
               "",
               "",
-              {Command::record, Command::replay},
+              {Command::record, Command::replay, Command::bridge},
               "accept connections of other machines, too",
               take_recording_switch<&RecordingOptions::listens_everywhere>},
     OptionRow{"--output",

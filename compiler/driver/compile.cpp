@@ -55,6 +55,7 @@ Product make_product(const Options& options, const model::Model& model, const So
     case Command::inspect:
     case Command::record:
     case Command::replay:
+    case Command::bridge:
     case Command::ca:
     case Command::discover:
     case Command::get:
@@ -137,6 +138,9 @@ ExitStatus deliver(const Product& product, const Options& options, const Sources
     if (!failure.empty()) {
       err << "robdef: " << failure << '\n';
       return exit_errors;
+    }
+    if (options.format == Format::text) {
+      for (const std::string& note : product.files.notes()) err << note << '\n';
     }
   }
   return exit_fine;

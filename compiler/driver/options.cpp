@@ -139,6 +139,7 @@ class ArgumentReader {
       return "no code given";
     }
     if (command_.command == Command::record) return missing_to_record();
+    if (command_.command == Command::bridge) return missing_to_bridge();
     if (command_.command == Command::ca) {
       return options_.inputs.size() == 2 ? "" : "give `init DIR`, `issue NODE` or `revoke NODE`";
     }
@@ -165,6 +166,11 @@ class ArgumentReader {
     if (wanted.connect.empty()) return "`--connect` is missing";
     if (!wanted.port) return "`--listen` is missing";
     return wanted.output.empty() ? "`--output` is missing" : "";
+  }
+
+  [[nodiscard]] std::string missing_to_bridge() const {
+    if (options_.inputs.empty()) return "no board given";
+    return options_.recording.port ? "" : "`--listen` is missing";
   }
 
   [[nodiscard]] std::string missing_to_replay() const {

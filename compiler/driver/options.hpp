@@ -29,6 +29,7 @@ enum class Command {
   inspect,
   record,
   replay,
+  bridge,
   ca,
   discover,
   get,

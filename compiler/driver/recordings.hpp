@@ -17,4 +17,7 @@ ExitStatus record(const Options& options, std::ostream& out, std::ostream& err);
 /// Plays one side of a recording and prints what differs.
 ExitStatus replay(const Options& options, std::ostream& out, std::ostream& err);
 
+/// Offers the boards of `inputs` as services, until SIGINT or SIGTERM (docs/serial.md).
+ExitStatus bridge(const Options& options, std::ostream& out, std::ostream& err);
+
 }  // namespace robdef

@@ -23,7 +23,7 @@ _robdef() {
   COMPREPLY=()
   if [ "$COMP_CWORD" = 1 ]; then
     mapfile -t COMPREPLY < <(compgen -W \
-      'generate check describe model view explain inspect record replay ca discover get set call watch connect
+      'generate check describe model view explain inspect record replay bridge ca discover get set call watch connect
       --help --version' -- "$word")
     return
   fi
@@ -83,6 +83,7 @@ _robdef() {
       inspect) options='--json --entries --path --connection --summary --help' ;;
       record) options='--connect --listen --everywhere --output -o --drop --help' ;;
       discover) options='--once --type --format --wait --ipv4 --interface --port --help' ;;
+      bridge) options='--listen --everywhere --help' ;;
       replay) options='--connect --listen --everywhere --connection --fast --help' ;;
       ca) options='--ca --days --help' ;;
     esac
@@ -94,7 +95,7 @@ _robdef() {
     _robdef_members
   elif [ "$command" = ca ] && [ "$COMP_CWORD" = 2 ]; then
     mapfile -t COMPREPLY < <(compgen -W 'init issue revoke' -- "$word")
-  elif [ "$command" = ca ] || [ "$command" = inspect ] || [ "$command" = replay ]; then
+  elif [ "$command" = bridge ] || [ "$command" = ca ] || [ "$command" = inspect ] || [ "$command" = replay ]; then
     mapfile -t COMPREPLY < <(compgen -f -- "$word")
   else
     mapfile -t COMPREPLY < <(

@@ -56,6 +56,8 @@ ExitStatus answer(std::span<const std::string> arguments, std::string_view impor
       return record(options, out, err);
     case Command::replay:
       return replay(options, out, err);
+    case Command::bridge:
+      return bridge(options, out, err);
     case Command::ca:
       return run_authority(options, out, err);
     case Command::discover:

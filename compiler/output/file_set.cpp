@@ -73,11 +73,19 @@ void FileSet::add(std::string path, std::string content) {
   }
 }
 
+void FileSet::add_draft(std::string path, std::string content) {
+  std::string normal = fs::path(path).lexically_normal().generic_string();
+  add(std::move(path), std::move(content));
+  drafts_.insert(std::move(normal));
+}
+
 FileSet::Written FileSet::write(const std::filesystem::path& folder) const {
   Written written;
   Pending pending;
   for (const auto& [path, content] : files_) {
     const fs::path target = folder / path;
+    std::error_code error;
+    if (drafts_.contains(path) && fs::exists(target, error)) continue;
     if (holds(target, content)) continue;
     written.failure = pending.write(target, content);
     if (!written.failure.empty()) {

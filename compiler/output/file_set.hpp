@@ -3,8 +3,10 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace robdef {
@@ -22,6 +24,12 @@ class FileSet {
   /// that leads out of the folder.
   void add(std::string path, std::string content);
 
+  /// The same for a file that the user goes on with: once it is there it is never touched again.
+  void add_draft(std::string path, std::string content);
+  /// A line for the user.
+  void add_note(std::string note) { notes_.push_back(std::move(note)); }
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+
   [[nodiscard]] const std::map<std::string, std::string, std::less<>>& files() const {
     return files_;
   }
@@ -34,6 +42,8 @@ class FileSet {
 
  private:
   std::map<std::string, std::string, std::less<>> files_;
+  std::set<std::string, std::less<>> drafts_;
+  std::vector<std::string> notes_;
 };
 
 }  // namespace robdef

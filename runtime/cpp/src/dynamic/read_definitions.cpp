@@ -211,6 +211,10 @@ class TableBuilder {
     table.wire.text = table.text;
     table.wire.records = table.records;
     table.wire.objects = table.objects;
+    for (const model::Definition* const import : definition.imports) {
+      table.imports.push_back(&tables_.definitions_.find(import->name)->second.wire);
+    }
+    table.wire.imports = table.imports;
     tables_.registry_.add(table.wire);
   }
 

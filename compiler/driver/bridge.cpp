@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <mutex>
+#include <ostream>
+#include <rr/error.hpp>
+#include <rr/node.hpp>
+#include <rr/serial.hpp>
+
+#include "compiler/driver/end_signals.hpp"
+#include "compiler/driver/recordings.hpp"
+
+namespace robdef {
+
+ExitStatus bridge(const Options& options, std::ostream& out, std::ostream& err) {
+  const RecordingOptions& wanted = options.recording;
+  const EndSignals signals;
+  std::mutex printing;
+  try {
+    rr::Node node({.name = "robdef.bridge"});
+    rr::BoardBridge boards(node, [&](const std::string& text) {
+      const std::lock_guard lock(printing);
+      err << "robdef: " << text << std::endl;
+    });
+    for (const std::string& board : options.inputs) boards.add(rr::BoardPlace::parse(board));
+    const std::uint16_t port =
+        node.listen_tcp(*wanted.port, wanted.listens_everywhere ? "" : "localhost");
+    {
+      const std::lock_guard lock(printing);
+      out << "boards are offered at port " << port << std::endl;
+    }
+    while (!signals.wait()) continue;
+    return exit_fine;
+  } catch (const rr::Error& error) {
+    err << "robdef: " << error.message() << '\n';
+  }
+  return exit_errors;
+}
+
+}  // namespace robdef

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clients over TCP, the bridge, a pseudo terminal, and the real program on a simulated processor.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <mutex>
+#include <thread>
+
+#include "rr/dynamic.hpp"
+#include "rr/node.hpp"
+#include "rr/serial.hpp"
+#include "runtime/arduino/bench/simulated_board.hpp"
+#include "runtime/cpp/src/node/testing/pair.hpp"
+
+namespace rr::serial::testing {
+namespace {
+
+using namespace std::chrono_literals;
+using dynamic::Fields;
+using dynamic::List;
+using dynamic::Value;
+using rr::testing::error_of;
+using rr::testing::eventually;
+
+const std::string elf_dir = RR_ELF_DIR;
+
+/// A board on a pseudo terminal, in the time of this machine or slower.
+class PluggedBoard {
+ public:
+  explicit PluggedBoard(const std::string& elf) : board_(elf_dir + elf, 115200) {
+    master_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    if (master_ < 0 || ::grantpt(master_) != 0 || ::unlockpt(master_) != 0) {
+      throw std::runtime_error("no pseudo terminal");
+    }
+    path_ = ::ptsname(master_);
+    // Kept open, so that the bridge may come and go; raw, before anything is sent.
+    slave_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    termios settings{};
+    ::tcgetattr(slave_, &settings);
+    ::cfmakeraw(&settings);
+    ::tcsetattr(slave_, TCSANOW, &settings);
+    thread_ = std::thread([this] { run(); });
+  }
+  ~PluggedBoard() {
+    stops_ = true;
+    thread_.join();
+    ::close(slave_);
+    ::close(master_);
+  }
+  [[nodiscard]] const std::string& path() const { return path_; }
+  void reset() { resets_ = true; }
+  void set_silent(bool is_silent) { is_silent_ = is_silent; }
+  void set_voltage(double volts) {
+    const std::lock_guard lock(mutex_);
+    board_.set_voltage(0, volts);
+  }
+  std::uint8_t peek(std::uint16_t address) {
+    const std::lock_guard lock(mutex_);
+    return board_.peek(address);
+  }
+
+ private:
+  void run() {
+    const auto begun = std::chrono::steady_clock::now();
+    SimulatedBoard::Time paused{};
+    while (!stops_) {
+      {
+        const std::lock_guard lock(mutex_);
+        if (resets_.exchange(false)) board_.reset();
+        exchange();
+        board_.run_until(board_.now() + 500us);
+      }
+      // Not ahead of the time, or the processor would never have to wait.
+      const auto real = std::chrono::duration_cast<SimulatedBoard::Time>(
+          std::chrono::steady_clock::now() - begun);
+      const SimulatedBoard::Time ahead = board_.now() + paused - real;
+      if (ahead > 1ms) std::this_thread::sleep_for(ahead);
+      if (ahead < -20ms) paused -= ahead;
+    }
+  }
+  void exchange() {
+    std::vector<std::uint8_t> bytes(256);
+    const ssize_t got = ::read(master_, bytes.data(), bytes.size());
+    if (got > 0 && !is_silent_) {
+      bytes.resize(static_cast<std::size_t>(got));
+      board_.send(bytes);
+    }
+    const std::vector<std::uint8_t> out = board_.receive();
+    if (!out.empty() && !is_silent_) (void)!::write(master_, out.data(), out.size());
+  }
+
+  std::mutex mutex_;
+  SimulatedBoard board_;
+  int master_ = -1;
+  int slave_ = -1;
+  std::string path_;
+  std::atomic<bool> stops_ = false;
+  std::atomic<bool> resets_ = false;
+  std::atomic<bool> is_silent_ = false;
+  std::thread thread_;
+};
+
+class Bridged : public ::testing::Test {
+ protected:
+  void plug(const std::string& elf) {
+    board = std::make_unique<PluggedBoard>(elf);
+    bridge = std::make_unique<BoardBridge>(server, [this](const std::string& text) {
+      const std::lock_guard lock(mutex);
+      log.push_back(text);
+    });
+    bridge->add({.path = board->path()});
+    ASSERT_TRUE(bridge->wait(20s));
+    port = server.listen_tcp(0, "127.0.0.1");
+  }
+  [[nodiscard]] dynamic::Client connect(const std::string& name) {
+    return dynamic::connect(client_node,
+                            "rr+tcp://127.0.0.1:" + std::to_string(port) + "/?service=" + name);
+  }
+  std::size_t times(const std::string& text) {
+    const std::lock_guard lock(mutex);
+    return static_cast<std::size_t>(std::count(log.begin(), log.end(), text));
+  }
+
+  std::mutex mutex;
+  std::vector<std::string> log;
+  Node server;
+  Node client_node;
+  std::unique_ptr<PluggedBoard> board;
+  std::unique_ptr<BoardBridge> bridge;
+  std::uint16_t port = 0;
+};
+
+Value color(float red, float green, float blue) {
+  return Value::record({{"red", red}, {"green", green}, {"blue", blue}});
+}
+
+TEST_F(Bridged, ALightIsAServiceLikeAnyOther) {
+  plug("light.elf");
+  board->set_voltage(2.5);
+  const dynamic::Client light = connect("Light");
+  EXPECT_EQ(light->type_name(), "example.light.Light");
+  EXPECT_EQ(light->documentation(), "A lamp of three colours and a light sensor.");
+  light->set("color", color(0.7F, 0.3F, 0.1F));
+  EXPECT_EQ(light->get("color").at("red").as<float>(), 0.7F);
+  EXPECT_EQ(board->peek(0x88), 178);
+  EXPECT_NEAR(light->get("brightness").as<double>(), 255.5, 1);
+  const Error error = error_of([&] { light->set("color", color(2, 0, 0)); });
+  EXPECT_EQ(error.code(), ErrorCode::out_of_range);
+  EXPECT_EQ(error_of([&] { light->set("brightness", 1.0); }).code(), ErrorCode::read_only_member);
+}
+
+TEST_F(Bridged, EventsAndWiresReachEveryClient) {
+  plug("light.elf");
+  board->set_voltage(5);
+  const dynamic::Client one = connect("Light");
+  const dynamic::Client two = connect("Light");
+  std::atomic<int> faded = 0;
+  const auto count = [&](const List& arguments) {
+    if (arguments.at(0).at("green").as<float>() == 0.5F) ++faded;
+  };
+  const Subscription first = one->on_event("faded", count);
+  const Subscription second = two->on_event("faded", count);
+  one->call("fade", {color(1, 0.5F, 0), 0.1});
+  EXPECT_TRUE(eventually([&] { return faded == 2; }));
+
+  EXPECT_NEAR(two->wire("sensor").peek_in().value.as<double>(), 511.5, 1);
+  dynamic::WireConnection wire = two->wire("sensor").connect();
+  ASSERT_TRUE(wire.wait_in(20s));
+  EXPECT_NEAR(wire.in().as<double>(), 511.5, 1);
+}
+
+TEST_F(Bridged, AResetFailsTheCallAndIsMended) {
+  plug("echo115200.elf");
+  const dynamic::Client echo = connect("Echo");
+  EXPECT_EQ(echo->call("add", {20.0, 22.0}).as<double>(), 42);
+  std::thread resetter([&] {
+    std::this_thread::sleep_for(300ms);
+    board->reset();
+  });
+  const Error error = error_of([&] { echo->call("wait", {std::uint16_t{3000}}); });
+  resetter.join();
+  EXPECT_EQ(error.code(), ErrorCode::connection_error);
+  EXPECT_TRUE(eventually([&] { return times("Echo: connected") == 2; }));
+  EXPECT_EQ(echo->get("count").as<std::uint32_t>(), 0U) << "the same client goes on";
+  EXPECT_EQ(echo->call("add", {1.0, 2.0}).as<double>(), 3);
+}
+
+TEST_F(Bridged, ABoardThatIsSilentIsLostAndFoundAgain) {
+  plug("echo115200.elf");
+  const dynamic::Client echo = connect("Echo");
+  board->set_silent(true);
+  EXPECT_TRUE(
+      eventually([&] { return times("Echo: lost: it has been reset, or does not answer") == 1; }));
+  EXPECT_EQ(error_of([&] { (void)echo->get("value"); }).code(), ErrorCode::connection_error);
+  board->set_silent(false);
+  EXPECT_TRUE(eventually([&] { return times("Echo: connected") == 2; }));
+  EXPECT_EQ(echo->get("value").as<double>(), 0);
+}
+
+TEST_F(Bridged, EverythingThatABoardServesArrives) {
+  plug("everything.elf");
+  const dynamic::Client all = connect("Board");
+  all->set("big", std::int64_t{-1234567890123});
+  EXPECT_EQ(all->get("big").as<std::int64_t>(), -1234567890123);
+  all->set("text", "sixteen letters!");
+  EXPECT_EQ(all->get("text").text(), "sixteen letters!");
+  EXPECT_EQ(error_of([&] { all->set("text", "seventeen letters"); }).code(),
+            ErrorCode::data_type_mismatch);
+  all->set("mode", "broken");
+  EXPECT_EQ(all->get("mode").text(), "broken");
+  all->set("numbers", List{1, -2, 3});
+  EXPECT_EQ(all->get("numbers").size(), 3U);
+  EXPECT_EQ(all->get("numbers").at(1).as<std::int32_t>(), -2);
+  all->set("matrix", MultiArray<double>{{2, 2}, {1, 2, 3, 4}});
+  EXPECT_EQ(all->get("matrix"), Value(MultiArray<double>{{2, 2}, {1, 2, 3, 4}}));
+  const Value report =
+      Value::record({{"name", "spindle"},
+                     {"mode", "moving"},
+                     {"where", Value::record({{"x", 1.5}, {"y", -2.5}})},
+                     {"pairs", List{Value::record({{"first", 7}, {"rest", List{1, 2}}}),
+                                    Value::record({{"first", -7}, {"rest", List{}}})}},
+                     {"samples", List{0.5F, 1.5F}},
+                     {"turn", std::complex<double>(0, 1)}});
+  all->set("report", report);
+  const Value back = all->get("report");
+  EXPECT_EQ(back.at("name").text(), "spindle");
+  EXPECT_EQ(back.at("where").at("y").as<double>(), -2.5);
+  EXPECT_EQ(back.at("pairs").at(0).at("rest").size(), 2U);
+  EXPECT_EQ(back.at("samples").size(), 2U);
+  EXPECT_EQ(back.at("turn").as<std::complex<double>>(), std::complex<double>(0, 1));
+  const dynamic::Object lamp = all->object("lamp", 2);
+  lamp.set("level", 9);
+  EXPECT_EQ(lamp.get("level").as<std::uint8_t>(), 9);
+  EXPECT_EQ(all->object("lamp", 1).get("level").as<std::uint8_t>(), 0);
+  EXPECT_EQ(all->object("motor").object("lamp").get("level").as<std::uint8_t>(), 0);
+  EXPECT_EQ(error_of([&] { (void)all->object("lamp", 3); }).code(), ErrorCode::object_not_found);
+  EXPECT_EQ(error_of([&] {
+              all->call("add", {1.0, 2.0});
+            }).code(),
+            ErrorCode::not_implemented_error);
+  dynamic::WireConnection wire = all->wire("both").connect();
+  wire.set_out(std::int16_t{-5});
+  EXPECT_TRUE(
+      eventually([&] { return all->wire("both").peek_in().value.as<std::int16_t>() == -5; }));
+}
+
+TEST(BoardPlaces, AreReadFromUrls) {
+  const BoardPlace place = BoardPlace::parse("rr+serial:///dev/ttyUSB0?baud=9600&name=lamp");
+  EXPECT_EQ(place.path, "/dev/ttyUSB0");
+  EXPECT_EQ(place.baud, 9600U);
+  EXPECT_EQ(place.name, "lamp");
+  EXPECT_EQ(BoardPlace::parse("/dev/ttyACM0").baud, 115200U);
+  for (const char* const bad :
+       {"", "?baud=9600", "/dev/x?baud=9601", "/dev/x?baud=fast", "/dev/x?b=1"}) {
+    EXPECT_EQ(error_of([&] { (void)BoardPlace::parse(bad); }).code(), ErrorCode::invalid_argument)
+        << bad;
+  }
+}
+
+}  // namespace
+}  // namespace rr::serial::testing

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace rr {
+
+class Node;
+
+/// Where a board is.
+struct BoardPlace {
+  std::string path;             ///< of the port: `/dev/ttyACM0`
+  std::uint32_t baud = 115200;  ///< 9600 to 1000000, as the sketch has it
+  std::string name{};           ///< of the service; empty: that of the sketch's root
+
+  /// Reads `PATH`, `PATH?baud=9600&name=lamp`, with or without `rr+serial://` in front. Throws
+  /// rr::Error (invalid_argument).
+  static BoardPlace parse(const std::string& text);
+};
+
+/// Offers boards behind serial ports as services of a node (docs/serial.md). A board's service is
+/// offered when the board is met for the first time, and stays: while the board is away, or is
+/// being reset, calls fail with connection_error. When it comes back with another definition, the
+/// service is closed and offered anew.
+class BoardBridge {
+ public:
+  /// Told of what happens, on the board's thread: `light: connected`.
+  using Log = std::function<void(const std::string&)>;
+
+  /// The node has to outlive the bridge.
+  explicit BoardBridge(Node& node, Log log = {});
+  /// Closes the services of all boards.
+  ~BoardBridge();
+  BoardBridge(const BoardBridge&) = delete;
+  BoardBridge& operator=(const BoardBridge&) = delete;
+
+  /// Does not wait for the board. Throws rr::Error (invalid_argument) for a rate that there is not.
+  void add(const BoardPlace& place);
+  /// Waits until all boards have been met. False when the time is over before.
+  bool wait(std::chrono::milliseconds limit) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace rr
