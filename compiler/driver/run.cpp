@@ -6,8 +6,8 @@
 #include <variant>
 #include <vector>
 
-#include "compiler/driver/explain.hpp"
 #include "compiler/driver/authority.hpp"
+#include "compiler/driver/explain.hpp"
 #include "compiler/driver/recordings.hpp"
 
 namespace robdef {
