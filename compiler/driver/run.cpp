@@ -6,9 +6,9 @@
 #include <variant>
 #include <vector>
 
+#include "compiler/driver/authority.hpp"
 #include "compiler/driver/discover.hpp"
 #include "compiler/driver/explain.hpp"
-#include "compiler/driver/authority.hpp"
 #include "compiler/driver/live/commands.hpp"
 #include "compiler/driver/recordings.hpp"
 

@@ -15,6 +15,7 @@
 #include <mutex>
 #include <rr/error.hpp>
 #include <thread>
+#include <vector>
 
 namespace {
 
