@@ -202,6 +202,33 @@ TEST_F(Bridged, ABoardThatIsSilentIsLostAndFoundAgain) {
   EXPECT_EQ(echo->get("value").as<double>(), 0);
 }
 
+TEST_F(Bridged, PipesCarryPacketsBothWays) {
+  plug("echo115200.elf");
+  const dynamic::Client echo = connect("Echo");
+  dynamic::PipeEndpoint pipe = echo->pipe("counts").connect();
+  pipe.send(std::uint32_t{41});
+  for (const std::uint32_t expected : {41U, 42U}) {
+    const auto packet = pipe.receive_for(20s);
+    ASSERT_TRUE(packet.has_value());
+    EXPECT_EQ(packet->as<std::uint32_t>(), expected);
+  }
+}
+
+TEST_F(Bridged, ACallbackAsksTheClientThatCalled) {
+  plug("echo115200.elf");
+  const dynamic::Client idle = connect("Echo");
+  const dynamic::Client asked = connect("Echo");
+  idle->callback("doubled").set([](const List&) { return Value(-1.0); });
+  asked->callback("doubled").set(
+      [](const List& values) { return Value(2 * values.at(0).as<double>()); });
+  asked->call("ask", {21.0});
+  EXPECT_TRUE(eventually([&] { return idle->get("value").as<double>() == 42; }));
+  asked->callback("doubled").clear();
+  asked->call("ask", {21.0});
+  EXPECT_TRUE(eventually([&] { return idle->get("value").as<double>() < 0; }))
+      << "the code of the error, as the sketch keeps it";
+}
+
 TEST_F(Bridged, EverythingThatABoardServesArrives) {
   plug("everything.elf");
   const dynamic::Client all = connect("Board");

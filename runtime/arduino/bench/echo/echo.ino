@@ -28,6 +28,32 @@ class Echo {
     delay(time);
     return rr::Status::Ok;
   }
+  rr::Status receiveCounts(uint32_t packet) {
+    packet_ = packet;
+    hasPacket_ = true;
+    return rr::Status::Ok;
+  }
+  rr::Status ask(double question) {
+    question_ = question;
+    hasQuestion_ = true;
+    return rr::Status::Ok;
+  }
+  void answeredDoubled(rr::Status status, double result) {
+    value_ = status == rr::Status::Ok ? result : -static_cast<double>(status);
+  }
+  bool takePacket(uint32_t& packet) {
+    packet = packet_;
+    const bool result = hasPacket_;
+    hasPacket_ = false;
+    return result;
+  }
+  bool takeQuestion(double& question) {
+    question = question_;
+    const bool result = hasQuestion_;
+    hasQuestion_ = false;
+    return result;
+  }
+
   /// True once after each add().
   bool hasAdded() {
     const bool result = hasAdded_;
@@ -40,6 +66,10 @@ class Echo {
   double value_ = 0;
   uint32_t count_ = 0;
   bool hasAdded_ = false;
+  uint32_t packet_ = 0;
+  double question_ = 0;
+  bool hasPacket_ = false;
+  bool hasQuestion_ = false;
 };
 
 Echo echo;
@@ -53,4 +83,11 @@ void setup() {
 void loop() {
   service.poll();
   if (echo.hasAdded()) service.root().fireAdded(echo.count());
+  uint32_t packet;
+  if (echo.takePacket(packet)) {
+    service.root().sendCounts(packet);
+    service.root().sendCounts(packet + 1);
+  }
+  double question;
+  if (echo.takeQuestion(question)) service.root().askDoubled(question);
 }

@@ -25,13 +25,18 @@ object Echo
     ## Waits before it answers, in milliseconds.
     function void wait(uint16 time)
     event added(uint32 count)
+    ## What comes goes back, and one more.
+    pipe uint32 counts
+    callback double doubled(double value)
+    ## Asks the client for the double of it, which becomes the value.
+    function void ask(double question)
 end
 )robdef";
 const rr::FlashText rrTexts[] = {
     { rrText0, sizeof rrText0 - 1 },
     { rrText1, sizeof rrText1 - 1 },
 };
-const uint8_t rrHash[] PROGMEM = { 246, 224, 154, 74, 181, 29, 78, 201 };
+const uint8_t rrHash[] PROGMEM = { 0, 6, 207, 91, 141, 46, 109, 56 };
 
 /// What the root says by itself. False: not connected, not wanted, or too much waits.
 class RootSender {
@@ -40,6 +45,19 @@ class RootSender {
   bool fireAdded(uint32_t count) {
     if (!link_.start(rr::serial::Kind::Event, 0 + index_, 4)) return false;
     write(link_.values(), count);
+    return link_.finish();
+  }
+  /// What comes goes back, and one more.
+  bool sendCounts(uint32_t packet) {
+    if (!link_.isOpen(0 + index_)) return false;
+    if (!link_.start(rr::serial::Kind::OutPacket, 0 + index_, 5)) return false;
+    write(link_.values(), packet);
+    return link_.finish();
+  }
+  /// Asks the client whose call was handled last; answeredDoubled gets the answer.
+  bool askDoubled(double value) {
+    if (!link_.start(rr::serial::Kind::Ask, 0 + index_, 6)) return false;
+    write(link_.values(), value);
     return link_.finish();
   }
 
@@ -56,6 +74,9 @@ class RootSender {
 ///   rr::Status getCount(uint32_t& value);
 ///   rr::Status add(double a, double b, double& result);
 ///   rr::Status wait(uint16_t time);
+///   rr::Status receiveCounts(uint32_t packet);
+///   void answeredDoubled(rr::Status status, double result);
+///   rr::Status ask(double question);
 template <class EchoDevice>
 class EchoService {
  public:
@@ -125,6 +146,30 @@ class EchoService {
       case 4: {  // event added
         break;
       }
+      case 5: {  // pipe counts
+        if (request.kind == Kind::Open || request.kind == Kind::Close) {
+          return link_.setOpen(0 + index, request.kind == Kind::Open);
+        }
+        if (request.kind != Kind::Packet) break;
+        uint32_t packet;
+        if (!rr::readAll(request, packet)) return Status::DataTypeMismatch;
+        return device->receiveCounts(packet);
+      }
+      case 6: {  // callback doubled
+        if (request.kind != Kind::Answer) break;
+        uint8_t code;
+        if (!read(request.values, code)) return Status::DataTypeMismatch;
+        double result = double();
+        if (code == 0 && !rr::readAll(request, result)) return Status::DataTypeMismatch;
+        device->answeredDoubled(static_cast<Status>(code), result);
+        return Status::Ok;
+      }
+      case 7: {  // function ask
+        if (request.kind != Kind::Call) break;
+        double question;
+        if (!rr::readAll(request, question)) return Status::DataTypeMismatch;
+        return device->ask(question);
+      }
       default:
         break;
     }
@@ -137,8 +182,8 @@ class EchoService {
   // There is one service of a kind in a sketch, so its memory has a fixed place.
   static uint8_t request_[37];
   static uint8_t reply_[37];
-  static uint8_t out_[12];
-  static uint8_t queue_[18];
+  static uint8_t out_[16];
+  static uint8_t queue_[31];
   static uint8_t flags_[1];
   static const rr::Served served_;
   static const rr::Memory memory_;
@@ -149,9 +194,9 @@ uint8_t EchoService<EchoDevice>::request_[37];
 template <class EchoDevice>
 uint8_t EchoService<EchoDevice>::reply_[37];
 template <class EchoDevice>
-uint8_t EchoService<EchoDevice>::out_[12];
+uint8_t EchoService<EchoDevice>::out_[16];
 template <class EchoDevice>
-uint8_t EchoService<EchoDevice>::queue_[18];
+uint8_t EchoService<EchoDevice>::queue_[31];
 template <class EchoDevice>
 uint8_t EchoService<EchoDevice>::flags_[1];
 template <class EchoDevice>
@@ -160,7 +205,7 @@ const rr::Served EchoService<EchoDevice>::served_ = {
 template <class EchoDevice>
 const rr::Memory EchoService<EchoDevice>::memory_ = {
     request_,       reply_,        out_,        queue_,    flags_,
-    sizeof request_, sizeof reply_, sizeof out_, 0, sizeof queue_};
+    sizeof request_, sizeof reply_, sizeof out_, 1, sizeof queue_};
 
 }  // namespace echo
 }  // namespace example

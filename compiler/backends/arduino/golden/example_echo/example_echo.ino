@@ -31,6 +31,20 @@ class Echo {
     (void)time;
     return rr::Status::NotImplemented;
   }
+  /// What comes goes back, and one more.
+  rr::Status receiveCounts(uint32_t packet) {
+    (void)packet;
+    return rr::Status::NotImplemented;
+  }
+  void answeredDoubled(rr::Status status, double result) {
+    (void)status;
+    (void)result;
+  }
+  /// Asks the client for the double of it, which becomes the value.
+  rr::Status ask(double question) {
+    (void)question;
+    return rr::Status::NotImplemented;
+  }
 
  private:
   double value_ = double();
