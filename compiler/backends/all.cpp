@@ -4,12 +4,14 @@
 
 #include "compiler/backends/backend.hpp"
 #include "compiler/backends/cpp/backend.hpp"
+#include "compiler/backends/csharp/backend.hpp"
 
 namespace robdef {
 
 const std::vector<const Backend*>& backends() {
   static const cpp::CppBackend cpp;
-  static const std::vector<const Backend*> all{&cpp};
+  static const csharp::CSharpBackend csharp;
+  static const std::vector<const Backend*> all{&cpp, &csharp};
   return all;
 }
 

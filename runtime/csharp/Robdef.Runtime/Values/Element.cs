@@ -56,6 +56,8 @@ public readonly ref struct Element
     /// <summary>The elements inside. Only for nested types.</summary>
     public ElementReader Nested => new(Payload, Version, Registry, Depth + 1);
 
+    internal FieldReader Fields => new(Nested);
+
     /// <summary>Throws unless it is of this type: NullValue for a null, else DataTypeMismatch.</summary>
     public void Expect(ElementType type)
     {

@@ -28,6 +28,9 @@ public abstract class ItemCodec<T> : ValueCodec<T>
     /// <summary>The qualified name that goes with these types; empty for numbers.</summary>
     internal abstract ReadOnlySpan<byte> TypeName { get; }
 
+    /// <summary>Bytes that an item counts for against the limit of a memory's request.</summary>
+    internal abstract uint TransferSize { get; }
+
     /// <summary>Of `T[n]`.</summary>
     public ValueCodec<T[]> FixedArray(int length) => new ArrayCodec<T>(this, length, length);
 

@@ -38,6 +38,8 @@ public sealed class NamedArrayCodec<T, TNumber> : ItemCodec<T>, IRecordCodec
 
     internal override ReadOnlySpan<byte> TypeName => _name;
 
+    internal override uint TransferSize => (uint)Unsafe.SizeOf<TNumber>();
+
     private static int NumbersPerItem => Unsafe.SizeOf<T>() / Unsafe.SizeOf<TNumber>();
 
     /// <inheritdoc/>
@@ -77,6 +79,24 @@ public sealed class NamedArrayCodec<T, TNumber> : ItemCodec<T>, IRecordCodec
     /// <inheritdoc/>
     public override void ReadItems(scoped in Element element, Span<T> items) =>
         _number.ReadItems(element.Find("array"u8), MemoryMarshal.Cast<T, TNumber>(items));
+
+    /// <summary>Whether all numbers are equal.</summary>
+    public bool AreEqual(in T a, in T b) => Numbers(in a).SequenceEqual(Numbers(in b));
+
+    /// <summary>A hash of all numbers.</summary>
+    public int HashOf(in T value)
+    {
+        var hash = default(HashCode);
+        foreach (TNumber number in Numbers(in value))
+        {
+            hash.Add(number);
+        }
+        return hash.ToHashCode();
+    }
+
+    /// <summary>All numbers of an item, in their order: the same memory.</summary>
+    public ReadOnlySpan<TNumber> Numbers(ref readonly T value) =>
+        MemoryMarshal.Cast<T, TNumber>(new ReadOnlySpan<T>(in value));
 
     VarValue IRecordCodec.ReadVarying(scoped in Element element) => element.Type == ElementType.NamedMultiDimArray
         ? new VarValue(MultiDim.Read(element), MultiDim)

@@ -48,7 +48,7 @@ public abstract class StructCodec<T>(string qualifiedName, int fieldCount) : Val
         }
         element.Expect(ElementType.Structure);
         element.ExpectTypeName(_name);
-        var fields = new FieldReader(element);
+        FieldReader fields = element.Fields;
         return ReadFields(ref fields);
     }
 
@@ -69,7 +69,8 @@ public abstract class StructCodec<T>(string qualifiedName, int fieldCount) : Val
 /// <typeparam name="T">The record.</typeparam>
 /// <param name="qualifiedName">`example.geometry.Pose`</param>
 /// <param name="fieldCount">How many fields it has.</param>
-public abstract class PodCodec<T>(string qualifiedName, int fieldCount) : ItemCodec<T>, IRecordCodec
+/// <param name="packedSize">The most bytes that one takes in message version 2.</param>
+public abstract class PodCodec<T>(string qualifiedName, int fieldCount, long packedSize) : ItemCodec<T>, IRecordCodec
     where T : class
 {
     private readonly byte[] _name = Encoding.UTF8.GetBytes(qualifiedName);
@@ -82,6 +83,8 @@ public abstract class PodCodec<T>(string qualifiedName, int fieldCount) : ItemCo
     internal override ElementType MultiDimType => ElementType.PodMultiDimArray;
 
     internal override ReadOnlySpan<byte> TypeName => _name;
+
+    internal override uint TransferSize => (uint)Math.Min(packedSize, uint.MaxValue);
 
     /// <inheritdoc/>
     public override void WriteItems(ElementWriter writer, scoped in ElementKey key, scoped ReadOnlySpan<T> items)
@@ -128,7 +131,7 @@ public abstract class PodCodec<T>(string qualifiedName, int fieldCount) : ItemCo
             {
                 throw item.Error(ErrorCode.DataTypeError, $"stands in an array of pods at place {i}");
             }
-            var fields = new FieldReader(item);
+            FieldReader fields = item.Fields;
             items[i] = ReadFields(ref fields);
         }
     }
@@ -142,29 +145,4 @@ public abstract class PodCodec<T>(string qualifiedName, int fieldCount) : ItemCo
 
     /// <summary>Reads the fields in their order.</summary>
     protected abstract T ReadFields(scoped ref FieldReader fields);
-}
-
-/// <summary>Reads the fields of a struct or pod by their names; quickest in the order of the definition.</summary>
-public ref struct FieldReader
-{
-    private readonly Element _record;
-    private ElementReader _inOrder;
-    private bool _isInOrder = true;
-
-    internal FieldReader(Element record)
-    {
-        _record = record;
-        _inOrder = record.Nested;
-    }
-
-    /// <summary>The value of a field. Of two with one name the first counts. Throws MessageElementNotFound.</summary>
-    public T Read<T>(ValueCodec<T> codec, scoped ReadOnlySpan<byte> name)
-    {
-        if (_isInOrder && _inOrder.TryRead(out Element next) && next.Name.SequenceEqual(name))
-        {
-            return codec.Read(next);
-        }
-        _isInOrder = false;
-        return codec.Read(_record.Find(name));
-    }
 }
