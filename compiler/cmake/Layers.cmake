@@ -29,6 +29,8 @@ set(robdef_layers
   "runtime/cpp/src/node: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/client runtime/cpp/src/service runtime/cpp/src/subscription"
   # The compiler's model reads definitions here too.
   "runtime/cpp/src/dynamic: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/client compiler/diagnostics compiler/syntax compiler/model"
+  "runtime/c: runtime/cpp/include/rr runtime/cpp/src/channel runtime/cpp/src/client runtime/cpp/src/endpoint runtime/cpp/src/service"
+  "runtime/c/test: runtime/c/include runtime/cpp/include/rr runtime/cpp/src/node/testing"
   "runtime/cpp/src/tap: runtime/cpp/include/rr"
   "runtime/cpp/src/replay: runtime/cpp/include/rr runtime/cpp/src/channel/capabilities.hpp runtime/cpp/src/channel/socket.hpp"
   "runtime/cpp/src/node/replay_test.cpp: runtime/cpp/include/rr runtime/cpp/src/node runtime/cpp/src/replay"
@@ -128,6 +130,7 @@ function(robdef_check_layers root result)
   file(GLOB_RECURSE sources RELATIVE "${root}"
     "${root}/compiler/*.cpp" "${root}/compiler/*.hpp"
     "${root}/runtime/cpp/*.cpp" "${root}/runtime/cpp/*.hpp"
+    "${root}/runtime/c/*.c" "${root}/runtime/c/*.cpp" "${root}/runtime/c/*.h" "${root}/runtime/c/*.hpp"
     "${root}/conformance/*.cpp" "${root}/conformance/*.hpp"
     "${root}/benchmarks/*.cpp" "${root}/benchmarks/*.hpp"
     "${root}/examples/*.cpp" "${root}/examples/*.hpp")

@@ -90,11 +90,12 @@ class Request {
 
   struct Source;  // internal
   explicit Request(Source& source) : source_(&source) {}
-
- private:
+  [[nodiscard]] const Source& rr_source() const { return *source_; }
+  // What answer(Sequence) does, without its types.
   void answer_generator(std::shared_ptr<GeneratorSource> source, const Holding* result,
                         const Holding* parameter);
 
+ private:
   Source* source_;
 };
 
@@ -176,13 +177,13 @@ class Skeleton {
   template <class R, class Token, class... Arguments>
   auto rr_async_call_back(const Member& member, Token&& token, std::uint32_t client,
                           const Arguments&... arguments) const;
-
- private:
+  // What these two stand on.
   void rr_ask_client(const Member& member, std::uint32_t client, const void* const* arguments,
                      void* result) const;
   void rr_start_asking(const Member& member, std::uint32_t client, const void* const* arguments,
                        std::unique_ptr<Completion> completion) const;
 
+ private:
   const std::shared_ptr<Places> rr_places_;
 };
 

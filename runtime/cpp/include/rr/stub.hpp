@@ -59,6 +59,7 @@ class Arguments {
 
   struct Source;  // internal
   explicit Arguments(const Source& source) : source_(&source) {}
+  [[nodiscard]] const Source& rr_source() const { return *source_; }
 
  private:
   const Source* source_;

@@ -72,4 +72,14 @@ DefinitionOutline outline(std::string_view text) {
   return result;
 }
 
+std::string declared_version(std::string_view text) {
+  std::string version;
+  std::vector<std::string_view> words;
+  while (next_line(text, words)) {
+    if (words[0] == "stdver" && words.size() > 1) return std::string(words[1]);
+    if (words[0] == "option" && words.size() == 3 && words[1] == "version") version = words[2];
+  }
+  return version;
+}
+
 }  // namespace rr::client

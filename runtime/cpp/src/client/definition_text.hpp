@@ -20,4 +20,7 @@ struct DefinitionOutline {
 /// Reads the lines that matter and skips all others; never fails.
 DefinitionOutline outline(std::string_view text);
 
+/// The version of the language that a text declares; empty for none.
+std::string declared_version(std::string_view text);
+
 }  // namespace rr::client

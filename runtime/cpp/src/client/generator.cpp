@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Generators as a client sees them (07, section 8).
+#include "runtime/cpp/src/client/generator.hpp"
+
 #include <array>
 #include <atomic>
 #include <string>
@@ -230,7 +232,13 @@ std::shared_ptr<GeneratorState> Stub::rr_open_generator(const Member& member,
   std::int32_t index = 0;
   rr_session_->call(call_request(rr_path_, member, arguments),
                     {"index", &type_of<std::int32_t>, &index}, rr_timeout_);
-  return std::make_shared<GeneratorState>(rr_session_, rr_path_, member, rr_timeout_, index);
+  return client::make_generator(*this, member, index);
+}
+
+std::shared_ptr<GeneratorState> client::make_generator(const Stub& stub, const Member& member,
+                                                       std::int32_t index) {
+  return std::make_shared<GeneratorState>(stub.rr_session(), stub.rr_path(), member,
+                                          stub.rr_timeout(), index);
 }
 
 void Stub::rr_start_generator(const Member& member, const void* const* arguments,

@@ -45,6 +45,10 @@ class MemoryTransfer {
   bool fits(std::uint32_t limit);
   /// Valid until the next call of anything here.
   Outgoing request();
+  /// The piece that is at hand: its shape, how many items, and where they are among the part's.
+  [[nodiscard]] Numbers count() const { return part_.count; }
+  [[nodiscard]] std::size_t size() const { return part_.size; }
+  [[nodiscard]] std::size_t offset() const { return part_.offset; }
   /// Takes what the answer brings. Throws rr::Error.
   void take(Decoder& decoder, const Entry& entry);
   /// On to the next piece.

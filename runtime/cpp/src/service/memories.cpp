@@ -13,6 +13,7 @@
 #include "runtime/cpp/src/endpoint/requests.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
 #include "runtime/cpp/src/service/directory.hpp"
+#include "runtime/cpp/src/service/piece_memory.hpp"
 #include "runtime/cpp/src/service/server_endpoint.hpp"
 #include "runtime/cpp/src/service/service_host.hpp"
 #include "runtime/cpp/src/value/items.hpp"
@@ -147,6 +148,13 @@ void ServerEndpoint::read_memory(const Question& question, Decoder& decoder, con
   part.named_count = read_numbers(decoder, question.entry, "count", form.is_multi);
   place(part, memory.rr_dims(), form.is_multi);
   check_size(part, form.item->size, directory_->core()->options().limits.message_size);
+  if (auto* const pieces = dynamic_cast<PieceMemory*>(&memory)) {
+    const std::shared_ptr<const void> piece = pieces->read_piece(part.position, part.count);
+    PartElements elements(part, form.is_multi, true);
+    elements.add("data", pieces->piece_type(), piece.get());
+    answer_values(question, EntryType::memory_read_ret, elements.used(), elements.values.data());
+    return;
+  }
   value::AnyMultiArray data;
   if (form.is_multi) data.dims = short_numbers(part.named_count);
   std::byte* const items = data.items.make_room(part.size, form.item->size);
@@ -163,6 +171,15 @@ void ServerEndpoint::write_memory(const Question& question, Decoder& decoder, co
   Part part;
   part.named_position = read_numbers(decoder, question.entry, "memorypos", form.is_multi);
   part.named_count = read_numbers(decoder, question.entry, "count", form.is_multi);
+  if (auto* const pieces = dynamic_cast<PieceMemory*>(&memory)) {
+    const std::shared_ptr<void> piece = pieces->make_piece();
+    endpoint::read_value(decoder, question.entry, "data", pieces->piece_type(), piece.get());
+    place(part, memory.rr_dims(), form.is_multi);
+    pieces->write_piece(part.position, part.count, piece.get());
+    const PartElements elements(part, form.is_multi, false);
+    answer_values(question, EntryType::memory_read_ret, elements.used(), elements.values.data());
+    return;
+  }
   value::AnyMultiArray data;
   endpoint::read_value(decoder, question.entry, "data", *member.type,
                        form.is_multi ? static_cast<void*>(&data) : &data.items);
