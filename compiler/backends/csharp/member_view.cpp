@@ -27,7 +27,7 @@ std::string angled(const std::vector<std::string>& items) {
 class MemberMaker {
  public:
   MemberMaker(const Object& object, const Context& context)
-      : object_(object), context_(context), taken_(context.report) {}
+      : object_(object), context_(context), taken_(context.report), served_(context.report) {}
 
   void make(ObjectView& object) {
     for (std::size_t i = 0; i < object.constants.size(); ++i) {
@@ -298,23 +298,33 @@ class MemberMaker {
     return head + (more.empty() ? "" : " { " + join(more, ", ") + " }") + ",";
   }
 
-  /// All that the classes have for a member.
+  /// All that the classes have for a member: what stubs and interfaces do, and what skeletons do.
   void add_names(const MemberView& view, const Member& member) {
     const auto add = [&](const std::string& name) { taken_.add(name, member.span, view.kind); };
+    const auto serve = [&](const std::string& name) { served_.add(name, member.span, view.kind); };
     if (view.is_property || view.is_objref) {
-      if (view.is_objref || view.can_get) add("Get" + view.name), add("Get" + view.name + "Async");
-      if (view.can_set) add("Set" + view.name), add("Set" + view.name + "Async");
+      if (view.is_objref || view.can_get) {
+        add("Get" + view.name);
+        add("Get" + view.name + "Async");
+        serve("Get" + view.name + "Async");
+      }
+      if (view.can_set) {
+        add("Set" + view.name);
+        add("Set" + view.name + "Async");
+        serve("Set" + view.name + "Async");
+      }
       return;
     }
-    if (view.is_event) add("Fire" + view.name);
-    if (view.is_callback) add("Set" + view.name);
-    if (view.is_function || view.is_callback) add(view.name + "Async");
-    add(view.name);
+    add((view.is_callback ? "Set" : "") + view.name);
+    if (view.is_function) add(view.name + "Async");
+    if (view.is_function || view.is_callback) serve(view.name + "Async");
+    if (!view.is_function) serve((view.is_event ? "Fire" : "") + view.name);
   }
 
   const Object& object_;
   const Context& context_;
-  NameSet taken_;
+  NameSet taken_;   // in the interface and the stub
+  NameSet served_;  // in the skeleton
 };
 
 std::string interface_doc(const ObjectView& view, const Object& object) {

@@ -47,8 +47,7 @@ internal sealed class MultiDimCodec<T>(ItemCodec<T> item, int[]? shape) : ValueC
         }
         int begin = writer.BeginElement();
         item.WriteItems(writer, "array"u8, value.Items);
-        ReadOnlySpan<int> dims = value.Dims.Length == 0 ? [0] : value.Dims;
-        WriteDims(writer, dims);
+        WriteDims(writer, value.Dims);
         writer.EndElement(begin, key, item.MultiDimType, item.TypeName, 2);
     }
 
