@@ -5,13 +5,15 @@
 #include "compiler/backends/arduino/backend.hpp"
 #include "compiler/backends/backend.hpp"
 #include "compiler/backends/cpp/backend.hpp"
+#include "compiler/backends/csharp/backend.hpp"
 
 namespace robdef {
 
 const std::vector<const Backend*>& backends() {
   static const cpp::CppBackend cpp;
+  static const csharp::CSharpBackend csharp;
   static const arduino::ArduinoBackend arduino;
-  static const std::vector<const Backend*> all{&cpp, &arduino};
+  static const std::vector<const Backend*> all{&cpp, &csharp, &arduino};
   return all;
 }
 

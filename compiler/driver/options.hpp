@@ -43,8 +43,8 @@ enum class Command {
 /// What the user asked for. Which parts mean something depends on the command.
 struct Options {
   Command command{};
-  /// Definition files; for explain: codes and rules; for inspect and replay: recordings; for ca: what
-  /// to do and with what; for what uses a running service: its URL, and members or a path.
+  /// Definition files; for explain: codes and rules; for inspect and replay: recordings; for ca:
+  /// what to do and with what; for what uses a running service: its URL, and members or a path.
   std::vector<std::string> inputs;
   /// Folders in which imports are looked for: those of `-I`, then those of the environment.
   ast::SearchPath search_path;

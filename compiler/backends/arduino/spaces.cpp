@@ -5,8 +5,8 @@
 #include <array>
 
 #include "compiler/backends/arduino/names.hpp"
-#include "compiler/backends/cpp/constants.hpp"
 #include "compiler/backends/cpp/literal_text.hpp"
+#include "compiler/backends/literals.hpp"
 #include "compiler/backends/words.hpp"
 #include "compiler/output/prose.hpp"
 
@@ -59,7 +59,7 @@ void add_constant(const model::Constant& constant, const std::string& name,
     const auto& written = std::get<ast::ArrayLiteral>(constant.written).items;
     std::vector<std::string> items;
     for (std::size_t at = 0; at < numbers->size(); ++at) {
-      items.push_back(cpp::number_literal((*numbers)[at], written[at].text, primitive));
+      items.push_back(number_literal((*numbers)[at], written[at].text, primitive));
     }
     if (items.empty()) return;  // C++ has no empty arrays
     lines.push_back("/// In flash.");
@@ -68,9 +68,8 @@ void add_constant(const model::Constant& constant, const std::string& name,
     return;
   }
   lines.push_back("constexpr " + number_type(primitive) + " " + name + " = " +
-                  cpp::number_literal(std::get<model::Number>(constant.value),
-                                      std::get<ast::NumberLiteral>(constant.written).text,
-                                      primitive) +
+                  number_literal(std::get<model::Number>(constant.value),
+                                 std::get<ast::NumberLiteral>(constant.written).text, primitive) +
                   ";");
 }
 
@@ -110,7 +109,7 @@ EnumView make_enum(const model::Enum& enumeration, Report& report) {
   for (const model::EnumValue& value : enumeration.values) {
     for (const std::string& line : doc_lines(value.documentation)) view.values.push_back(line);
     view.values.push_back(scope.add(value.name, value.name, value.span) + " = " +
-                          cpp::enum_literal(value) + ",");
+                          enum_literal(value) + ",");
   }
   return view;
 }

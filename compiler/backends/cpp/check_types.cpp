@@ -1,71 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is correct in a definition but has no C++: reports R0902.
-#include <variant>
-
+#include "compiler/backends/check_values.hpp"
 #include "compiler/backends/cpp/view_parts.hpp"
 
 namespace robdef::cpp {
-namespace {
-
-using model::Type;
-
-class Checker {
- public:
-  explicit Checker(Report& report) : report_(report) {}
-
-  void check(const model::Definition& definition) {
-    check(definition.constants);
-    for (const model::Record& record : definition.records) {
-      check(record.constants);
-      for (const model::Field& field : record.fields) value(field.type);
-      if (record.kind == model::RecordKind::namedarray && record.number_count == 0) {
-        refuse(record.span, "a namedarray without numbers");
-      }
-    }
-    for (const model::Object& object : definition.objects) {
-      check(object.constants);
-      for (const model::Member& member : object.members) check(member);
-    }
-  }
-
- private:
-  void check(const std::vector<model::Constant>& constants) {
-    for (const model::Constant& constant : constants) {
-      if (constant.type.container == model::ContainerForm::none) continue;
-      refuse(constant.span, "a constant that is a container");
-    }
-  }
-
-  void check(const model::Member& member) {
-    if (member.kind != model::MemberKind::objref) value(member.type);
-    for (const model::Parameter& parameter : member.parameters) value(parameter.type);
-    if (member.generator_parameter) value(member.generator_parameter->type);
-  }
-
-  void value(const Type& type) {
-    if (std::holds_alternative<const model::Object*>(type.base) ||
-        std::holds_alternative<model::VarObject>(type.base)) {
-      refuse(type.span, "an object as a value");
-      return;
-    }
-    Type item = type;
-    item.container = model::ContainerForm::none;
-    if (type.container != model::ContainerForm::none && storage_size(item) > item_limit) {
-      refuse(type.span, "an array of more than 1 MiB in a container");
-    }
-  }
-
-  void refuse(Span span, const std::string& what) {
-    report_.add(Code::R0902, span, what + " cannot be expressed in C++");
-  }
-
-  Report& report_;
-};
-
-}  // namespace
 
 void check_types(const model::Definition& definition, Report& report) {
-  Checker(report).check(definition);
+  const auto judge = [](const model::Type& type) -> std::string {
+    model::Type item = type;
+    item.container = model::ContainerForm::none;
+    const bool is_contained = type.container != model::ContainerForm::none;
+    return is_contained && storage_size(item) > item_limit
+               ? "an array of more than 1 MiB in a container"
+               : "";
+  };
+  check_values(definition, {.language = "C++", .judge = judge}, report);
 }
 
 }  // namespace robdef::cpp

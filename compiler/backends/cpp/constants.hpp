@@ -13,12 +13,6 @@ namespace robdef::cpp {
 
 /// `text` between quotes, with escapes.
 std::string string_literal(std::string_view text);
-/// The literal of an enum's value.
-std::string enum_literal(const model::EnumValue& value);
-/// A number that fits into `primitive`, as it was written where C++ allows it.
-std::string number_literal(const model::Number& value, std::string_view written,
-                           model::Primitive primitive);
-
 /// The type of a constant in C++: `double`, `::std::array<double, 3>`, `::std::string_view`; empty
 /// for a struct constant.
 std::string constant_type(const model::Constant& constant, Types& types);

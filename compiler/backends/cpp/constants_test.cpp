@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "compiler/backends/cpp/literal_text.hpp"
+#include "compiler/backends/literals.hpp"
 #include "gmock/gmock.h"
 
 namespace robdef::cpp {

@@ -10,6 +10,7 @@
 #include "compiler/backends/cpp/layout.hpp"
 #include "compiler/backends/cpp/member_lines.hpp"
 #include "compiler/backends/cpp/view_parts.hpp"
+#include "compiler/backends/implements.hpp"
 #include "compiler/backends/words.hpp"
 
 namespace robdef::cpp {
@@ -21,22 +22,6 @@ using model::Object;
 using model::Type;
 
 constexpr std::size_t in_class = 2;
-
-/// The implemented object from whose classes a member comes. Null when there is none, and when
-/// there are two that do not have it from a common one: then it is made anew.
-const Object* origin(const Object& object, const std::string& name) {
-  const Object* found = nullptr;
-  for (const Object* base : object.implements) {
-    const bool has_it =
-        std::ranges::find(base->members, name, &Member::name) != base->members.end();
-    if (!has_it) continue;
-    const Object* inner = origin(*base, name);
-    const Object* root = inner == nullptr ? base : inner;
-    if (found != nullptr && found != root) return nullptr;
-    found = root;
-  }
-  return found;
-}
 
 /// `::rr::readonly | ::rr::nolock`; empty for none.
 std::string access_text(const model::Access& access) {
@@ -52,14 +37,6 @@ std::string access_text(const model::Access& access) {
   add(access.is_perclient, "perclient");
   add(access.is_urgent, "urgent");
   return join(flags, " | ");
-}
-
-/// What its kind is called among those that are not served.
-std::string plural_of(const Member& member) {
-  if (member.generator != model::GeneratorForm::none) return "generator functions";
-  const bool is_contained = member.type.container != model::ContainerForm::none;
-  if (member.kind == MemberKind::memory && is_contained) return "memories in a list or map";
-  return std::string(model::name_of(member.kind)) + "s";
 }
 
 class MemberMaker {

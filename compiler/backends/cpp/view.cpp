@@ -13,6 +13,7 @@
 #include "compiler/backends/cpp/literal_text.hpp"
 #include "compiler/backends/cpp/order.hpp"
 #include "compiler/backends/cpp/view_parts.hpp"
+#include "compiler/backends/literals.hpp"
 #include "compiler/backends/words.hpp"
 #include "compiler/output/prose.hpp"
 

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/backends/csharp/names.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "compiler/backends/csharp/backend.hpp"
+#include "compiler/backends/words.hpp"
+
+namespace robdef::csharp {
+namespace {
+
+constexpr auto keywords = std::to_array<std::string_view>(
+    {"abstract",  "as",       "base",       "bool",   "break",    "byte",      "case",
+     "catch",     "char",     "checked",    "class",  "const",    "continue",  "decimal",
+     "default",   "delegate", "do",         "double", "else",     "enum",      "event",
+     "explicit",  "extern",   "false",      "field",  "finally",  "fixed",     "float",
+     "for",       "foreach",  "goto",       "if",     "implicit", "in",        "int",
+     "interface", "internal", "is",         "lock",   "long",     "namespace", "new",
+     "null",      "object",   "operator",   "out",    "override", "params",    "private",
+     "protected", "public",   "readonly",   "ref",    "return",   "sbyte",     "sealed",
+     "short",     "sizeof",   "stackalloc", "static", "string",   "struct",    "switch",
+     "this",      "throw",    "true",       "try",    "typeof",   "uint",      "ulong",
+     "unchecked", "unsafe",   "ushort",     "using",  "virtual",  "void",      "volatile",
+     "while"});
+
+constexpr auto inherited_names = std::to_array<std::string_view>(
+    {"Clone", "EqualityContract", "Equals", "Finalize", "GetHashCode", "GetType", "MemberwiseClone",
+     "PrintMembers", "ReferenceEquals", "ToString"});
+
+std::string without_capitals(std::string_view name) {
+  std::string result(name);
+  const bool has_small = std::ranges::any_of(name, [](char c) { return c >= 'a' && c <= 'z'; });
+  if (has_small) return result;
+  for (char& c : result) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string pascal(std::string_view name) { return pascal_case(without_capitals(name)); }
+
+std::string camel(std::string_view name) {
+  const std::string result = camel_case(without_capitals(name));
+  return is_keyword(result) ? "@" + result : result;
+}
+
+bool is_keyword(std::string_view word) {
+  return std::ranges::find(keywords, word) != keywords.end();
+}
+
+bool is_inherited_name(std::string_view name) {
+  return std::ranges::find(inherited_names, name) != inherited_names.end();
+}
+
+std::string namespace_of(std::string_view service) {
+  std::vector<std::string> segments = segments_of(service);
+  for (std::string& segment : segments) segment = pascal(segment);
+  return join(segments, ".");
+}
+
+std::string qualified(const model::Definition& definition, std::string_view type) {
+  return "global::" + namespace_of(definition.name) + "." + std::string(type);
+}
+
+std::string interface_name(const model::Object& object) { return "I" + pascal(object.name); }
+std::string stub_name(const model::Object& object) { return pascal(object.name) + "Stub"; }
+std::string skeleton_name(const model::Object& object) { return pascal(object.name) + "Skeleton"; }
+std::string default_name(const model::Object& object) { return pascal(object.name) + "Default"; }
+
+bool has_default(const model::Object& object) {
+  return std::ranges::any_of(object.members, [](const model::Member& member) {
+    return member.kind == model::MemberKind::property ||
+           (member.kind == model::MemberKind::memory && runtime_abilities.serve(member));
+  });
+}
+
+void NameSet::add(const std::string& name, Span span, std::string_view what) {
+  const auto [place, is_new] = taken_.emplace(name, span);
+  if (is_new) return;
+  report_.add(Code::R0901, span, "the C# name `" + name + "` is made twice")
+      .label("the " + std::string(what) + " made here")
+      .also(place->second, "is called like this one");
+}
+
+std::string member_name(std::string_view wire_name, std::string_view owner, Span span,
+                        Report& report) {
+  std::string name = pascal(wire_name);
+  if (name != owner && !is_inherited_name(name)) return name;
+  name += '_';
+  report.add(Code::R0903, span, "`" + std::string(wire_name) + "` is reserved in C#")
+      .label("becomes `" + name + "`");
+  return name;
+}
+
+Names::Names(const model::Definition& definition, const model::Model& model, Report& report)
+    : definition_(definition) {
+  add_types(report);
+  for (const auto& other : model.definitions()) hide(*other);
+  const auto hide_members = [&](const auto& members) {
+    for (const auto& member : members) members_.insert(pascal(member.name));
+  };
+  for (const model::Record& record : definition.records) hide_members(record.fields);
+  for (const model::Object& object : definition.objects) hide_members(object.members);
+  hidden_.insert(members_.begin(), members_.end());
+}
+
+void Names::add_types(Report& report) {
+  NameSet types(report);
+  const auto add_all = [&](const auto& all, std::string_view what) {
+    for (const auto& one : all) types.add(pascal(one.name), one.span, what);
+  };
+  if (!definition_.constants.empty()) {
+    types.add(std::string(constants_class), definition_.constants.front().span,
+              "class of the constants");
+  }
+  add_all(definition_.exceptions, "exception");
+  add_all(definition_.enums, "enum");
+  for (const model::Record& record : definition_.records) {
+    types.add(pascal(record.name), record.span, model::name_of(record.kind));
+  }
+  for (const model::Object& object : definition_.objects) {
+    types.add(interface_name(object), object.span, "interface");
+    types.add(stub_name(object), object.span, "stub");
+    types.add(skeleton_name(object), object.span, "skeleton");
+    if (has_default(object)) types.add(default_name(object), object.span, "default class");
+  }
+}
+
+/// All that a plain name could mean before a using directive is asked.
+void Names::hide(const model::Definition& definition) {
+  for (const std::string& segment : segments_of(definition.name)) hidden_.insert(pascal(segment));
+  hidden_.insert(std::string(constants_class));
+  const auto hide_all = [&](const auto& all) {
+    for (const auto& one : all) hidden_.insert(pascal(one.name));
+  };
+  hide_all(definition.exceptions);
+  hide_all(definition.enums);
+  hide_all(definition.records);
+  for (const model::Object& object : definition.objects) {
+    hidden_.insert(
+        {interface_name(object), stub_name(object), skeleton_name(object), default_name(object)});
+  }
+}
+
+std::string Names::type(const model::Definition& owner, std::string_view name) const {
+  if (&owner == &definition_) return std::string(name);
+  return qualified(owner, name);
+}
+
+std::string Names::type_in_expression(const model::Definition& owner, std::string_view name) const {
+  return members_.contains(name) ? qualified(owner, name) : type(owner, name);
+}
+
+std::string Names::library(std::string_view space, std::string_view name) {
+  if (hidden_.contains(name)) return "global::" + std::string(space) + "." + std::string(name);
+  usings_.emplace(space);
+  return std::string(name);
+}
+
+std::string Names::local(std::string_view name, std::set<std::string>& taken) {
+  std::string result = camel(name);
+  while (!taken.insert(result).second) result += '_';
+  return result;
+}
+
+}  // namespace robdef::csharp

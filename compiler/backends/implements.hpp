@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "compiler/model/model.hpp"
+
+namespace robdef {
+
+/// The implemented object from whose generated types a member comes. Null when there is none, and
+/// when there are two that do not have it from a common one: then it is made anew.
+const model::Object* origin(const model::Object& object, const std::string& name);
+
+/// What its kind is called among those that are not served.
+std::string plural_of(const model::Member& member);
+
+}  // namespace robdef

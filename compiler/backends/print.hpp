@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "compiler/output/file_set.hpp"
+#include "compiler/output/template_folder.hpp"
+#include "compiler/output/view_type.hpp"
+
+/// How every backend's templates become files. The view of a backend has `definitions`, these have
+/// `declarations`, and each of these may have an `object`.
+namespace robdef {
+
+/// Prints one template for one subject after the other.
+class OutputPrinter {
+ public:
+  OutputPrinter(const TemplateFolder& folder, const OutputRule& rule,
+                const std::vector<const ViewType*>& types)
+      : rule_(rule),
+        text_(folder.sources, rule.name, types),
+        path_(folder.sources, TemplateFolder::rules_name, rule.path, types) {}
+
+  void print(const std::vector<const void*>& views, FileSet& files) const {
+    try {
+      files.add(path_.render(views), text_.render(views));
+    } catch (const std::logic_error& error) {
+      throw TemplateError(TemplateFolder::rules_name, rule_.line, error.what());
+    }
+  }
+
+ private:
+  const OutputRule& rule_;
+  Template text_;
+  Template path_;
+};
+
+/// Prints what one rule asks for. Throws TemplateError for a subject that there is not.
+template <class ModelView, class DefinitionView, class ObjectView>
+void print_output(const TemplateFolder& folder, const OutputRule& rule, const ModelView& view,
+                  FileSet& files) {
+  const ViewType& all = view_type<ModelView>();
+  if (rule.subject == "all") {
+    OutputPrinter(folder, rule, {&all}).print({&view}, files);
+  } else if (rule.subject == "definition") {
+    const OutputPrinter printer(folder, rule, {&all, &view_type<DefinitionView>()});
+    for (const DefinitionView& definition : view.definitions) {
+      printer.print({&view, &definition}, files);
+    }
+  } else if (rule.subject == "object") {
+    const OutputPrinter printer(folder, rule,
+                                {&all, &view_type<DefinitionView>(), &view_type<ObjectView>()});
+    for (const DefinitionView& definition : view.definitions) {
+      for (const auto& declaration : definition.declarations) {
+        if (declaration.object) printer.print({&view, &definition, &*declaration.object}, files);
+      }
+    }
+  } else {
+    throw TemplateError(
+        TemplateFolder::rules_name, rule.line,
+        "`" + rule.subject + "` is no subject; there are all, definition and object");
+  }
+}
+
+/// All files of a view: by the templates that were compiled in, and those of `folder` laid over
+/// them unless it is empty.
+template <class ModelView, class DefinitionView, class ObjectView>
+FileSet print_view(const ModelView& view, TemplateSources embedded, const std::string& folder) {
+  FileSet files;
+  TemplateFolder templates = TemplateFolder::from_sources(std::move(embedded));
+  if (!folder.empty()) templates = templates.overlaid_with(TemplateFolder::from_disk(folder));
+  for (const OutputRule& rule : templates.rules) {
+    print_output<ModelView, DefinitionView, ObjectView>(templates, rule, view, files);
+  }
+  return files;
+}
+
+}  // namespace robdef

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+using System.Collections.Generic;
+using System.Threading;
+using System.Threading.Tasks;
+using Experimental.Arm;
+
+namespace Robdef.Runtime.Tests;
+
+/// <summary>A service of all kinds of members.</summary>
+internal sealed class TestArm : ArmDefault
+{
+    private readonly JointDefault _joint = new();
+    private int _calls;
+
+    public TestArm()
+    {
+        ((StoredArrayMemory<double>)Buffer).Items = new double[1000];
+        ((StoredMultiDimMemory<double>)Grid).Items = new MultiDimArray<double>(20, 30);
+        ((StoredArrayMemory<Sample>)Records).Items = Pods.New<Sample>(10);
+        Samples.SetConnectHandler(end => end.SetHandler(packet => end.Send(packet * 2)));
+        Force.SetHandler((value, time, client) => Force.Send(value with { X = value.X + 1 }));
+    }
+
+    public List<int> Collected { get; } = [];
+
+    public TaskCompletionSource Collecting { get; } = new(TaskCreationOptions.RunContinuationsAsynchronously);
+
+    public override ValueTask<int> GetCallsAsync() => new(_calls);
+
+    public override ValueTask<double> AddAsync(double a, double b)
+    {
+        Interlocked.Increment(ref _calls);
+        return new(a + b);
+    }
+
+    public override async ValueTask FailAsync(string why)
+    {
+        await Task.Yield();
+        throw new Stuck(why, "by.test", 5.5);
+    }
+
+    public override ValueTask<Pose?> MoveAsync(Pose? target)
+    {
+        FireMoved(target!.X, target.Label);
+        return new(target with { X = target.X + 1 });
+    }
+
+    public override async ValueTask WaitLongAsync() => await Task.Delay(2000);
+
+    public override ValueTask<VarValue?> EchoAsync(VarValue? value) => new(value);
+
+    public override ValueTask<double[]> NumbersAsync(double[] values) => new(values);
+
+    public override ValueTask<Skeleton> GetJointsAsync(int index) => index == 3
+        ? new(_joint)
+        : throw new RobdefException(ErrorCode.InvalidArgument, "there is no such joint");
+
+    public override ValueTask<Skeleton> GetAnythingAsync() => new(_joint);
+
+    public override async ValueTask<int> AskBackAsync(int question) => await AskAsync(RrCurrentClient, question) + 1;
+
+    public override async IAsyncEnumerable<int> CountAsync(int limit)
+    {
+        for (int i = 0; i < limit; ++i)
+        {
+            await Task.Yield();
+            yield return i;
+        }
+    }
+
+    public override async ValueTask CollectAsync(IAsyncEnumerable<int> values)
+    {
+        await foreach (int value in values)
+        {
+            Collected.Add(value);
+        }
+        Collecting.SetResult();
+    }
+
+    public override async IAsyncEnumerable<int> TwiceAsync(IAsyncEnumerable<int> values)
+    {
+        await foreach (int value in values)
+        {
+            yield return 2 * value;
+        }
+    }
+}

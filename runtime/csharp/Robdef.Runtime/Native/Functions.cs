@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+using System.Runtime.InteropServices;
+
+namespace Robdef.Runtime.Native;
+
+#pragma warning disable IDE1006, CA1707 // Names as in rr.h.
+/// <summary>The functions of rr.h that are used. What they do and own is said there.</summary>
+internal static unsafe partial class Functions
+{
+    private const string Library = "robdef_runtime";
+    private const uint Version = 0x00010000;
+
+    static Functions()
+    {
+        uint version = rr_abi_version();
+        if (version >> 16 != Version >> 16 || version < Version)
+        {
+            throw new RobdefException(ErrorCode.InvalidConfiguration,
+                $"the native library has version {version >> 16}.{version & 0xFFFF}, and {Version >> 16}.{Version & 0xFFFF} is needed");
+        }
+    }
+
+    [LibraryImport(Library)]
+    public static partial uint rr_abi_version();
+
+    [LibraryImport(Library)]
+    public static partial RrElements rr_data_elements(nint data);
+    [LibraryImport(Library)]
+    public static partial void rr_data_release(nint data);
+    [LibraryImport(Library)]
+    public static partial void rr_error_read(nint error, RrErrorInfo* info);
+    [LibraryImport(Library)]
+    public static partial void rr_error_release(nint error);
+
+    [LibraryImport(Library)]
+    public static partial int rr_cancellation_new(out nint cancellation, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_cancellation_cancel(nint cancellation);
+    [LibraryImport(Library)]
+    public static partial void rr_cancellation_release(nint cancellation);
+    [LibraryImport(Library)]
+    public static partial void rr_subscription_release(nint subscription);
+
+    [LibraryImport(Library)]
+    public static partial int rr_request_answer(nint request, RrElements* value, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_request_answer_end(nint request, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_request_fail(nint request, RrErrorInfo* why, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_request_release(nint request);
+    [LibraryImport(Library)]
+    public static partial void rr_request_read(nint request, RrRequestInfo* info);
+    [LibraryImport(Library)]
+    public static partial int rr_request_answer_object(nint request, SafeHandle served, int perClient, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_request_answer_generator(nint request, RrGeneratorHandler* handler, nint* error);
+
+    [LibraryImport(Library)]
+    public static partial int rr_node_new(RrNodeOptions* options, out nint node, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_node_release(nint node);
+    [LibraryImport(Library)]
+    public static partial void rr_node_shutdown(SafeHandle node);
+    [LibraryImport(Library)]
+    public static partial int rr_node_listen(SafeHandle node, RrStr url, out ushort port, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_client_connect(SafeHandle node, RrStr* urls, nuint count, RrConnectOptions* options, out nint client, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_client_connect_async(SafeHandle node, RrStr* urls, nuint count, RrConnectOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_client_release(nint client);
+    [LibraryImport(Library)]
+    public static partial void rr_client_close(SafeHandle client);
+    [LibraryImport(Library)]
+    public static partial int rr_client_is_open(SafeHandle client);
+    [LibraryImport(Library)]
+    public static partial uint rr_client_message_version(SafeHandle client);
+    [LibraryImport(Library)]
+    public static partial int rr_client_root(SafeHandle client, out nint root, nint* error);
+
+    [LibraryImport(Library)]
+    public static partial void rr_object_release(nint handle);
+    [LibraryImport(Library)]
+    public static partial RrStr rr_object_path(SafeHandle handle);
+    [LibraryImport(Library)]
+    public static partial RrStr rr_object_type_name(SafeHandle handle);
+    [LibraryImport(Library)]
+    public static partial int rr_object_find(SafeHandle handle, RrStr member, RrIndex* index, RrStr type, RrCallOptions* options, out nint found, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_object_find_async(SafeHandle handle, RrStr member, RrIndex* index, RrStr type, RrCallOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_object_call(SafeHandle handle, uint request, RrStr member, RrElements* elements, RrCallOptions* options, out nint answer, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_object_call_async(SafeHandle handle, uint request, RrStr member, RrElements* elements, RrCallOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_object_lock(SafeHandle handle, int sessionOnly, RrCallOptions* options, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_object_unlock(SafeHandle handle, RrCallOptions* options, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_object_enter_monitor(SafeHandle handle, int waitMs, RrCallOptions* options, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_object_exit_monitor(SafeHandle handle, RrCallOptions* options, nint* error);
+
+    [LibraryImport(Library)]
+    public static partial int rr_event_subscribe(SafeHandle handle, RrStr member, RrEventHandler* handler, out nint subscription, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_callback_set(SafeHandle handle, RrStr member, uint access, int returnsValue, RrCallbackHandler* handler, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_callback_clear(SafeHandle handle, RrStr member, nint* error);
+
+    [LibraryImport(Library)]
+    public static partial int rr_generator_open(SafeHandle handle, RrStr member, RrElements* arguments, RrCallOptions* options, out nint generator, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_generator_open_async(SafeHandle handle, RrStr member, RrElements* arguments, RrCallOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_generator_next(SafeHandle generator, RrElements* parameter, RrCallOptions* options, out nint value, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_generator_next_async(SafeHandle generator, RrElements* parameter, RrCallOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_generator_end(SafeHandle generator, int aborts, RrCallOptions* options, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_generator_end_async(SafeHandle generator, int aborts, RrCallOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_generator_release(nint generator);
+
+    [LibraryImport(Library)]
+    public static partial int rr_memory_length(SafeHandle handle, RrStr member, RrCallOptions* options, out ulong length, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_memory_dims(SafeHandle handle, RrStr member, RrCallOptions* options, ulong* dims, nuint* count, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_memory_read(SafeHandle handle, RrStr member, RrMemoryType* type, ulong* position, ulong* count, nuint dims, void* items, nuint size, RrCallOptions* options, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_memory_write(SafeHandle handle, RrStr member, RrMemoryType* type, ulong* position, ulong* count, nuint dims, void* items, nuint size, RrCallOptions* options, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_memory_read_pieces(SafeHandle handle, RrStr member, RrMemoryType* type, ulong* position, ulong* count, nuint dims, RrMemoryPieces* pieces, RrCallOptions* options, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_memory_write_pieces(SafeHandle handle, RrStr member, RrMemoryType* type, ulong* position, ulong* count, nuint dims, RrMemoryPieces* pieces, RrCallOptions* options, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_piece_set(nint piece, RrElements* data, nint* error);
+
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_connect_async(SafeHandle handle, RrStr member, RrPipeOptions* pipe, RrCallOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_connect(SafeHandle handle, RrStr member, RrPipeOptions* pipe, RrCallOptions* options, out nint end, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_pipe_release(nint pipe);
+    [LibraryImport(Library)]
+    public static partial void rr_pipe_close(SafeHandle pipe);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_is_open(SafeHandle pipe);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_index(SafeHandle pipe);
+    [LibraryImport(Library)]
+    public static partial uint rr_pipe_client(SafeHandle pipe);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_send(SafeHandle pipe, RrElements* packet, uint* number, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_receive(SafeHandle pipe, out nint packet, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_peek(SafeHandle pipe, out nint packet, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_wait(SafeHandle pipe, int timeoutMs);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_receive_async(SafeHandle pipe, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial nuint rr_pipe_available(SafeHandle pipe);
+    [LibraryImport(Library)]
+    public static partial void rr_pipe_ask_for_acknowledgements(SafeHandle pipe, int on);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_set_handler(SafeHandle pipe, RrPipeHandler* handler, nint* error);
+
+    [LibraryImport(Library)]
+    public static partial int rr_wire_connect(SafeHandle handle, RrStr member, uint access, RrCallOptions* options, out nint wire, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_connect_async(SafeHandle handle, RrStr member, uint access, RrCallOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_wire_release(nint wire);
+    [LibraryImport(Library)]
+    public static partial void rr_wire_close(SafeHandle wire);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_is_open(SafeHandle wire);
+    [LibraryImport(Library)]
+    public static partial uint rr_wire_client(SafeHandle wire);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_send(SafeHandle wire, RrElements* value, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_received(SafeHandle wire, out nint value, RrTime* time, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_sent(SafeHandle wire, out nint value, RrTime* time, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_wait(SafeHandle wire, int timeoutMs);
+    [LibraryImport(Library)]
+    public static partial void rr_wire_set_lifespan(SafeHandle wire, int lifespanMs);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_set_handler(SafeHandle wire, RrWireHandler* handler, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_peek_in(SafeHandle handle, RrStr member, RrCallOptions* options, out nint value, RrTime* time, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_peek_out(SafeHandle handle, RrStr member, RrCallOptions* options, out nint value, RrTime* time, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_poke_out(SafeHandle handle, RrStr member, RrElements* value, RrCallOptions* options, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_peek_in_async(SafeHandle handle, RrStr member, RrCallOptions* options, RrTime* time, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_peek_out_async(SafeHandle handle, RrStr member, RrCallOptions* options, RrTime* time, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_poke_out_async(SafeHandle handle, RrStr member, RrElements* value, RrCallOptions* options, RrCompletion* completion, nint* error);
+
+    [LibraryImport(Library)]
+    public static partial int rr_definition_new(RrStr text, nint* imports, nuint count, out nint definition, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_definition_release(nint definition);
+    [LibraryImport(Library)]
+    public static partial int rr_object_type_new(SafeHandle definition, RrStr name, RrMember* members, nuint count, nuint memberSize, out nint type, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_object_type_release(nint type);
+    [LibraryImport(Library)]
+    public static partial int rr_served_object_new(SafeHandle type, RrObjectHandler* handler, out nint served, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_served_object_release(nint served);
+    [LibraryImport(Library)]
+    public static partial int rr_served_event_fire(SafeHandle served, uint member, RrElements* arguments, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_served_callback_call(SafeHandle served, uint member, uint client, RrElements* arguments, RrCallOptions* options, out nint answer, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_served_callback_call_async(SafeHandle served, uint member, uint client, RrElements* arguments, RrCallOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_served_pipe_set_handler(SafeHandle served, uint member, RrServedPipeHandler* handler, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_served_pipe_send(SafeHandle served, uint member, RrElements* packet, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_served_wire_set_handler(SafeHandle served, uint member, RrServedWireHandler* handler, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_served_wire_send(SafeHandle served, uint member, RrElements* value, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_served_wire_received(SafeHandle served, uint member, out nint value, RrTime* time, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_served_memory_set(SafeHandle served, uint member, RrMemorySource* source, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_users_from_text(RrStr text, out nint users, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_users_release(nint users);
+    [LibraryImport(Library)]
+    public static partial int rr_service_register(SafeHandle node, RrStr name, SafeHandle root, RrServiceOptions* options, out nint service, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_service_release(nint service);
+    [LibraryImport(Library)]
+    public static partial void rr_service_close(SafeHandle service);
+    [LibraryImport(Library)]
+    public static partial int rr_service_release_path(SafeHandle service, RrStr path, uint client, nint* error);
+    [LibraryImport(Library)]
+    public static partial uint rr_current_client();
+}
+#pragma warning restore IDE1006, CA1707

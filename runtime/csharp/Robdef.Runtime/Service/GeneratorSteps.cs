@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+using System;
+using System.Collections.Generic;
+using System.Runtime.CompilerServices;
+using System.Runtime.InteropServices;
+using System.Threading;
+using System.Threading.Channels;
+using System.Threading.Tasks;
+using Robdef.Runtime.Native;
+
+namespace Robdef.Runtime;
+
+/// <summary>The steps of one generator that a service gives. One at a time, by the native runtime's promise.</summary>
+internal abstract class GeneratorSteps(KnownTypes types)
+{
+    protected CancellationTokenSource Ended { get; } = new();
+
+    protected KnownTypes Types { get; } = types;
+
+    [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
+    public static unsafe void OnStep(nint context, nint native, RrRequestInfo* info)
+    {
+        GeneratorSteps steps = Context.Get<GeneratorSteps>(context);
+        var request = new ServedRequest(native, *info, steps.Types);
+        try
+        {
+            _ = steps.StepAsync(request);
+        }
+        catch (Exception exception)
+        {
+            request.Fail(exception);
+        }
+    }
+
+    [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
+    public static void OnEnd(nint context, int aborts) => Context.Get<GeneratorSteps>(context).Stop();
+
+    [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
+    public static void OnDrop(nint context)
+    {
+        GeneratorSteps steps = Context.Get<GeneratorSteps>(context);
+        Context.Free(context);
+        steps.Stop();
+    }
+
+    /// <summary>Answers or fails the request, whatever happens.</summary>
+    protected abstract Task StepAsync(ServedRequest request);
+
+    /// <summary>Lets go of what the program gave, once no step runs.</summary>
+    protected abstract ValueTask ReleaseAsync();
+
+    private void Stop()
+    {
+        if (!Ended.IsCancellationRequested)
+        {
+            Ended.Cancel();
+            _ = ReleaseQuietlyAsync();
+        }
+    }
+
+    private async Task ReleaseQuietlyAsync()
+    {
+        try
+        {
+            await ReleaseAsync().ConfigureAwait(false);
+        }
+        catch (OperationCanceledException)
+        {
+            // That is how the program's part ends.
+        }
+        catch (Exception exception)
+        {
+            Unhandled.Report(exception);
+        }
+    }
+}
+
+/// <summary>A generator that gives the values of a sequence.</summary>
+#pragma warning disable CA1001 // A semaphore without a wait handle has nothing to dispose.
+internal sealed class SourceSteps<T>(KnownTypes types, IAsyncEnumerable<T> values, ValueCodec<T> codec) : GeneratorSteps(types)
+{
+    private readonly SemaphoreSlim _turn = new(1);
+    private IAsyncEnumerator<T>? _values;
+
+    protected override async Task StepAsync(ServedRequest request)
+    {
+        await _turn.WaitAsync().ConfigureAwait(false);
+        try
+        {
+            _values ??= values.GetAsyncEnumerator(Ended.Token);
+            if (await _values.MoveNextAsync().ConfigureAwait(false))
+            {
+                request.Answer(_values.Current, codec);
+            }
+            else
+            {
+                request.AnswerEnd();
+            }
+        }
+        catch (Exception exception)
+        {
+            request.Fail(exception);
+        }
+        finally
+        {
+            _turn.Release();
+        }
+    }
+
+    protected override async ValueTask ReleaseAsync()
+    {
+        await _turn.WaitAsync().ConfigureAwait(false);
+        if (_values is not null)
+        {
+            await _values.DisposeAsync().ConfigureAwait(false);
+        }
+    }
+}
+
+#pragma warning restore CA1001
+
+/// <summary>
+/// What a client gives, step by step, as a sequence: asking for the next value says that the one
+/// before has been dealt with.
+/// </summary>
+internal sealed class Parameters<T>
+{
+    private readonly Channel<T> _values = Channel.CreateUnbounded<T>();
+    private TaskCompletionSource? _dealtWith;
+
+    public void End() => _values.Writer.TryComplete();
+
+    /// <summary>Hands over a value; the task ends when the next is asked for.</summary>
+    public Task Give(T value)
+    {
+        var dealtWith = new TaskCompletionSource(TaskCreationOptions.RunContinuationsAsynchronously);
+        _dealtWith = dealtWith;
+        _values.Writer.TryWrite(value);
+        return dealtWith.Task;
+    }
+
+    public async IAsyncEnumerable<T> ReadAsync([EnumeratorCancellation] CancellationToken cancel = default)
+    {
+        await foreach (T value in _values.Reader.ReadAllAsync(cancel).ConfigureAwait(false))
+        {
+            yield return value;
+            Interlocked.Exchange(ref _dealtWith, null)?.TrySetResult();
+        }
+    }
+}
+
+/// <summary>A generator whose values a piece of work takes.</summary>
+internal sealed class SinkSteps<T>(KnownTypes types, Func<IAsyncEnumerable<T>, ValueTask> work, ValueCodec<T> codec) : GeneratorSteps(types)
+{
+    private readonly Parameters<T> _parameters = new();
+    private Task? _work;
+
+    protected override Task StepAsync(ServedRequest request)
+    {
+        T value = request.Argument(codec);
+        _work ??= work(_parameters.ReadAsync()).AsTask();
+        return StepAsync(request, value);
+    }
+
+    protected override async ValueTask ReleaseAsync()
+    {
+        _parameters.End();
+        if (_work is not null)
+        {
+            await _work.ConfigureAwait(false);
+        }
+    }
+
+    private async Task StepAsync(ServedRequest request, T value)
+    {
+        try
+        {
+            Task running = _work!;
+            if (running.IsCompleted)
+            {
+                await running.ConfigureAwait(false);
+                request.AnswerEnd();
+                return;
+            }
+            Task dealtWith = _parameters.Give(value);
+            if (await Task.WhenAny(dealtWith, running).ConfigureAwait(false) == running)
+            {
+                // A fault is this step's; work that ends by itself has dealt with its last value.
+                await running.ConfigureAwait(false);
+            }
+            request.AnswerNothing();
+        }
+        catch (Exception exception)
+        {
+            request.Fail(exception);
+        }
+    }
+}
+
+/// <summary>A generator that makes a value of each that it takes.</summary>
+#pragma warning disable CA1001 // A semaphore without a wait handle has nothing to dispose.
+internal sealed class FilterSteps<TIn, TOut>(KnownTypes types, Func<IAsyncEnumerable<TIn>, IAsyncEnumerable<TOut>> work,
+    ValueCodec<TIn> taken, ValueCodec<TOut> given) : GeneratorSteps(types)
+{
+    private readonly SemaphoreSlim _turn = new(1);
+    private readonly Parameters<TIn> _parameters = new();
+    private IAsyncEnumerator<TOut>? _values;
+
+    protected override Task StepAsync(ServedRequest request)
+    {
+        TIn value = request.Argument(taken);
+        return StepAsync(request, value);
+    }
+
+    protected override async ValueTask ReleaseAsync()
+    {
+        _parameters.End();
+        await _turn.WaitAsync().ConfigureAwait(false);
+        if (_values is not null)
+        {
+            await _values.DisposeAsync().ConfigureAwait(false);
+        }
+    }
+
+    private async Task StepAsync(ServedRequest request, TIn value)
+    {
+        await _turn.WaitAsync().ConfigureAwait(false);
+        try
+        {
+            _values ??= work(_parameters.ReadAsync()).GetAsyncEnumerator(Ended.Token);
+            _ = _parameters.Give(value);
+            if (await _values.MoveNextAsync().ConfigureAwait(false))
+            {
+                request.Answer(_values.Current, given);
+            }
+            else
+            {
+                request.AnswerEnd();
+            }
+        }
+        catch (Exception exception)
+        {
+            request.Fail(exception);
+        }
+        finally
+        {
+            _turn.Release();
+        }
+    }
+}
+#pragma warning restore CA1001

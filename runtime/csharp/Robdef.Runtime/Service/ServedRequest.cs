@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+using System;
+using System.Collections.Generic;
+using System.Threading.Tasks;
+using Robdef.Runtime.Native;
+
+namespace Robdef.Runtime;
+
+/// <summary>
+/// Something that a client asks of an object, for generated code: its arguments are read before the
+/// function that got it returns; it is answered then or later, once.
+/// </summary>
+public readonly struct ServedRequest
+{
+    private const uint Get = 1;
+    private const uint Set = 2;
+
+    private readonly nint _request;
+    private readonly RrRequestInfo _info;
+    private readonly KnownTypes _types;
+
+    internal ServedRequest(nint request, in RrRequestInfo info, KnownTypes types)
+    {
+        _request = request;
+        _info = info;
+        _types = types;
+    }
+
+    /// <summary>The member's place in the table of its object.</summary>
+    public uint Member => _info.Member;
+
+    /// <summary>A property is asked for.</summary>
+    public bool IsGet => _info.Kind == Get;
+
+    /// <summary>A property is set.</summary>
+    public bool IsSet => _info.Kind == Set;
+
+    /// <summary>The client that asks.</summary>
+    public uint Client => _info.Client;
+
+    /// <summary>The index of an objref of int32.</summary>
+    public int IndexNumber => _info.IndexNumber;
+
+    /// <summary>The index of an objref of string.</summary>
+    public string IndexText => Failure.Text(_info.Name);
+
+    /// <summary>The arguments by their names.</summary>
+    public FieldReader Arguments => Elements.Fields(_info.Arguments, _types.Registry);
+
+    internal nint Native => _request;
+
+    internal KnownTypes Types => _types;
+
+    internal MessageVersion AnswerVersion => (MessageVersion)_info.AnswerVersion;
+
+    internal bool HasArguments => _info.Arguments.Count != 0;
+
+    /// <summary>The only argument.</summary>
+    public T Argument<T>(ValueCodec<T> codec)
+    {
+        ArgumentNullException.ThrowIfNull(codec);
+        return codec.Read(Elements.Reader(_info.Arguments, _types.Registry).Read());
+    }
+
+    /// <summary>Answers with a value, when it is there.</summary>
+    public ValueTask AnswerAsync<T>(ValueTask<T> value, ValueCodec<T> codec)
+    {
+        if (!value.IsCompletedSuccessfully)
+        {
+            return Later(this, value, codec);
+        }
+        Answer(value.Result, codec);
+        return default;
+    }
+
+    /// <summary>Answers without a value, when the work is done.</summary>
+    public ValueTask AnswerAsync(ValueTask work)
+    {
+        if (!work.IsCompletedSuccessfully)
+        {
+            return Later(this, work);
+        }
+        AnswerNothing();
+        return default;
+    }
+
+    /// <summary>Answers with an object, when it is there.</summary>
+    public ValueTask AnswerObjectAsync(ValueTask<Skeleton> value)
+    {
+        if (!value.IsCompletedSuccessfully)
+        {
+            return Later(this, value);
+        }
+        AnswerObject(value.Result);
+        return default;
+    }
+
+    /// <summary>Answers with a generator that gives these values.</summary>
+    public ValueTask AnswerSource<T>(IAsyncEnumerable<T> values, ValueCodec<T> codec)
+    {
+        ArgumentNullException.ThrowIfNull(values);
+        return AnswerGenerator(new SourceSteps<T>(_types, values, codec));
+    }
+
+    /// <summary>Answers with a generator whose values this work takes.</summary>
+    public ValueTask AnswerSink<T>(Func<IAsyncEnumerable<T>, ValueTask> work, ValueCodec<T> codec)
+    {
+        ArgumentNullException.ThrowIfNull(work);
+        return AnswerGenerator(new SinkSteps<T>(_types, work, codec));
+    }
+
+    /// <summary>Answers with a generator that takes and gives values.</summary>
+    public ValueTask AnswerFilter<TIn, TOut>(Func<IAsyncEnumerable<TIn>, IAsyncEnumerable<TOut>> work, ValueCodec<TIn> taken,
+        ValueCodec<TOut> given)
+    {
+        ArgumentNullException.ThrowIfNull(work);
+        return AnswerGenerator(new FilterSteps<TIn, TOut>(_types, work, taken, given));
+    }
+
+    internal unsafe void Answer<T>(T value, ValueCodec<T> codec)
+    {
+        ElementWriter writer = Writers.Rent(AnswerVersion);
+        codec.Write(writer, "return"u8, value);
+        fixed (byte* first = writer.Written)
+        {
+            RrElements elements = Elements.Of(first, writer);
+            Finish(Functions.rr_request_answer(_request, &elements, null));
+        }
+        Writers.Return(writer);
+    }
+
+    internal unsafe void AnswerNothing() => Finish(Functions.rr_request_answer(_request, null, null));
+
+    internal unsafe void AnswerEnd() => Finish(Functions.rr_request_answer_end(_request, null));
+
+    internal void Fail(Exception exception)
+    {
+        Failure.Send(_request, exception);
+        Functions.rr_request_release(_request);
+    }
+
+    private unsafe void AnswerObject(Skeleton skeleton)
+    {
+        if (skeleton is null)
+        {
+            throw new RobdefException(ErrorCode.ObjectNotFound, "there is no such object");
+        }
+        nint error;
+        int status = Functions.rr_request_answer_object(_request, skeleton.RrServe(), 0, &error);
+        Failure.Check(status, error, _types);
+        Functions.rr_request_release(_request);
+    }
+
+    private unsafe ValueTask AnswerGenerator(GeneratorSteps steps)
+    {
+        var native = new RrGeneratorHandler
+        {
+            Size = (nuint)sizeof(RrGeneratorHandler),
+            Context = Context.Of(steps),
+            OnStep = &GeneratorSteps.OnStep,
+            OnEnd = &GeneratorSteps.OnEnd,
+            Drop = &GeneratorSteps.OnDrop,
+        };
+        nint error;
+        Failure.Check(Functions.rr_request_answer_generator(_request, &native, &error), error, _types);
+        Functions.rr_request_release(_request);
+        return default;
+    }
+
+    /// <summary>The client may be gone: then nobody waits for the answer, and its failure says nothing.</summary>
+    private void Finish(int status)
+    {
+        _ = status;
+        Functions.rr_request_release(_request);
+    }
+
+    private static async ValueTask Later<T>(ServedRequest request, ValueTask<T> value, ValueCodec<T> codec)
+    {
+        T result;
+        try
+        {
+            result = await value.ConfigureAwait(false);
+        }
+        catch (Exception exception)
+        {
+            request.Fail(exception);
+            return;
+        }
+        request.AnswerOrFail(result, codec);
+    }
+
+    private static async ValueTask Later(ServedRequest request, ValueTask work)
+    {
+        try
+        {
+            await work.ConfigureAwait(false);
+        }
+        catch (Exception exception)
+        {
+            request.Fail(exception);
+            return;
+        }
+        request.AnswerNothing();
+    }
+
+    private static async ValueTask Later(ServedRequest request, ValueTask<Skeleton> value)
+    {
+        try
+        {
+            request.AnswerObject(await value.ConfigureAwait(false));
+        }
+        catch (Exception exception)
+        {
+            request.Fail(exception);
+        }
+    }
+
+    private void AnswerOrFail<T>(T result, ValueCodec<T> codec)
+    {
+        try
+        {
+            Answer(result, codec);
+        }
+        catch (Exception exception)
+        {
+            Fail(exception);
+        }
+    }
+}
