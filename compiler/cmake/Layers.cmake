@@ -11,7 +11,7 @@ set(robdef_layers
   "compiler/output: compiler/diagnostics"
   "compiler/backends: compiler/diagnostics compiler/model compiler/output"
   # A sketch is C++ too: words and literals are the same.
-  "compiler/backends/arduino: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/check_values.hpp compiler/backends/implements.hpp compiler/backends/literals.hpp compiler/backends/print.hpp compiler/backends/words.hpp compiler/backends/cpp/literal_text.hpp compiler/backends/cpp/names.hpp"
+  "compiler/backends/arduino: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/check_values.hpp compiler/backends/implements.hpp compiler/backends/literals.hpp compiler/backends/print.hpp compiler/backends/words.hpp compiler/backends/cpp/constants.hpp compiler/backends/cpp/literal_text.hpp compiler/backends/cpp/names.hpp"
   "compiler/backends/cpp: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/check_values.hpp compiler/backends/implements.hpp compiler/backends/literals.hpp compiler/backends/print.hpp compiler/backends/words.hpp"
   "compiler/backends/csharp: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/check_values.hpp compiler/backends/implements.hpp compiler/backends/literals.hpp compiler/backends/print.hpp compiler/backends/words.hpp"
   # Uses generated code, which stands on the runtime.

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "compiler/backends/arduino/names.hpp"
+#include "compiler/backends/cpp/constants.hpp"
 #include "compiler/backends/cpp/literal_text.hpp"
 #include "compiler/backends/literals.hpp"
 #include "compiler/backends/words.hpp"

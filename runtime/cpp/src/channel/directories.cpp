@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <pwd.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <system_error>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/channel/environment.hpp"
 
 namespace rr::channel {
 namespace {
@@ -22,11 +24,8 @@ namespace fs = std::filesystem;
 // Files are 0640, folders as the user's mask says (04, section 7.1).
 constexpr mode_t file_mode = 0640;
 constexpr std::size_t longest_info = 64 * 1024;
-
-std::string environment(const char* name) {
-  const char* const value = std::getenv(name);
-  return value == nullptr ? std::string() : value;
-}
+// Others may write to some of the folders: links are not followed.
+constexpr int read_flags = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY | O_NOFOLLOW;
 
 struct Account {
   std::string name;
@@ -79,19 +78,38 @@ flock whole_file(short type) {
 
 }  // namespace
 
+std::string own_user_name() {
+  std::string name = account().name;
+  if (name.empty()) {
+    throw Error(ErrorCode::system_resource_error,
+                "the user " + std::to_string(geteuid()) + " has no name");
+  }
+  return name;
+}
+
+fs::path system_run_directory() {
+  const std::string own = environment("ROBOTRACONTEUR_SYSTEM_RUN_DIR");
+  if (!own.empty()) return own;
+  return fs::path(environment("ROBOTRACONTEUR_SYSTEM_PREFIX") + "/") / "var/run/robotraconteur";
+}
+
+fs::path user_run_directory() {
+  if (geteuid() == 0) return system_run_directory() / "root";
+  const std::string own = environment("ROBOTRACONTEUR_USER_RUN_DIR");
+  if (!own.empty()) return own;
+  const std::string session = environment("XDG_RUNTIME_DIR");
+  if (!session.empty()) return fs::path(session) / "robotraconteur";
+  return "/tmp/robotraconteur-run-" + std::to_string(geteuid());
+}
+
 NodeDirectories NodeDirectories::of_user() {
   NodeDirectories result;
   const Account user = account();
-  result.user_name = user.name;
   result.is_root = geteuid() == 0;
-  const std::string prefix = environment("ROBOTRACONTEUR_SYSTEM_PREFIX");
-  const std::string system_run = environment("ROBOTRACONTEUR_SYSTEM_RUN_DIR");
-  result.system_run = !system_run.empty() ? fs::path(system_run)
-                      : !prefix.empty()   ? fs::path(prefix) / "var/run/robotraconteur"
-                                          : fs::path("/var/run/robotraconteur");
+  result.system_run = system_run_directory();
+  result.user_run = user_run_directory();
   if (result.is_root) {
-    const fs::path root = prefix.empty() ? fs::path("/") : fs::path(prefix);
-    result.user_run = result.system_run / "root";
+    const fs::path root(environment("ROBOTRACONTEUR_SYSTEM_PREFIX") + "/");
     result.user_config = root / "etc/robotraconteur";
     result.user_state = root / "var/lib/robotraconteur";
     return result;
@@ -99,12 +117,6 @@ NodeDirectories NodeDirectories::of_user() {
   std::string home = environment("ROBOTRACONTEUR_USER_HOME");
   if (home.empty()) home = environment("HOME");
   if (home.empty()) home = user.home;
-  const std::string run = environment("ROBOTRACONTEUR_USER_RUN_DIR");
-  const std::string session = environment("XDG_RUNTIME_DIR");
-  result.user_run = !run.empty() ? fs::path(run)
-                    : !session.empty()
-                        ? fs::path(session) / "robotraconteur"
-                        : fs::path("/tmp/robotraconteur-run-" + std::to_string(geteuid()));
   const std::string config = environment("ROBOTRACONTEUR_USER_CONFIG_DIR");
   const std::string state = environment("ROBOTRACONTEUR_USER_STATE_DIR");
   result.user_config =
@@ -117,11 +129,13 @@ NodeDirectories NodeDirectories::of_user() {
 std::map<std::string, std::string> read_info_file(const fs::path& file) {
   std::map<std::string, std::string> result;
   // One that is a pipe must not wait for who writes.
-  const Descriptor opened(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
-  if (!opened) return result;
-  std::string text(longest_info, '\0');
+  const Descriptor opened(open(file.c_str(), read_flags));
+  struct stat found {};
+  if (!opened || fstat(opened.get(), &found) != 0 || !S_ISREG(found.st_mode)) return result;
+  std::string text(longest_info + 1, '\0');
   const ssize_t size = read(opened.get(), text.data(), text.size());
-  text.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  if (size <= 0 || static_cast<std::size_t>(size) > longest_info) return result;
+  text.resize(static_cast<std::size_t>(size));
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     const std::string line = text.substr(begin, end - begin);
@@ -136,18 +150,22 @@ std::map<std::string, std::string> read_info_file(const fs::path& file) {
 
 // Locks of the open file, not of the process: two nodes of one process exclude each other, too, and
 // one does not lose its lock when another reads the file. They exclude those of processes.
-LockedFile::LockedFile(const fs::path& file) : name_(file.string()) {
+LockedFile::LockedFile(const fs::path& file, std::string_view what) : name_(file.string()) {
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
-  file_ = Descriptor(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, file_mode));
+  file_ = Descriptor(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, file_mode));
   if (!file_) fail("open", name_);
   flock lock = whole_file(F_WRLCK);
-  if (fcntl(file_.get(), F_OFD_SETLK, &lock) == 0) return;
+  if (fcntl(file_.get(), F_OFD_SETLK, &lock) == 0) {
+    fchmod(file_.get(), file_mode);  // whatever the mask is, and who made it
+    return;
+  }
   if (errno != EACCES && errno != EAGAIN) fail("lock", name_);
-  throw Error(ErrorCode::invalid_operation, name_ + " is in use by another node");
+  throw Error(ErrorCode::invalid_operation,
+              std::string(what) + " is in use: another node has locked `" + name_ + "`");
 }
 
-void LockedFile::write(const std::string& content) {
+void LockedFile::write(const std::string& content) const {
   if (ftruncate(file_.get(), 0) != 0 || pwrite(file_.get(), content.data(), content.size(), 0) !=
                                             static_cast<ssize_t>(content.size())) {
     fail("write", name_);
@@ -155,7 +173,7 @@ void LockedFile::write(const std::string& content) {
 }
 
 bool LockedFile::is_held(const fs::path& file) {
-  const Descriptor opened(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  const Descriptor opened(open(file.c_str(), read_flags));
   if (!opened) return false;
   flock lock = whole_file(F_WRLCK);
   return fcntl(opened.get(), F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/run_directories.hpp"
 
-#include <pwd.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,7 +10,7 @@
 #include <filesystem>
 
 #include "rr/error.hpp"
-#include "runtime/cpp/src/channel/environment.hpp"
+#include "runtime/cpp/src/channel/directories.hpp"
 
 namespace rr::channel {
 namespace {
@@ -50,18 +49,6 @@ void check_owner(const std::string& path) {
 
 }  // namespace
 
-std::string own_user_name() {
-  passwd entry{};
-  passwd* found = nullptr;
-  std::vector<char> buffer(16 * 1024);
-  if (getpwuid_r(geteuid(), &entry, buffer.data(), buffer.size(), &found) != 0 ||
-      found == nullptr) {
-    throw Error(ErrorCode::system_resource_error,
-                "the user " + std::to_string(geteuid()) + " has no name");
-  }
-  return found->pw_name;
-}
-
 bool is_user_name(std::string_view text) {
   return !text.empty() && is_letter(text.front()) &&
          std::all_of(text.begin(), text.end(), [](char c) {
@@ -70,20 +57,13 @@ bool is_user_name(std::string_view text) {
 }
 
 std::string system_run_directory(const LocalOptions& options) {
-  if (!options.system_run_dir.empty()) return options.system_run_dir;
-  const std::string own = environment("ROBOTRACONTEUR_SYSTEM_RUN_DIR");
-  if (!own.empty()) return own;
-  return environment("ROBOTRACONTEUR_SYSTEM_PREFIX") + "/var/run/robotraconteur";
+  return options.system_run_dir.empty() ? system_run_directory().string() : options.system_run_dir;
 }
 
 std::string user_run_directory(const LocalOptions& options) {
   if (!options.user_run_dir.empty()) return options.user_run_dir;
   if (geteuid() == 0) return system_run_directory(options) + "/root";
-  const std::string own = environment("ROBOTRACONTEUR_USER_RUN_DIR");
-  if (!own.empty()) return own;
-  const std::string runtime = environment("XDG_RUNTIME_DIR");
-  if (!runtime.empty()) return runtime + "/robotraconteur";
-  return "/tmp/robotraconteur-run-" + std::to_string(geteuid());
+  return user_run_directory().string();
 }
 
 NodeFolder private_folder(const LocalOptions& options) {

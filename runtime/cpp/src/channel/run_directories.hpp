@@ -12,12 +12,10 @@
 /// Where nodes of one machine leave what others find them by (04, section 7.1).
 namespace rr::channel {
 
-/// The name of the user that the process runs as; throws rr::Error (system_resource_error).
-std::string own_user_name();
 /// Whether a user may be named so in a URL.
 bool is_user_name(std::string_view text);
 
-/// The run directories of this process: the user's and the system's.
+/// The run directories: those of the options, or those of the environment.
 std::string user_run_directory(const LocalOptions& options);
 std::string system_run_directory(const LocalOptions& options);
 

@@ -46,13 +46,7 @@ KeptNodeId::KeptNodeId(const std::string& name) {
     throw Error(ErrorCode::invalid_argument, "`" + name + "` is no name for a node");
   }
   const auto directories = channel::NodeDirectories::of_user();
-  try {
-    lock_.emplace(directories.user_run / "nodeids" / (name + ".pid"));
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::invalid_operation) throw;
-    throw Error(ErrorCode::invalid_operation,
-                "a node named `" + name + "` runs already: " + error.message());
-  }
+  lock_.emplace(directories.user_run / "nodeids" / (name + ".pid"), "the node name `" + name + "`");
   lock_->write(std::to_string(::getpid()));
 
   const fs::path file = id_file(directories, name);
@@ -66,7 +60,7 @@ KeptNodeId::KeptNodeId(const std::string& name) {
     return;
   }
   id_ = NodeId::random();
-  channel::LockedFile(file).write(id_.text_with_braces());
+  channel::LockedFile(file, "the id of `" + name + "`").write(id_.text_with_braces());
 }
 
 }  // namespace rr
