@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/arduino/bench/simulated_board.hpp"
 
+#include <algorithm>
+#include <cstdlib>
 #include <stdexcept>
 
 extern "C" {
@@ -10,6 +12,10 @@ extern "C" {
 #include <simavr/sim_avr.h>
 #include <simavr/sim_elf.h>
 }
+
+// The simulator never frees what it reads a program into, nor its own tables.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() { return "leak:libsimavr\n"; }
 
 namespace rr::serial::testing {
 namespace {
