@@ -213,7 +213,9 @@ public sealed partial class CaptureTests
             return;
         }
         // A single number or namedarray in a varvalue arrives as an array of one.
-        if (expected.ValueKind != JsonValueKind.Array)
+        bool isOne = expected.ValueKind != JsonValueKind.Array
+            || (actual.Count == 1 && actual[0] is ValueType and not IConvertible && expected[0].ValueKind != JsonValueKind.Array);
+        if (isOne)
         {
             Assert.Single(actual);
             AssertSame(expected, actual[0], name);
