@@ -36,7 +36,8 @@ FileSet generated() {
 
 TEST(CSharpGolden, EachFeatureGivesWhatStandsInTheGoldenFolder) {
   const GoldenCorpus corpus(ROBDEF_DEFINITIONS_DIR);
-  for (const auto& [path, content] : generated().files()) {
+  const FileSet files = generated();
+  for (const auto& [path, content] : files.files()) {
     fs::path input = golden_folder / path;
     input.replace_extension(".robdef");
     EXPECT_EQ(corpus.difference(input, ".cs", content), "");

@@ -300,8 +300,14 @@ class MemberMaker {
 
   /// All that the classes have for a member: what stubs and interfaces do, and what skeletons do.
   void add_names(const MemberView& view, const Member& member) {
-    const auto add = [&](const std::string& name) { taken_.add(name, member.span, view.kind); };
-    const auto serve = [&](const std::string& name) { served_.add(name, member.span, view.kind); };
+    // A member is reported once, however many of its names meet others.
+    bool is_new = true;
+    const auto add = [&](const std::string& name) {
+      is_new = is_new && taken_.add(name, member.span, view.kind);
+    };
+    const auto serve = [&](const std::string& name) {
+      is_new = is_new && served_.add(name, member.span, view.kind);
+    };
     if (view.is_property || view.is_objref) {
       if (view.is_objref || view.can_get) {
         add("Get" + view.name);

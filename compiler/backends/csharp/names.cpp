@@ -78,12 +78,13 @@ bool has_default(const model::Object& object) {
   });
 }
 
-void NameSet::add(const std::string& name, Span span, std::string_view what) {
+bool NameSet::add(const std::string& name, Span span, std::string_view what) {
   const auto [place, is_new] = taken_.emplace(name, span);
-  if (is_new) return;
+  if (is_new) return true;
   report_.add(Code::R0901, span, "the C# name `" + name + "` is made twice")
       .label("the " + std::string(what) + " made here")
       .also(place->second, "is called like this one");
+  return false;
 }
 
 std::string member_name(std::string_view wire_name, std::string_view owner, Span span,

@@ -43,7 +43,8 @@ class NameSet {
  public:
   explicit NameSet(Report& report) : report_(report) {}
   /// Reports R0901 for a name that is there. `what` says what is called so: `stub`.
-  void add(const std::string& name, Span span, std::string_view what);
+  /// False when it was there.
+  bool add(const std::string& name, Span span, std::string_view what);
 
  private:
   Report& report_;

@@ -85,7 +85,7 @@ public sealed class ElementWriter : IDisposable
     /// <param name="count">Items, nested elements or bytes of a string.</param>
     public void EndElement(int begin, scoped in ElementKey key, ElementType type, scoped ReadOnlySpan<byte> typeName, int count)
     {
-        if (key.Name.Length > LongestName || key.Metadata.Length > LongestName)
+        if (Version == MessageVersion.V2 && (key.Name.Length > LongestName || key.Metadata.Length > LongestName))
         {
             throw new RobdefException(ErrorCode.ProtocolError, "the name of an element is longer than 65535 bytes");
         }
