@@ -46,8 +46,8 @@ class LocalNodes : public ::testing::Test {
                              "}\nnodename: my.node-1\npid: 1\nsocket: /x.sock\nusername: " + user +
                              "\n";
     std::vector<std::unique_ptr<LockedFile>> files;
-    files.push_back(std::make_unique<LockedFile>(base / "by-nodeid" / (id_text + ".info")));
-    files.push_back(std::make_unique<LockedFile>(base / "by-nodename" / "my.node-1.info"));
+    files.push_back(std::make_unique<LockedFile>(base / "by-nodeid" / (id_text + ".info"), "id"));
+    files.push_back(std::make_unique<LockedFile>(base / "by-nodename" / "my.node-1.info", "name"));
     for (const auto& file : files) file->write(info);
     return files;
   }
@@ -90,15 +90,15 @@ TEST_F(LocalNodes, ThatHaveEndedAreLeftOut) {
 TEST_F(LocalNodes, FilesThatAreNoneAreNotHeeded) {
   fs::create_directories(own() / "by-nodeid" / "folder.info");
   ASSERT_EQ(mkfifo((own() / "by-nodeid" / "pipe.info").c_str(), 0600), 0);
-  LockedFile noise(own() / "by-nodeid" / "noise.info");
+  LockedFile noise(own() / "by-nodeid" / "noise.info", "noise");
   noise.write(std::string(200'000, 'x') + "\nnodeid: no\n");
   EXPECT_TRUE(find_local_nodes().empty());
 }
 
 TEST_F(LocalNodes, AFileIsHeldByOne) {
-  std::optional<LockedFile> first(std::in_place, home_ / "a" / "b.pid");
+  std::optional<LockedFile> first(std::in_place, home_ / "a" / "b.pid", "b");
   EXPECT_TRUE(LockedFile::is_held(home_ / "a" / "b.pid"));
-  EXPECT_EQ(rr::testing::error_of([&] { LockedFile second(home_ / "a" / "b.pid"); }).code(),
+  EXPECT_EQ(rr::testing::error_of([&] { LockedFile second(home_ / "a" / "b.pid", "b"); }).code(),
             ErrorCode::invalid_operation);
   first->write("12345");
   first->write("678");
