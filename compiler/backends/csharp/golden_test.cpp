@@ -66,7 +66,8 @@ TEST(CSharpReject, EachFileGivesWhatStandsBesideIt) {
 TEST(CSharpReject, EachCodeOfBackendsHasAFile) {
   const GoldenCorpus corpus(ROBDEF_REJECT_DIR);
   for (const CodeEntry& entry : code_entries()) {
-    if (!entry.name.starts_with("R09")) continue;
+    // R092x are of boards.
+    if (!entry.name.starts_with("R09") || entry.name.starts_with("R092")) continue;
     EXPECT_TRUE(std::ranges::any_of(corpus.inputs(), [&](const fs::path& input) {
       return input.filename().string().starts_with(entry.name);
     })) << entry.name;

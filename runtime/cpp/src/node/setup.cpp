@@ -17,6 +17,9 @@ namespace {
 // The most that the protocol allows (04, section 3).
 constexpr std::uint32_t jumbo_size = 100 * 1024 * 1024;
 
+constexpr const char* private_local_url = "rr+local:///";
+constexpr const char* public_local_url = "rr+local:///?public=true";
+
 constexpr std::array<std::string_view, 4> level_names = {"debug", "info", "warning", "error"};
 
 // Prints what is at least as grave as `least`.
@@ -48,41 +51,50 @@ void apply_limits(const SetupOptions& setup, NodeOptions& options) {
   if (setup.jumbo_message) options.limits.message_size = jumbo_size;
 }
 
+void apply_channels(const SetupOptions& setup, NodeOptions& options) {
+  options.tls.is_required = options.tls.is_required || setup.require_tls;
+  std::vector<std::string>& origins = options.web_socket.origins;
+  origins.insert(origins.end(), setup.tcp_ws_add_origin.begin(), setup.tcp_ws_add_origin.end());
+  for (const std::string& origin : setup.tcp_ws_remove_origin) std::erase(origins, origin);
+}
+
 // A channel whose flags a set-up knows, and what it does with them.
 struct ChannelRow {
-  std::string_view scheme;
-  std::string_view flag;
   bool (*is_wanted)(const SetupOptions&);
   std::string (*url)(const SetupOptions&);  ///< to listen at
+  bool is_tcp = false;
 };
 
-// Those that are listened to; one that this program has no channel for is left out.
+// Those that are listened to.
 constexpr std::array channels = {
-    ChannelRow{"rr+tcp", "tcp-start-server",
-               [](const SetupOptions& setup) {
-                 return setup.tcp_enable && setup.tcp_start_server && !setup.require_tls;
-               },
+    ChannelRow{[](const SetupOptions& setup) { return setup.tcp_enable && setup.tcp_start_server; },
                [](const SetupOptions& setup) {
                  const std::string host = setup.tcp_listen_localhost ? "localhost" : "*";
                  return "rr+tcp://" + host + ":" + std::to_string(setup.tcp_port);
-               }},
-    ChannelRow{"rrs+tcp", "require-tls",
-               [](const SetupOptions& setup) {
-                 return setup.tcp_enable && setup.tcp_start_server && setup.require_tls;
                },
-               [](const SetupOptions& setup) {
-                 const std::string host = setup.tcp_listen_localhost ? "localhost" : "*";
-                 return "rrs+tcp://" + host + ":" + std::to_string(setup.tcp_port);
-               }},
+               true},
     ChannelRow{
-        "rr+local", "local-start-server",
         [](const SetupOptions& setup) { return setup.local_enable && setup.local_start_server; },
-        [](const SetupOptions&) { return std::string("rr+local:///"); }},
+        [](const SetupOptions& setup) {
+          return std::string(setup.local_server_public ? public_local_url : private_local_url);
+        }},
     ChannelRow{
-        "rr+intra", "intra-start-server",
         [](const SetupOptions& setup) { return setup.intra_enable && setup.intra_start_server; },
         [](const SetupOptions&) { return std::string("rr+intra:///"); }},
 };
+
+// Most machines have no folder for public local sockets, for which an administrator is needed: the
+// user's own is used instead.
+std::uint16_t listen(Node& node, const std::string& url,
+                     const std::function<void(LogLevel, std::string_view)>& log) {
+  try {
+    return node.listen(url);
+  } catch (const Error& error) {
+    if (url != public_local_url || error.code() != ErrorCode::system_resource_error) throw;
+    if (log) log(LogLevel::info, "local sockets are for this user only: " + error.message());
+  }
+  return node.listen(private_local_url);
+}
 
 // What may be asked for, and nobody here does.
 void report_missing(const SetupOptions& setup, const NodeOptions& options) {
@@ -129,6 +141,7 @@ NodeSetup::NodeSetup(SetupOptions options, int argc, const char* const* argv)
   NodeOptions node_options = setup.node;
   if (!node_options.log) node_options.log = printing_log(setup.log_level);
   apply_limits(setup, node_options);
+  apply_channels(setup, node_options);
   report_missing(setup, node_options);
   const auto log = node_options.log;
   state.node.emplace(std::move(node_options));
@@ -137,16 +150,8 @@ NodeSetup::NodeSetup(SetupOptions options, int argc, const char* const* argv)
 
   for (const ChannelRow& row : channels) {
     if (!row.is_wanted(setup)) continue;
-    if (node.has_channel(row.scheme)) {
-      const std::uint16_t port = node.listen(row.url(setup));
-      if (row.scheme == "rr+tcp" || row.scheme == "rrs+tcp") state.port = port;
-    } else if (row.flag == "require-tls") {
-      throw Error(ErrorCode::invalid_configuration,
-                  "TLS is required, and this program has no channel for `rrs+tcp`");
-    } else if (log) {
-      log(LogLevel::info, "the flag " + std::string(row.flag) + " does nothing: no channel for `" +
-                              std::string(row.scheme) + "`");
-    }
+    const std::uint16_t port = listen(node, row.url(setup), log);
+    if (row.is_tcp) state.port = port;
   }
   const Discovery discovery = node.discovery();
   const bool has_network = setup.tcp_ipv4_discovery || setup.tcp_ipv6_discovery;

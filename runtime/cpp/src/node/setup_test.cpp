@@ -232,10 +232,18 @@ TEST_F(Setup, AServerCanBeReachedByItsCandidateUrls) {
 
 TEST_F(Setup, TlsThatIsRequiredIsNotLeftOut) {
   SetupOptions options = quiet_server("a.node");
-  options.load_tls = options.require_tls = true;
-  Node node;
-  if (node.has_channel("rrs+tcp")) GTEST_SKIP() << "left out: there is a channel for TLS";
+  options.load_tls = options.require_tls = true;  // and there is no certificate
   EXPECT_EQ(error_of([&] { NodeSetup setup(options); }).code(), ErrorCode::invalid_configuration);
+}
+
+TEST_F(Setup, PublicLocalSocketsAreTheUsersOwnWhereThereIsNoFolder) {
+  SetupOptions options = quiet_server("a.local.node");
+  options.local_server_public = true;
+  NodeSetup server(options);
+  server->register_service("counter", std::make_shared<Counter>());
+  Node client;
+  const auto url = "rr+local:///?nodename=a.local.node&service=counter";
+  EXPECT_EQ(client.connect<CounterStub>(url)->add(1, 2), 3);
 }
 
 TEST_F(Setup, DisabledThingsAreNotOffered) {
