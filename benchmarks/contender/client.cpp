@@ -89,8 +89,8 @@ class Client final : public bench::Client {
     return std::make_unique<Session>(node_, port);
   }
 
-  // Callers of L3 have a connection each, as those of omniORB and Thrift do; with ROBDEF_BENCH_SHARED=1
-  // they share one, as those of Ice and gRPC.
+  // Callers of L3 have a connection each, as those of omniORB and Thrift do; with
+  // ROBDEF_BENCH_SHARED=1 they share one, as those of Ice and gRPC.
   bool shared_session() override { return std::getenv("ROBDEF_BENCH_SHARED") != nullptr; }
 
   void async(int port, bench::AsyncRun& run) override {
