@@ -120,6 +120,20 @@ TEST_F(CommandLine, AWarningLeavesStatusZeroAndCanBeTurnedOff) {
   EXPECT_EQ(quiet.err, "");
 }
 
+TEST_F(CommandLine, WhatIsFoundTwiceAtOnePlaceCountsOnce) {
+  folder_.write("a.robdef",
+                "service a\nstdver 0.10\nstruct S\n    field double{string} m\nend\n"
+                "object O\n    property S x\n    property S y\nend\n");
+  const Ended ended = run({"generate", "--lang", "arduino", "a.robdef"});
+  EXPECT_EQ(ended.status, 1);
+  std::size_t shown = 0;
+  for (std::size_t at = 0; (at = ended.err.find("error[R", at)) != std::string::npos; ++at) ++shown;
+  EXPECT_GE(shown, 1U);
+  EXPECT_THAT(ended.err,
+              HasSubstr("\n" + std::to_string(shown) + (shown == 1 ? " error\n" : " errors\n")));
+  EXPECT_THAT(ended.err, Not(HasSubstr("warning")));
+}
+
 TEST_F(CommandLine, StrictAsksForAVersion) {
   folder_.write("a.robdef", "service a\nobject O\n    property double x\nend object\n");
   EXPECT_EQ(run({"check", "a.robdef"}).status, 0);

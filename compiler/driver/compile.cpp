@@ -80,8 +80,13 @@ void print_findings(const Report& report, const Sources& sources, const Options&
   std::ostream& target = options.format == Format::json && !prints_product ? out : err;
   target << render(report, sources, options.format);
   if (options.format != Format::text) return;
-  const std::size_t warnings = report.sorted().size() - report.errors();
-  std::string summary = report.errors() == 0 ? "" : count_of(report.errors(), "error");
+  // As shown: one that was found twice counts once.
+  const auto shown = report.sorted();
+  const auto errors = static_cast<std::size_t>(std::count_if(
+      shown.begin(), shown.end(),
+      [](const Diagnostic* diagnostic) { return diagnostic->severity() == Severity::error; }));
+  const std::size_t warnings = shown.size() - errors;
+  std::string summary = errors == 0 ? "" : count_of(errors, "error");
   if (warnings != 0) summary += (summary.empty() ? "" : ", ") + count_of(warnings, "warning");
   if (!summary.empty()) err << '\n' << summary << '\n';
 }
