@@ -190,7 +190,8 @@ class Session final : public channel::Receiver,
   // Objects (session_objects.cpp)
   std::shared_ptr<Stub> make_stub(const std::string& told, const std::string& path,
                                   std::string_view wanted,
-                                  const std::vector<std::string>& implements);
+                                  const std::vector<std::string>& implements,
+                                  const ObjectType* preferred = nullptr);
   [[nodiscard]] std::vector<std::string> implemented(const std::string& type) const;
   [[nodiscard]] std::vector<std::string> all_types(
       const std::string& told, const std::vector<std::string>& implements) const;

@@ -113,7 +113,7 @@ std::shared_ptr<Stub> Session::root(const ObjectType* wanted) {
   const std::string_view type = !options_.object_type.empty() ? options_.object_type
                                 : wanted != nullptr           ? wanted->name
                                                               : std::string_view();
-  return make_stub(object_type_, service_, type, object_implements_);
+  return make_stub(object_type_, service_, type, object_implements_, wanted);
 }
 
 void Session::learn() {

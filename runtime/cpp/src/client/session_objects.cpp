@@ -63,7 +63,8 @@ std::vector<std::string> Session::all_types(const std::string& told,
 // all its types that this program knows the most derived one is taken.
 std::shared_ptr<Stub> Session::make_stub(const std::string& told, const std::string& path,
                                          std::string_view wanted,
-                                         const std::vector<std::string>& implements) {
+                                         const std::vector<std::string>& implements,
+                                         const ObjectType* preferred) {
   if (options_.definition_reader) options_.definition_reader->read(definitions());
   const std::vector<std::string> names = all_types(told, implements);
   if (!wanted.empty() && std::find(names.begin(), names.end(), wanted) == names.end()) {
@@ -72,7 +73,9 @@ std::shared_ptr<Stub> Session::make_stub(const std::string& told, const std::str
   }
   const ObjectType* known = nullptr;
   for (const std::string& type : names) {
-    const ObjectType* const found = types()->find_object(type);
+    // What the caller has is taken before what is known by the same name.
+    const bool is_preferred = preferred != nullptr && preferred->name == type;
+    const ObjectType* const found = is_preferred ? preferred : types()->find_object(type);
     if (found == nullptr || found->make_stub == nullptr) continue;
     known = found;
     break;

@@ -73,7 +73,7 @@ std::vector<FoundService> ask_at(const subscription::Host& host, const std::stri
   host.keep(session);
   const channel::Interruption::Scope interruptible(question.interruption);
   const CallScope scope(call_limit, question.cancellation);
-  const auto stub = stub_cast<IndexStub>(session->connect(parsed, &service_index::index_type));
+  const auto stub = stub_cast<IndexStub>(session->connect(parsed, &service_index::index_stub_type));
   struct Leave {
     Session& session;
     ~Leave() { session.drop(); }

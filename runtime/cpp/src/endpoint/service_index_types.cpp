@@ -43,6 +43,8 @@ constexpr std::string_view definition_text =
     "event LocalNodeServicesChanged()\n"
     "end object\n";
 
+constexpr std::string_view index_type_name = "RobotRaconteurServiceIndex.ServiceIndex";
+
 std::shared_ptr<Stub> make_stub() { return std::make_shared<IndexStub>(); }
 
 constexpr const RecordType* records[] = {&node_info_type, &service_info_type};
@@ -64,8 +66,8 @@ constinit const Member members[4] = {
     event("LocalNodeServicesChanged"),
 };
 
-constinit const ObjectType index_type{
-    "RobotRaconteurServiceIndex.ServiceIndex", definition, {}, members, &make_stub};
+constinit const ObjectType index_type{index_type_name, definition, {}, members, nullptr};
+constinit const ObjectType index_stub_type{index_type_name, definition, {}, members, &make_stub};
 constinit const Definition definition{service_name, definition_text, {}, {}, records, {}, objects};
 
 IndexStub::IndexStub() : changed_(*this, members[Place::services_changed]) {}

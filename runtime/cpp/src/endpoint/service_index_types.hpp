@@ -45,6 +45,8 @@ using ServiceInfos = std::optional<std::map<std::int32_t, std::optional<ServiceI
 extern const RecordType node_info_type;
 extern const RecordType service_info_type;
 extern const ObjectType index_type;
+/// The same with a stub. It is not in the definition, where a program's own is to be found.
+extern const ObjectType index_stub_type;
 extern const Definition definition;
 
 /// Places of the members.
@@ -55,7 +57,7 @@ extern const Member members[4];
 class IndexStub final : public virtual Stub {
  public:
   IndexStub();
-  [[nodiscard]] const ObjectType& rr_object_type() const override { return index_type; }
+  [[nodiscard]] const ObjectType& rr_object_type() const override { return index_stub_type; }
   ServiceInfos get_local_node_services();
   NodeInfos get_detected_nodes();
   Event<>& services_changed() { return changed_; }
