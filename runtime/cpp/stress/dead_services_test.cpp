@@ -4,18 +4,23 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "rr/call.hpp"
+#include "rr/member_subscription.hpp"
+#include "rr/subscription.hpp"
 #include "runtime/cpp/src/node/testing/child.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 #include "runtime/cpp/src/node/testing/process_state.hpp"
 #include "runtime/cpp/stress/dead_calls.hpp"
+#include "runtime/cpp/stress/everybody.hpp"
 
 namespace rr::stress {
 namespace {
@@ -165,6 +170,51 @@ TEST_F(DeadService, ThatGoesOnAnswersAgain) {
   EXPECT_EQ(mourner.client()->get_kept(), 5U);
 }
 
+/// A client that keeps its service, and gives up soon what does not answer.
+NodeOptions watchful() {
+  return {.request_timeout = limit,
+          .connect_timeout = limit,
+          .heartbeat_period = 200ms,
+          .receive_timeout = 1000ms};
+}
+constexpr Milliseconds retry_delay{1500};
+
+ServiceSubscription subscribe(Node& node, const std::string& url) {
+  return node.subscribe(url, {.username = "mourner",
+                              .credentials = {{"password", Everybody::password_of("mourner")}},
+                              .retry_delay = retry_delay,
+                              .max_retry_delay = retry_delay,
+                              .connect_timeout = 1000ms});
+}
+
+// It is lost by `lose`, and comes back within twice the retry delay behind `restore`.
+void expect_return(const std::string& url, const std::function<void()>& lose,
+                   const std::function<void()>& restore) {
+  Node node(watchful());
+  ServiceSubscription subscription = subscribe(node, url);
+  std::atomic<int> values{0};
+  auto mirror = subscription.subscribe_wire<std::optional<Stamp>>("mirror");
+  const Subscription function = mirror.on_in(
+      [&](const std::optional<Stamp>&, const TimeSpec&, const SubscriptionClientId&) { ++values; });
+  (void)subscription.wait_default_client<BenchStub>(20s);
+  // Until the wire is connected, too.
+  ASSERT_TRUE(eventually([&] { return mirror.set_out(Stamp{}) == 1 && values != 0; }));
+  lose();
+  ASSERT_TRUE(eventually([&] { return subscription.connected_clients().empty(); }));
+  ASSERT_TRUE(eventually([&] { return subscription.services().front().failures >= 2; }));
+  restore();
+  EXPECT_LE(time_of([&] { (void)subscription.wait_default_client<BenchStub>(20s); }),
+            2 * retry_delay + soon / 5);
+  const int before = values;
+  EXPECT_TRUE(eventually([&] { return mirror.set_out(Stamp{}) == 1 && values > before; }));
+}
+
+TEST_F(DeadService, ThatGoesOnGetsItsSubscriptionsBack) {
+  expect_return(
+      url_of("127.0.0.1", service_.wait_for("port")), [&] { service_.stop(); },
+      [&] { service_.signal(SIGCONT); });
+}
+
 /// A network of its own for the service, and a link to it, while it exists.
 class Network {
  public:
@@ -180,7 +230,7 @@ class Network {
                 run("ip addr add 198.18.213.1/30 dev " + near_) &&
                 run(inside + " addr add 198.18.213.2/30 dev " + far) &&
                 run("ip link set " + near_ + " up") && run(inside + " link set " + far + " up");
-    take_down_ = inside + " link set " + far + " down";
+    set_link_ = inside + " link set " + far;
   }
   ~Network() {
     run("ip link del " + near_);  // both ends of it
@@ -189,9 +239,17 @@ class Network {
   Network(const Network&) = delete;
   Network& operator=(const Network&) = delete;
 
+  static constexpr const char* host = "198.18.213.2";
+
   [[nodiscard]] bool is_there() const { return is_there_; }
-  [[nodiscard]] const std::string& space() const { return space_; }
-  bool take_link_down() { return run(take_down_); }
+  /// For the program `ip`: the service in the network.
+  [[nodiscard]] std::vector<std::string> words_of_service() const {
+    std::vector<std::string> words = {"netns", "exec", space_, RR_STRESS_PROGRAM};
+    for (std::string& word : service_words(host)) words.push_back(std::move(word));
+    return words;
+  }
+  bool take_link_down() { return run(set_link_ + " down"); }
+  bool bring_link_up() { return run(set_link_ + " up"); }
 
  private:
   static bool run(const std::string& command) {
@@ -200,7 +258,7 @@ class Network {
 
   std::string space_;
   std::string near_;  // this side's end of the link
-  std::string take_down_;
+  std::string set_link_;
   bool is_there_ = false;
 };
 
@@ -209,12 +267,22 @@ TEST(DeadLink, LetsEveryCallEndInItsTime) {
   if (!network.is_there()) {
     GTEST_SKIP() << "left out: network namespaces need root and the program ip";
   }
-  std::vector<std::string> words = {"netns", "exec", network.space(), RR_STRESS_PROGRAM};
-  for (std::string& word : service_words("198.18.213.2")) words.push_back(std::move(word));
-  Child service(words, "ip");
-  Mourner mourner(patient(), url_of("198.18.213.2", service.wait_for("port")));
+  Child service(network.words_of_service(), "ip");
+  Mourner mourner(patient(), url_of(Network::host, service.wait_for("port")));
   ASSERT_TRUE(network.take_link_down());
   expect_silence(mourner);
+}
+
+TEST(DeadLink, ComesBackToSubscriptions) {
+  Network network;
+  if (!network.is_there()) {
+    GTEST_SKIP() << "left out: network namespaces need root and the program ip";
+  }
+  Child service(network.words_of_service(), "ip");
+  expect_return(
+      url_of(Network::host, service.wait_for("port")),
+      [&] { ASSERT_TRUE(network.take_link_down()); },
+      [&] { ASSERT_TRUE(network.bring_link_up()); });
 }
 
 }  // namespace
