@@ -57,7 +57,7 @@ class Service final : public wire::BenchSkeleton {
       state.t_ns = from.t_ns;
       std::memcpy(state.q.data(), from.q, sizeof state.q);
       // Whoever sends more than a client takes has to wait for it, or the client is given up.
-      (void)pipe.wait_sent(std::chrono::seconds(10));
+      if (rate == 0) (void)pipe.wait_sent(std::chrono::seconds(10));
       pipe.send(state);
     });
   }

@@ -76,7 +76,7 @@ class RawGeneratorSource final : public GeneratorSource {
 class RawPipeServer : public PipeServerBase {
  public:
   RawPipeServer(const RawSkeleton& object, std::uint32_t place)
-      : PipeServerBase(object, object.member(place, MemberKind::pipe), holding_of<Raw>) {}
+      : PipeServerBase(object, object.member(place, MemberKind::pipe)) {}
   using PipeServerBase::ends;
   using PipeServerBase::send_all;
   using PipeServerBase::set_connected;

@@ -20,6 +20,10 @@ namespace rr {
 
 class Skeleton;
 
+namespace service {
+class PipePlace;
+}
+
 /// What becomes of a packet for which a queue has no room.
 enum class WhenFull : std::uint8_t {
   drop_oldest,  ///< the packet that has waited longest is lost, and counted
@@ -177,22 +181,20 @@ class PipeServerBase {
   void set_backlog_limit(std::size_t packets) const;
 
  protected:
-  PipeServerBase(const Skeleton& skeleton, const Member& member, const Holding& holding);
+  PipeServerBase(const Skeleton& skeleton, const Member& member);
   void send_all(const void* value) const;
   [[nodiscard]] std::vector<PipeEnd> ends() const;
   void set_connected(Function<void(PipeEnd)> function) const;
 
-  const Skeleton* skeleton_;
+  std::shared_ptr<service::PipePlace> place_;
   const Member* member_;
-  const Holding* holding_;
 };
 
 /// A pipe that an object offers: `frames()` of its skeleton.
 template <class T>
 class PipeServer : public PipeServerBase {
  public:
-  PipeServer(const Skeleton& skeleton, const Member& member)
-      : PipeServerBase(skeleton, member, holding_of<T>) {}
+  PipeServer(const Skeleton& skeleton, const Member& member) : PipeServerBase(skeleton, member) {}
 
   /// Sends a packet to all endpoints of all clients, encoded once for each message version. An
   /// endpoint whose connection does not take it any more is closed.

@@ -57,15 +57,11 @@ std::uint32_t PipeEnd::State::send(const void* value) {
       [&](Writer& writer) { identity.member->type->write(writer, "packet", value); });
 }
 
-std::uint32_t PipeEnd::State::send_written(std::span<const std::byte> element,
-                                           const MemoryRef& owner) {
-  return send_packet([&](Writer& writer) { writer.prepend_array(element, owner); });
-}
-
-MessageVersion PipeEnd::State::version() const {
-  const auto open = side();
-  if (!open) throw_closed();
-  return open->connection().version();
+std::uint32_t PipeEnd::State::send_written(Written& packet) {
+  return send_packet([&](Writer& writer) {
+    const Written::Form& form = packet.in(writer.version());
+    writer.prepend_array(form.bytes, form.owner);
+  });
 }
 
 // Which one it is the function may care about; for the count they are alike, and a side that

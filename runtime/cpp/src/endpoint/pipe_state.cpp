@@ -49,9 +49,11 @@ bool PipeEnd::State::may_receive() const {
 
 bool PipeEnd::State::accept(std::uint32_t number, std::shared_ptr<void> value, std::size_t size) {
   bool has_room = true;
+  bool is_awaited = false;
   {
     const std::lock_guard lock(mutex_);
     if (is_closed_) return true;
+    is_awaited = waiting_ != 0;
     Packet packet{std::move(value), size};
     if (identity.is_unreliable) {
       has_room = push(std::move(packet));
@@ -70,7 +72,7 @@ bool PipeEnd::State::accept(std::uint32_t number, std::shared_ptr<void> value, s
       }
     }
   }
-  arrived_.notify_one();
+  if (is_awaited) arrived_.notify_one();
   return has_room;
 }
 
@@ -147,15 +149,9 @@ bool PipeEnd::State::deliver_one(std::unique_lock<std::mutex>& lock) {
   return true;
 }
 
-void PipeEnd::State::call(const Function<void()>& function) const {
-  try {
-    function();
-  } catch (const std::exception& error) {
-    core_->log(LogLevel::error, "a function of the pipe `" + std::string(identity.member->name) +
-                                    "` has thrown: " + error.what());
-  } catch (...) {
-    core_->log(LogLevel::error, "a function of a pipe has thrown");
-  }
+void PipeEnd::State::tell_thrown(const char* what) const {
+  core_->log(LogLevel::error, "a function of the pipe `" + std::string(identity.member->name) +
+                                  "` has thrown: " + what);
 }
 
 void PipeEnd::State::deliver_soon() {
@@ -182,9 +178,11 @@ bool PipeEnd::State::wait(std::chrono::milliseconds limit) {
     channel::Reactor::about_to_wait();
     lock.lock();
   }
+  ++waiting_;
   while (queue_.empty() && !is_closed_ && channel::Clock::now() < deadline) {
     channel::wait_until(arrived_, lock, deadline);
   }
+  --waiting_;
   return !queue_.empty();
 }
 

@@ -7,10 +7,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -64,9 +66,9 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
 
   // Sending (pipe_end.cpp)
   std::uint32_t send(const void* value);
-  /// The same for an element `packet` that is written already, in the connection's format.
-  std::uint32_t send_written(std::span<const std::byte> element, const MemoryRef& owner);
-  [[nodiscard]] MessageVersion version() const;
+  /// The same for an element `packet` that is written once for all ends.
+  class Written;
+  std::uint32_t send_written(Written& packet);
   void take_acknowledgement(std::uint32_t number);
   [[nodiscard]] std::size_t unacknowledged() const;
   bool wait_sent(std::chrono::milliseconds limit, std::size_t bytes) const;
@@ -110,7 +112,18 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   [[nodiscard]] bool push(Packet packet);
   Packet pop();
   bool deliver_one(std::unique_lock<std::mutex>& lock);
-  void call(const Function<void()>& function) const;
+  /// Runs what is the program's; what it throws is logged.
+  template <class Run>
+  void call(const Run& run) const {
+    try {
+      run();
+    } catch (const std::exception& error) {
+      tell_thrown(error.what());
+    } catch (...) {
+      tell_thrown("something that is no exception");
+    }
+  }
+  void tell_thrown(const char* what) const;
 
   const std::shared_ptr<const endpoint::Core> core_;
   const std::string index_text_;
@@ -125,6 +138,7 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
 
   mutable std::mutex mutex_;
   mutable std::condition_variable arrived_;
+  std::size_t waiting_ = 0;  // threads in wait()
   std::uint32_t expected_ = 1;
   std::map<std::uint32_t, Packet> held_;
   std::size_t held_bytes_ = 0;
@@ -139,6 +153,20 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   std::deque<std::unique_ptr<Completion>> completions_;
   Function<void()> closed_function_;
   Function<void(std::uint32_t)> acknowledged_function_;
+};
+
+/// A packet in the form of each message format.
+class PipeEnd::State::Written {
+ public:
+  struct Form {
+    std::span<const std::byte> bytes;
+    MemoryRef owner;
+  };
+  /// Stays as it is until the packet is gone. Called under the lock of an end.
+  virtual const Form& in(MessageVersion version) = 0;
+
+ protected:
+  ~Written() = default;
 };
 
 }  // namespace rr

@@ -17,12 +17,14 @@ bool Subscription::Handler::enter() {
 
 void Subscription::Handler::leave() {
   bool must_drop = false;
+  bool is_awaited = false;
   {
     const std::lock_guard lock(mutex_);
     is_running_ = false;
+    is_awaited = awaited_ != 0;
     must_drop = !is_connected_ && !std::exchange(is_dropped_, true);
   }
-  ended_.notify_all();
+  if (is_awaited) ended_.notify_all();
   if (must_drop) drop();
 }
 
@@ -30,7 +32,9 @@ void Subscription::Handler::disconnect() {
   {
     std::unique_lock lock(mutex_);
     is_connected_ = false;
+    ++awaited_;
     while (is_running_ && runner_ != std::this_thread::get_id()) ended_.wait(lock);
+    --awaited_;
     if (is_running_ || std::exchange(is_dropped_, true)) return;
   }
   drop();

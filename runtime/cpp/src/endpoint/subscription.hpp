@@ -48,6 +48,7 @@ struct Subscription::Handler {
   std::atomic<bool> is_connected_{true};  // written under mutex_
   bool is_dropped_ = false;
   bool is_running_ = false;
+  int awaited_ = 0;  // threads in disconnect()
   std::thread::id runner_;
 };
 

@@ -18,23 +18,17 @@ namespace rr {
 namespace {
 
 // A value that is written once for each message format, for all who get it.
-class Encoded {
+class Encoded final : public PipeEnd::State::Written {
  public:
   Encoded(const Member& member, const void* value) : member_(member), value_(value) {}
 
-  std::uint32_t send(PipeEnd::State& end) {
-    const MessageVersion version = end.version();
+  const Form& in(MessageVersion version) override {
     auto& form = forms_[version == MessageVersion::v2 ? 0 : 1];
     if (!form) form = encode(version);
-    return end.send_written(form->bytes, form->owner);
+    return *form;
   }
 
  private:
-  struct Form {
-    std::span<const std::byte> bytes;
-    MemoryRef owner;
-  };
-
   // Short ones stay in a writer of the thread: nothing else is written there before they are sent.
   Form encode(MessageVersion version) const {
     thread_local std::array<Writer, 2> writers;
@@ -61,26 +55,19 @@ class Encoded {
   std::array<std::optional<Form>, 2> forms_;
 };
 
-std::shared_ptr<service::PipePlace> place_of(const Skeleton& skeleton, const Member& member) {
-  return Skeleton::Places::of(skeleton).pipe(member.name);
-}
-
 }  // namespace
 
-PipeServerBase::PipeServerBase(const Skeleton& skeleton, const Member& member,
-                               const Holding& holding)
-    : skeleton_(&skeleton), member_(&member), holding_(&holding) {}
+PipeServerBase::PipeServerBase(const Skeleton& skeleton, const Member& member)
+    : place_(Skeleton::Places::of(skeleton).pipe(member.name)), member_(&member) {}
 
-std::size_t PipeServerBase::endpoint_count() const {
-  return place_of(*skeleton_, *member_)->ends()->size();
-}
+std::size_t PipeServerBase::endpoint_count() const { return place_->ends()->size(); }
 
 void PipeServerBase::set_backlog_limit(std::size_t packets) const {
-  place_of(*skeleton_, *member_)->set_backlog_limit(packets);
+  place_->set_backlog_limit(packets);
 }
 
 bool PipeServerBase::wait_sent(std::chrono::milliseconds limit, std::size_t bytes) const {
-  const auto ends = place_of(*skeleton_, *member_)->ends();
+  const auto ends = place_->ends();
   const channel::Time deadline = channel::after(channel::Clock::now(), limit);
   bool is_sent = true;
   for (const auto& end : *ends) {
@@ -96,9 +83,7 @@ void PipeServerBase::send_all(const void* value) const {
   if ((member_->access & writeonly) != 0) {
     throw Error(ErrorCode::write_only_member, "Write only pipe");
   }
-  const auto place = place_of(*skeleton_, *member_);
-  const auto ends = place->ends();
-  const std::size_t limit = place->backlog_limit();
+  const auto [ends, limit] = place_->audience();
   Encoded packet(*member_, value);
   for (const auto& end : *ends) {
     if (limit != 0) {
@@ -106,7 +91,7 @@ void PipeServerBase::send_all(const void* value) const {
       if (end->unacknowledged() > limit) continue;
     }
     try {
-      packet.send(*end);
+      end->send_written(packet);
     } catch (const Error& error) {
       if (error.code() == ErrorCode::buffer_limit_violation) {
         PipeEnd(end).close();
@@ -119,14 +104,14 @@ void PipeServerBase::send_all(const void* value) const {
 }
 
 std::vector<PipeEnd> PipeServerBase::ends() const {
-  const auto ends = place_of(*skeleton_, *member_)->ends();
+  const auto ends = place_->ends();
   std::vector<PipeEnd> result;
   for (const auto& end : *ends) result.emplace_back(end);
   return result;
 }
 
 void PipeServerBase::set_connected(Function<void(PipeEnd)> function) const {
-  place_of(*skeleton_, *member_)->set_connected(std::move(function));
+  place_->set_connected(std::move(function));
 }
 
 }  // namespace rr

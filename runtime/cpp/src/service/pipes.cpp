@@ -32,32 +32,27 @@ Function<void(PipeEnd)> PipePlace::connected() const {
 
 void PipePlace::set_backlog_limit(std::size_t packets) {
   const std::lock_guard lock(mutex_);
-  backlog_limit_ = packets;
-}
-
-std::size_t PipePlace::backlog_limit() const {
-  const std::lock_guard lock(mutex_);
-  return backlog_limit_;
+  audience_.backlog_limit = packets;
 }
 
 void PipePlace::add(const End& end) {
   const std::lock_guard lock(mutex_);
-  auto ends = std::make_shared<Ends>(*ends_);
+  auto ends = std::make_shared<Ends>(*audience_.ends);
   ends->push_back(end);
-  ends_ = std::move(ends);
+  audience_.ends = std::move(ends);
 }
 
 void PipePlace::remove(const PipeEnd::State& end) {
   std::shared_ptr<const Ends> before;  // ends behind the lock
   const std::lock_guard lock(mutex_);
-  auto ends = std::make_shared<Ends>(*ends_);
+  auto ends = std::make_shared<Ends>(*audience_.ends);
   std::erase_if(*ends, [&](const End& other) { return other.get() == &end; });
-  before = std::exchange(ends_, std::move(ends));
+  before = std::exchange(audience_.ends, std::move(ends));
 }
 
-std::shared_ptr<const PipePlace::Ends> PipePlace::ends() const {
+PipePlace::Audience PipePlace::audience() const {
   const std::lock_guard lock(mutex_);
-  return ends_;
+  return audience_;
 }
 
 struct Pipes::Served final : PipeEnd::State {

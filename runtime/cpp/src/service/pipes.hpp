@@ -28,17 +28,21 @@ class PipePlace {
   void set_connected(Function<void(PipeEnd)> function);
   [[nodiscard]] Function<void(PipeEnd)> connected() const;
   void set_backlog_limit(std::size_t packets);
-  [[nodiscard]] std::size_t backlog_limit() const;
 
   void add(const End& end);
   void remove(const PipeEnd::State& end);
-  [[nodiscard]] std::shared_ptr<const Ends> ends() const;
+  [[nodiscard]] std::shared_ptr<const Ends> ends() const { return audience().ends; }
+  /// Who gets a packet that goes to all, and how many may be on their way to each.
+  struct Audience {
+    std::shared_ptr<const Ends> ends;
+    std::size_t backlog_limit = 0;
+  };
+  [[nodiscard]] Audience audience() const;
 
  private:
   mutable std::mutex mutex_;
   Function<void(PipeEnd)> connected_;
-  std::size_t backlog_limit_ = 0;
-  std::shared_ptr<const Ends> ends_ = std::make_shared<Ends>();  // replaced, never changed
+  Audience audience_{std::make_shared<Ends>()};  // the list is replaced, never changed
 };
 
 /// The pipe endpoints of a client, on the service's side.
