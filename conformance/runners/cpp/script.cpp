@@ -4,6 +4,13 @@
 #include <stdexcept>
 
 namespace rr::conformance {
+namespace {
+
+constexpr std::string_view later = "_later";
+/// The answer is long gone then.
+constexpr std::chrono::milliseconds delay{50};
+
+}  // namespace
 
 Json Script::told(std::string_view kind, std::string_view name) {
   const std::lock_guard lock(mutex_);
@@ -39,6 +46,10 @@ Json Script::outcome(std::string_view function, const Json& parameters,
                      const std::type_info& wanted) {
   const auto action = actions_.find(function);
   if (action != actions_.end()) return action->second(wanted);
+  if (function.ends_with(later)) {
+    const auto put_off = actions_.find(function.substr(0, function.size() - later.size()));
+    if (put_off != actions_.end()) return do_later(put_off->second);
+  }
   const Json next = next_outcome(function, parameters);
   if (next.is_null()) {
     if (function == "release_child") release(parameters.at(0).get<std::string>());
@@ -46,6 +57,19 @@ Json Script::outcome(std::string_view function, const Json& parameters,
   }
   if (next.contains("echo")) return parameters.at(next["echo"].get<std::size_t>());
   return part(next, "return");
+}
+
+Json Script::do_later(const Action& action) {
+  const std::lock_guard lock(mutex_);
+  put_off_.emplace_back([&action] {
+    std::this_thread::sleep_for(delay);
+    try {
+      (void)action(typeid(void));
+    } catch (const Error&) {
+      return;  // whom it was for has gone
+    }
+  });
+  return nullptr;
 }
 
 void Script::release(const std::string& path) {

@@ -16,9 +16,11 @@
 #include <semaphore>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <type_traits>
 #include <typeinfo>
 #include <utility>
+#include <vector>
 
 #include "conformance/runners/cpp/adapters.hpp"
 #include "conformance/runners/cpp/outcomes.hpp"
@@ -29,7 +31,8 @@ namespace rr::conformance {
 /// What one object is told to do, a node of service.json, and its state. Used by any thread.
 /// Functions that drive other members are known by their names: `fire_<event>`, `send_<pipe>`,
 /// `close_<pipe>`, `received_count`, `send_<wire>`, `close_<wire>`, `last_<wire>`,
-/// `call_<callback>`, `release_child`.
+/// `call_<callback>`, `release_child`; with `_later` behind it a function does so when it has been
+/// answered.
 class Script {
  public:
   Script(const Adapters& adapters, Json node) : adapters_(adapters), node_(std::move(node)) {}
@@ -147,6 +150,7 @@ class Script {
   void set_value(std::string_view property, Json value);
   Json outcome(std::string_view function, const Json& parameters, const std::type_info& wanted);
   Json next_outcome(std::string_view function, const Json& parameters);
+  Json do_later(const Action& action);
   void release(const std::string& path);
 
   const Adapters& adapters_;
@@ -159,6 +163,7 @@ class Script {
   std::atomic<int> received_ = 0;  // packets
   ServiceContext* context_ = nullptr;
   std::binary_semaphore monitor_{1};
+  std::vector<std::jthread> put_off_;  // last: they use all of the above
 };
 
 template <class T>

@@ -195,6 +195,11 @@ void Board::pass(Time limit) {
   }
   link_.receive(*in, now());
   link_.tick(now());
+  tell_unasked();
+}
+
+// What comes behind an answer waits until that has been passed on.
+void Board::tell_unasked() {
   for (const Unasked& one : link_.take_unasked()) functions_.unasked(one);
 }
 
@@ -212,6 +217,7 @@ void Board::serve_one() {
   if (has_job) {
     const Outcome outcome = exchange(job.kind, std::move(job.body), job.patience, job.client);
     job.done(outcome);
+    tell_unasked();
   } else if (now() - link_.heard() > silence) {
     (void)exchange(Kind::Ping, {}, silence);
   } else {

@@ -91,6 +91,7 @@ class Board {
                    std::uint32_t client = 0);
   Outcome await();
   void pass(Time limit);
+  void tell_unasked();
   void serve_one();
   void lose(const std::string& why);
   void fail_jobs();
