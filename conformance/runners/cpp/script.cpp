@@ -7,7 +7,7 @@ namespace rr::conformance {
 namespace {
 
 constexpr std::string_view later = "_later";
-/// The answer is long gone then.
+/// An answer is long gone then.
 constexpr std::chrono::milliseconds delay{50};
 
 }  // namespace
@@ -48,7 +48,10 @@ Json Script::outcome(std::string_view function, const Json& parameters,
   if (action != actions_.end()) return action->second(wanted);
   if (function.ends_with(later)) {
     const auto put_off = actions_.find(function.substr(0, function.size() - later.size()));
-    if (put_off != actions_.end()) return do_later(put_off->second);
+    if (put_off != actions_.end()) {
+      do_later([&action = put_off->second] { (void)action(typeid(void)); });
+      return nullptr;
+    }
   }
   const Json next = next_outcome(function, parameters);
   if (next.is_null()) {
@@ -59,17 +62,16 @@ Json Script::outcome(std::string_view function, const Json& parameters,
   return part(next, "return");
 }
 
-Json Script::do_later(const Action& action) {
+void Script::do_later(std::function<void()> what) {
   const std::lock_guard lock(mutex_);
-  put_off_.emplace_back([&action] {
+  put_off_.emplace_back([what = std::move(what)] {
     std::this_thread::sleep_for(delay);
     try {
-      (void)action(typeid(void));
+      what();
     } catch (const Error&) {
       return;  // whom it was for has gone
     }
   });
-  return nullptr;
 }
 
 void Script::release(const std::string& path) {

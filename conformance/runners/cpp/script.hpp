@@ -150,7 +150,8 @@ class Script {
   void set_value(std::string_view property, Json value);
   Json outcome(std::string_view function, const Json& parameters, const std::type_info& wanted);
   Json next_outcome(std::string_view function, const Json& parameters);
-  Json do_later(const Action& action);
+  /// Once what happens now has been answered.
+  void do_later(std::function<void()> what);
   void release(const std::string& path);
 
   const Adapters& adapters_;
@@ -198,6 +199,10 @@ void Script::add_wire(const std::string& name, const WireServer<T>& wire) {
   wire.on_peek_out([scripted, wire] {
     const auto newest = wire.out();
     return newest ? newest->value : scripted("peek_out");
+  });
+  wire.on_connect([this, name, wire, scripted](ServedWire<T>) {
+    if (part(told("wires", name), "at_connect") != true) return;
+    do_later([wire, scripted] { wire.set_in(scripted("peek_in")); });
   });
   actions_["send_" + name] = [this, name, wire](const std::type_info&) {
     for (const Json& value : part(told("wires", name), "send")) {
