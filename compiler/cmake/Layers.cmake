@@ -56,6 +56,7 @@ set(robdef_layers
   "runtime/arduino: runtime/cpp/src/serial runtime/cpp/include/rr runtime/cpp/src/node/testing"
 
   "conformance: runtime/cpp/include/rr runtime/cpp/src/replay"
+  "conformance/runners/board: runtime/cpp/include/rr conformance runtime/arduino/bench/plugged_board.hpp"
   "benchmarks: runtime/cpp/include/rr compiler"
   "examples: runtime/cpp/include/rr")
 

@@ -175,9 +175,12 @@ class ServiceReplay::Play {
     return !scenario_.frames[last].from_client;
   }
 
-  // How long a step with connection tests takes: they are spread over it.
+  // How long a step takes in which the recorded client slept. Connection tests are spread over it.
   [[nodiscard]] Milliseconds pause_of(const Step& step) const {
-    if (!scenario_.heartbeat_ms.is_object() || !step.plan.is_object()) return Milliseconds(0);
+    if (!step.plan.is_object()) return Milliseconds(0);
+    if (!scenario_.heartbeat_ms.is_object() && step.plan.value("op", "") != "sleep") {
+      return Milliseconds(0);
+    }
     return Milliseconds(step.plan.value("ms", 0));
   }
 

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <rr/error.hpp>
+#include <rr/serial.hpp>
 #include <utility>
 
 namespace robdef::live {
@@ -79,6 +80,7 @@ std::string password_of(const LiveOptions& options) {
 
 rr::NodeOptions node_options(const LiveOptions& options) {
   rr::NodeOptions result;
+  result.channels.emplace("rr+serial", rr::serial_channel());
   if (options.timeout) result.request_timeout = result.connect_timeout = *options.timeout;
   return result;
 }

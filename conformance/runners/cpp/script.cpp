@@ -4,6 +4,13 @@
 #include <stdexcept>
 
 namespace rr::conformance {
+namespace {
+
+constexpr std::string_view later = "_later";
+/// An answer is long gone then.
+constexpr std::chrono::milliseconds delay{50};
+
+}  // namespace
 
 Json Script::told(std::string_view kind, std::string_view name) {
   const std::lock_guard lock(mutex_);
@@ -39,6 +46,13 @@ Json Script::outcome(std::string_view function, const Json& parameters,
                      const std::type_info& wanted) {
   const auto action = actions_.find(function);
   if (action != actions_.end()) return action->second(wanted);
+  if (function.ends_with(later)) {
+    const auto put_off = actions_.find(function.substr(0, function.size() - later.size()));
+    if (put_off != actions_.end()) {
+      do_later([&action = put_off->second] { (void)action(typeid(void)); });
+      return nullptr;
+    }
+  }
   const Json next = next_outcome(function, parameters);
   if (next.is_null()) {
     if (function == "release_child") release(parameters.at(0).get<std::string>());
@@ -46,6 +60,18 @@ Json Script::outcome(std::string_view function, const Json& parameters,
   }
   if (next.contains("echo")) return parameters.at(next["echo"].get<std::size_t>());
   return part(next, "return");
+}
+
+void Script::do_later(std::function<void()> what) {
+  const std::lock_guard lock(mutex_);
+  put_off_.emplace_back([what = std::move(what)] {
+    std::this_thread::sleep_for(delay);
+    try {
+      what();
+    } catch (const Error&) {
+      return;  // whom it was for has gone
+    }
+  });
 }
 
 void Script::release(const std::string& path) {

@@ -16,9 +16,11 @@
 #include <semaphore>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <type_traits>
 #include <typeinfo>
 #include <utility>
+#include <vector>
 
 #include "conformance/runners/cpp/adapters.hpp"
 #include "conformance/runners/cpp/outcomes.hpp"
@@ -29,7 +31,8 @@ namespace rr::conformance {
 /// What one object is told to do, a node of service.json, and its state. Used by any thread.
 /// Functions that drive other members are known by their names: `fire_<event>`, `send_<pipe>`,
 /// `close_<pipe>`, `received_count`, `send_<wire>`, `close_<wire>`, `last_<wire>`,
-/// `call_<callback>`, `release_child`.
+/// `call_<callback>`, `release_child`; with `_later` behind it a function does so when it has been
+/// answered.
 class Script {
  public:
   Script(const Adapters& adapters, Json node) : adapters_(adapters), node_(std::move(node)) {}
@@ -147,6 +150,8 @@ class Script {
   void set_value(std::string_view property, Json value);
   Json outcome(std::string_view function, const Json& parameters, const std::type_info& wanted);
   Json next_outcome(std::string_view function, const Json& parameters);
+  /// Once what happens now has been answered.
+  void do_later(std::function<void()> what);
   void release(const std::string& path);
 
   const Adapters& adapters_;
@@ -159,6 +164,7 @@ class Script {
   std::atomic<int> received_ = 0;  // packets
   ServiceContext* context_ = nullptr;
   std::binary_semaphore monitor_{1};
+  std::vector<std::jthread> put_off_;  // last: they use all of the above
 };
 
 template <class T>
@@ -193,6 +199,10 @@ void Script::add_wire(const std::string& name, const WireServer<T>& wire) {
   wire.on_peek_out([scripted, wire] {
     const auto newest = wire.out();
     return newest ? newest->value : scripted("peek_out");
+  });
+  wire.on_connect([this, name, wire, scripted](ServedWire<T>) {
+    if (part(told("wires", name), "at_connect") != true) return;
+    do_later([wire, scripted] { wire.set_in(scripted("peek_in")); });
   });
   actions_["send_" + name] = [this, name, wire](const std::type_info&) {
     for (const Json& value : part(told("wires", name), "send")) {

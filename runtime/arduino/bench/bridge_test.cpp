@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clients over TCP, the bridge, a pseudo terminal, and the real program on a simulated processor.
-#include <fcntl.h>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <stdlib.h>
-#include <termios.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <mutex>
@@ -14,7 +9,7 @@
 #include "rr/dynamic.hpp"
 #include "rr/node.hpp"
 #include "rr/serial.hpp"
-#include "runtime/arduino/bench/simulated_board.hpp"
+#include "runtime/arduino/bench/plugged_board.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 
 namespace rr::serial::testing {
@@ -29,86 +24,10 @@ using rr::testing::eventually;
 
 const std::string elf_dir = RR_ELF_DIR;
 
-/// A board on a pseudo terminal, in the time of this machine or slower.
-class PluggedBoard {
- public:
-  explicit PluggedBoard(const std::string& elf) : board_(elf_dir + elf, 115200) {
-    master_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    if (master_ < 0 || ::grantpt(master_) != 0 || ::unlockpt(master_) != 0) {
-      throw std::runtime_error("no pseudo terminal");
-    }
-    path_ = ::ptsname(master_);
-    // Kept open, so that the bridge may come and go; raw, before anything is sent.
-    slave_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
-    termios settings{};
-    ::tcgetattr(slave_, &settings);
-    ::cfmakeraw(&settings);
-    ::tcsetattr(slave_, TCSANOW, &settings);
-    thread_ = std::thread([this] { run(); });
-  }
-  ~PluggedBoard() {
-    stops_ = true;
-    thread_.join();
-    ::close(slave_);
-    ::close(master_);
-  }
-  [[nodiscard]] const std::string& path() const { return path_; }
-  void reset() { resets_ = true; }
-  void set_silent(bool is_silent) { is_silent_ = is_silent; }
-  void set_voltage(double volts) {
-    const std::lock_guard lock(mutex_);
-    board_.set_voltage(0, volts);
-  }
-  std::uint8_t peek(std::uint16_t address) {
-    const std::lock_guard lock(mutex_);
-    return board_.peek(address);
-  }
-
- private:
-  void run() {
-    const auto begun = std::chrono::steady_clock::now();
-    SimulatedBoard::Time paused{};
-    while (!stops_) {
-      {
-        const std::lock_guard lock(mutex_);
-        if (resets_.exchange(false)) board_.reset();
-        exchange();
-        board_.run_until(board_.now() + 500us);
-      }
-      // Not ahead of the time, or the processor would never have to wait.
-      const auto real = std::chrono::duration_cast<SimulatedBoard::Time>(
-          std::chrono::steady_clock::now() - begun);
-      const SimulatedBoard::Time ahead = board_.now() + paused - real;
-      if (ahead > 1ms) std::this_thread::sleep_for(ahead);
-      if (ahead < -20ms) paused -= ahead;
-    }
-  }
-  void exchange() {
-    std::vector<std::uint8_t> bytes(256);
-    const ssize_t got = ::read(master_, bytes.data(), bytes.size());
-    if (got > 0 && !is_silent_) {
-      bytes.resize(static_cast<std::size_t>(got));
-      board_.send(bytes);
-    }
-    const std::vector<std::uint8_t> out = board_.receive();
-    if (!out.empty() && !is_silent_) (void)!::write(master_, out.data(), out.size());
-  }
-
-  std::mutex mutex_;
-  SimulatedBoard board_;
-  int master_ = -1;
-  int slave_ = -1;
-  std::string path_;
-  std::atomic<bool> stops_ = false;
-  std::atomic<bool> resets_ = false;
-  std::atomic<bool> is_silent_ = false;
-  std::thread thread_;
-};
-
 class Bridged : public ::testing::Test {
  protected:
   void plug(const std::string& elf) {
-    board = std::make_unique<PluggedBoard>(elf);
+    board = std::make_unique<PluggedBoard>(elf_dir + elf);
     bridge = std::make_unique<BoardBridge>(server, [this](const std::string& text) {
       const std::lock_guard lock(mutex);
       log.push_back(text);

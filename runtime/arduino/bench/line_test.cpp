@@ -2,7 +2,10 @@
 // The protocol between the real program of a board and the host's end, over good and bad lines.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <random>
 #include <tuple>
 
@@ -83,6 +86,78 @@ TEST_P(RoundTrip, TakesLittleMoreThanItsBytesDo) {
   EXPECT_EQ(line.host.repeated(), 0U);
 }
 INSTANTIATE_TEST_SUITE_P(Rates, RoundTrip, ::testing::Values(9600U, 115200U, 1000000U));
+
+/// Bytes on the line for a get of this value and its answer.
+std::uint64_t bytes_of_get(SimulatedLine& line, double value) {
+  std::vector<std::uint8_t> body{0, value_member};
+  const auto bytes = bytes_of_double(value);
+  body.insert(body.end(), bytes.begin(), bytes.end());
+  if (line.ask(Kind::Set, body).kind != Outcome::Kind::reply) return 0;
+  const std::uint64_t before = line.bytes;
+  const Outcome outcome = line.ask(Kind::Get, {0, value_member});
+  const double got = double_in(outcome.body, 1);
+  // A board's double is a float.
+  const auto wanted = static_cast<double>(static_cast<float>(value));
+  const bool is_same = std::isnan(value)
+                           ? std::isnan(got)
+                           : got == wanted && std::signbit(got) == std::signbit(wanted);
+  return is_same ? line.bytes - before : 0;
+}
+
+TEST(BytesOfAGet, AreAtMost28WhateverTheValue) {
+  using Limits = std::numeric_limits<float>;
+  SimulatedLine line(elf_dir + "echo115200.elf", 115200);
+  ASSERT_EQ(line.hello().kind, Outcome::Kind::reply);
+  for (const double value :
+       {0.0, -0.0, 1.0, -1.0, 256.0, static_cast<double>(Limits::max()),
+        static_cast<double>(Limits::lowest()), static_cast<double>(Limits::min()),
+        static_cast<double>(Limits::infinity()), -static_cast<double>(Limits::infinity()),
+        static_cast<double>(Limits::quiet_NaN()), static_cast<double>(Limits::epsilon())}) {
+    EXPECT_EQ(bytes_of_get(line, value), 27U) << value;
+  }
+}
+
+TEST(BytesOfAGet, AreTheSameForAllPatternsOfTheEightBytes) {
+  // What stuffing changes is where zeros are, and 1 and 255 are what it writes itself.
+  for (const std::uint8_t other : std::vector<std::uint8_t>{0x01, 0x08, 0x7F, 0xFF}) {
+    for (unsigned zeros = 0; zeros < 256; ++zeros) {
+      Frame reply{Kind::Reply, other, {value_member}};
+      for (unsigned at = 0; at < 8; ++at) {
+        reply.body.push_back((zeros >> at) & 1 ? 0 : other);
+      }
+      const std::vector<std::uint8_t> bytes = stuff(reply);
+      ASSERT_EQ(bytes.size(), 17U);
+      EXPECT_EQ(std::count(bytes.begin(), bytes.end(), 0), 2) << "one at each end";
+      std::vector<Frame> found;
+      FrameFinder().take(bytes, [&](const Frame& frame) { found.push_back(frame); });
+      ASSERT_EQ(found, std::vector{reply});
+    }
+    EXPECT_EQ(stuff({Kind::Get, other, {0, value_member}}).size(), 10U);
+  }
+}
+
+TEST(HostSide, TellsAnAnswerBeforeWhatCameBehindIt) {
+  HostLink host(115200);
+  host.begin_session(7, Time(0), 1s);
+  (void)host.take_output();
+  std::vector<std::uint8_t> facts(14);
+  facts[0] = protocolVersion;
+  facts[1] = 7;
+  host.receive(stuff({Kind::Reply, 0, facts}), Time(1));
+  ASSERT_EQ(host.take_outcome()->kind, Outcome::Kind::reply);
+  host.request(Kind::Get, {0, value_member}, Time(2), 1s);
+  std::vector<std::uint8_t> bytes;
+  for (const Frame& frame : {Frame{Kind::Event, 1, {0, 4}}, Frame{Kind::Reply, 1, {value_member}},
+                             Frame{Kind::Event, 2, {0, 4}}}) {
+    const std::vector<std::uint8_t> more = stuff(frame);
+    bytes.insert(bytes.end(), more.begin(), more.end());
+  }
+  host.receive(bytes, Time(3));
+  EXPECT_EQ(host.take_unasked().size(), 1U) << "the one in front of the answer";
+  EXPECT_TRUE(host.take_unasked().empty());
+  ASSERT_EQ(host.take_outcome()->kind, Outcome::Kind::reply);
+  EXPECT_EQ(host.take_unasked().size(), 1U);
+}
 
 /// How many calls the tests of bad lines make: more in long runs.
 int calls() {

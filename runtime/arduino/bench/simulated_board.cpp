@@ -2,6 +2,8 @@
 #include "runtime/arduino/bench/simulated_board.hpp"
 
 #include <algorithm>
+#include <cstdarg>
+#include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -23,10 +25,16 @@ namespace {
 constexpr std::uint64_t frequency = 16'000'000;
 constexpr std::uint64_t cycles_of_microsecond = frequency / 1'000'000;
 
+// The simulator would print what it loads to standard output, which is for others.
+void report(avr_t* /*avr*/, const int level, const char* format, va_list arguments) {
+  if (level <= LOG_ERROR) std::vfprintf(stderr, format, arguments);
+}
+
 }  // namespace
 
 SimulatedBoard::SimulatedBoard(const std::string& elf, std::uint32_t baud)
     : byte_cycles_(10 * frequency / baud) {
+  avr_global_logger_set(&report);
   elf_firmware_t firmware{};
   if (elf_read_firmware(elf.c_str(), &firmware) != 0) {
     throw std::runtime_error(elf + " cannot be read");

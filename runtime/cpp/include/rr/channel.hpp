@@ -23,6 +23,8 @@ struct ChannelTraits {
   bool is_local = false;      ///< both ends are on one machine
   bool is_encrypted = false;  ///< nobody between the ends can read or change what it carries
   bool is_lossy = false;      ///< messages may get lost: their calls end with their time-outs
+  /// A URL leads to one service only, and need not name it: MessageChannel::service_at().
+  bool has_one_service = false;
 };
 
 /// What a link tells the node. All of it may be called on any thread, also inside MessageLink::send
@@ -79,6 +81,12 @@ class MessageChannel {
   /// rr::Error.
   virtual std::unique_ptr<MessageLink> connect(const Url& url,
                                                std::chrono::steady_clock::time_point deadline) = 0;
+  /// The service that a URL without one means; connect() follows. Blocks until the deadline. Throws
+  /// rr::Error. Empty where the URL has to name it.
+  virtual std::string service_at(const Url& /*url*/,
+                                 std::chrono::steady_clock::time_point /*deadline*/) {
+    return {};
+  }
   /// Gives each new link to `accept`, on any thread. Throws rr::Error; one that cannot listen
   /// throws invalid_operation.
   virtual std::unique_ptr<LinkListener> listen(

@@ -9,6 +9,7 @@
 
 namespace rr {
 
+class MessageChannel;
 class Node;
 
 /// Where a board is.
@@ -21,6 +22,17 @@ struct BoardPlace {
   /// rr::Error (invalid_argument).
   static BoardPlace parse(const std::string& text);
 };
+
+/// The channel that leads to boards at this machine's serial ports:
+///
+///   rr::Node node({.channels = {{"rr+serial", rr::serial_channel()}}});
+///   auto light = node.connect<LightStub>("rr+serial:///dev/ttyUSB0?baud=115200");
+///
+/// The URL may name the service, as `service=Light`; there is one only. While a client is connected
+/// the process has the port for itself, and all clients in it share it, whichever node they are of.
+/// They see what they would see through BoardBridge. Connecting throws connection_error when the
+/// port cannot be opened, when another program has it, and when no board answers in time.
+std::shared_ptr<MessageChannel> serial_channel();
 
 /// Offers boards behind serial ports as services of a node (docs/serial.md). A board's service is
 /// offered when the board is met for the first time, and stays: while the board is away, or is

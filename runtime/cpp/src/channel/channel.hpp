@@ -70,6 +70,8 @@ class Channel {
   /// go to what `make_receiver` returns for the connection. Throws rr::Error.
   virtual std::shared_ptr<Connection> connect(const Url& url, Time deadline,
                                               const AcceptHandler& make_receiver) = 0;
+  /// The service that a URL without one means, as MessageChannel::service_at().
+  virtual std::string service_at(const Url& /*url*/, Time /*deadline*/) { return {}; }
   /// Throws rr::Error.
   virtual std::unique_ptr<Listener> listen(const Url& url, AcceptHandler accept) = 0;
 };

@@ -42,6 +42,10 @@ class MessageLinks final : public Channel, public std::enable_shared_from_this<M
     return connected(ground_, std::move(agreed), std::move(terms), make_receiver);
   }
 
+  std::string service_at(const Url& url, Time deadline) override {
+    return channel_->service_at(url, deadline);
+  }
+
   std::unique_ptr<Listener> listen(const Url& url, AcceptHandler accept) override {
     class Listening final : public Listener {
      public:

@@ -212,7 +212,7 @@ class Session final : public channel::Receiver,
   void give_up(const Error& why);
 
   const std::shared_ptr<endpoint::Core> core_;
-  const std::string service_;
+  std::string service_;  // fixed before anything is sent
   ConnectOptions options_;
   std::shared_ptr<channel::Connection> connection_;
 

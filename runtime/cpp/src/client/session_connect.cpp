@@ -92,9 +92,7 @@ Session::Session(std::shared_ptr<endpoint::Core> core, const Url& url, ConnectOp
       known_types_{options_.definition_reader ? options_.definition_reader->types()
                                               : core_->types()},
       types_(&known_types_.back()),
-      quiet_since_(channel::coarse_now()) {
-  if (service_.empty()) throw Error(ErrorCode::invalid_argument, "the URL names no service");
-}
+      quiet_since_(channel::coarse_now()) {}
 
 Session::~Session() { core_->release_endpoint(endpoint_); }
 
@@ -130,13 +128,15 @@ void Session::establish(const Url& url, const std::function<void()>& check) {
   const channel::Time deadline =
       channel::after(channel::Clock::now(), core_->options().connect_timeout);
   core_->start();
-  core_->channel(url.scheme)
-      .connect(url, deadline, [this](std::shared_ptr<channel::Connection> connection) {
-        connection->set_endpoints(endpoint_, 0);
-        const std::lock_guard lock(mutex_);
-        connection_ = std::move(connection);
-        return shared_from_this();
-      });
+  channel::Channel& way = core_->channel(url.scheme);
+  if (service_.empty()) service_ = way.service_at(url, deadline);
+  if (service_.empty()) throw Error(ErrorCode::invalid_argument, "the URL names no service");
+  way.connect(url, deadline, [this](std::shared_ptr<channel::Connection> connection) {
+    connection->set_endpoints(endpoint_, 0);
+    const std::lock_guard lock(mutex_);
+    connection_ = std::move(connection);
+    return shared_from_this();
+  });
   try {
     const Milliseconds timeout = timeout_for(Milliseconds(0), {});
     if (connection_->may_combine()) {

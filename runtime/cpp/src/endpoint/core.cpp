@@ -141,7 +141,9 @@ channel::Channel& Core::channel(const std::string& scheme) {
   const std::lock_guard lock(mutex_);
   const auto found = channels_.find(scheme);
   if (found == channels_.end()) {
-    throw Error(ErrorCode::invalid_argument, "there is no channel for `" + scheme + "://`");
+    throw Error(ErrorCode::invalid_argument,
+                "there is no channel for `" + scheme + "://`" +
+                    (scheme == "rr+serial" ? ": give the node rr::serial_channel()" : ""));
   }
   return *found->second;
 }

@@ -82,10 +82,14 @@ void Board::set_wire(std::vector<std::uint8_t> body) {
 
 void Board::run() {
   while (!stops_) {
-    if (!port_.is_open() && !port_.open()) {
-      lose("its port cannot be opened");
-      (void)port_.read(pause);
-      continue;
+    if (!port_.is_open()) {
+      const std::string why = port_.open();
+      if (!why.empty()) {
+        lose("its port cannot be opened");
+        functions_.failed({Failure::Kind::port, path() + " " + why});
+        (void)port_.read(pause);
+        continue;
+      }
     }
     if (!link_.has_session()) {
       if (had_session_) lose("it has been reset, or does not answer");
@@ -115,13 +119,24 @@ void Board::fail_jobs() {
 bool Board::connect() {
   if (++session_ == 0) ++session_;
   link_.begin_session(session_, now(), hello_patience);
-  if (await().kind != Outcome::Kind::reply) return false;
+  const Outcome hello = await();
+  if (hello.kind == Outcome::Kind::version) {
+    return fail(Failure::Kind::unusable, "speaks version " + std::to_string(hello.code) +
+                                             " of the protocol, and not " +
+                                             std::to_string(protocolVersion));
+  }
+  if (hello.kind != Outcome::Kind::reply) return fail(Failure::Kind::silent, "does not answer");
   const bool is_new = texts_.texts.empty() || texts_.hash != link_.facts().hash;
-  if (is_new && !read_texts()) return false;
+  if (is_new && !read_texts()) return fail(Failure::Kind::silent, "has told no whole definition");
   had_session_ = true;
   is_connected_ = true;
   functions_.connected(texts_, is_new);
   return true;
+}
+
+bool Board::fail(Failure::Kind kind, const std::string& what) {
+  if (!stops_) functions_.failed({kind, "the board at " + path() + " " + what});
+  return false;
 }
 
 bool Board::read_texts() {
@@ -180,6 +195,11 @@ void Board::pass(Time limit) {
   }
   link_.receive(*in, now());
   link_.tick(now());
+  tell_unasked();
+}
+
+// What comes behind an answer waits until that has been passed on.
+void Board::tell_unasked() {
   for (const Unasked& one : link_.take_unasked()) functions_.unasked(one);
 }
 
@@ -197,6 +217,7 @@ void Board::serve_one() {
   if (has_job) {
     const Outcome outcome = exchange(job.kind, std::move(job.body), job.patience, job.client);
     job.done(outcome);
+    tell_unasked();
   } else if (now() - link_.heard() > silence) {
     (void)exchange(Kind::Ping, {}, silence);
   } else {

@@ -30,11 +30,23 @@ struct BoardTexts {
 /// thread of its own talks to it and calls all the functions below, one at a time, under no lock.
 class Board {
  public:
+  /// Why a board could not be reached.
+  struct Failure {
+    enum class Kind {
+      port,      ///< its port cannot be opened
+      silent,    ///< nothing that can be used answers there, or not yet
+      unusable,  ///< it answers, and will not do
+    };
+    Kind kind{};
+    std::string text{};  ///< `/dev/ttyUSB0 is used by another program`
+  };
   struct Functions {
     /// A session has begun. `is_new`: the texts are others than before, or the first.
     Function<void(const BoardTexts&, bool)> connected;
     /// The session has ended, for this reason.
     Function<void(const std::string&)> lost;
+    /// An attempt has failed; there will be others.
+    Function<void(const Failure&)> failed;
     Function<void(const Unasked&)> unasked;
   };
   /// What has become of a request. Called once, also when it could not be sent, when the outcome is
@@ -73,11 +85,13 @@ class Board {
 
   void run();
   bool connect();
+  bool fail(Failure::Kind kind, const std::string& what);
   bool read_texts();
   Outcome exchange(Kind kind, std::vector<std::uint8_t> body, Time patience,
                    std::uint32_t client = 0);
   Outcome await();
   void pass(Time limit);
+  void tell_unasked();
   void serve_one();
   void lose(const std::string& why);
   void fail_jobs();

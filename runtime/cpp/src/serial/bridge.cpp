@@ -5,85 +5,10 @@
 
 #include "rr/error.hpp"
 #include "rr/serial.hpp"
-#include "runtime/cpp/src/serial/served_board.hpp"
+#include "runtime/cpp/src/serial/bridged_board.hpp"
+#include "runtime/cpp/src/serial/port.hpp"
 
 namespace rr {
-namespace serial {
-namespace {
-
-/// A board and the service that is made of it.
-class BridgedBoard {
- public:
-  BridgedBoard(Node& node, const BoardPlace& place, BoardBridge::Log log, std::function<void()> met)
-      : node_(node),
-        place_(place),
-        log_(std::move(log)),
-        met_(std::move(met)),
-        board_(std::make_shared<Board>(
-            place.path, place.baud,
-            Board::Functions{.connected = [this](const BoardTexts& texts,
-                                                 bool is_new) { on_connected(texts, is_new); },
-                             .lost = [this](const std::string& why) { say("lost: " + why); },
-                             .unasked =
-                                 [this](const Unasked& one) {
-                                   if (service_) service_->handle(one);
-                                 }})) {
-    board_->start();
-  }
-  ~BridgedBoard() {
-    board_->stop();
-    withdraw();
-  }
-  BridgedBoard(const BridgedBoard&) = delete;
-  BridgedBoard& operator=(const BridgedBoard&) = delete;
-
- private:
-  void say(const std::string& what) const {
-    if (log_) log_((name_.empty() ? place_.path : name_) + ": " + what);
-  }
-
-  void on_connected(const BoardTexts& texts, bool is_new) {
-    if (is_new || !service_) {
-      try {
-        offer(texts);
-      } catch (const Error& error) {
-        say(error.message());
-      }
-    }
-    if (!service_) return;
-    service_->open_again();
-    say("connected");
-    met_();
-  }
-
-  void offer(const BoardTexts& texts) {
-    withdraw();
-    const auto service = std::make_shared<BoardService>(board_, texts, node_);
-    name_ = place_.name.empty() ? service->name() : place_.name;
-    offered_ = node_.register_service(name_, service->root());
-    service_ = service;
-  }
-
-  void withdraw() {
-    if (!service_) return;
-    offered_->close();
-    service_->detach();
-    service_.reset();
-  }
-
-  Node& node_;
-  const BoardPlace place_;
-  const BoardBridge::Log log_;
-  const std::function<void()> met_;
-  std::string name_;
-  Service offered_;
-  std::shared_ptr<BoardService> service_;
-  const std::shared_ptr<Board> board_;  // its thread alone uses service_, until it has ended
-};
-
-}  // namespace
-}  // namespace serial
-
 struct BoardBridge::State {
   Node& node;
   Log log;
@@ -111,6 +36,8 @@ BoardPlace BoardPlace::parse(const std::string& text) {
     } else if (part.starts_with("name=") || part.starts_with("service=")) {
       place.name = part.substr(part.find('=') + 1);
       continue;
+    } else if (part.starts_with("nodeid=") || part.starts_with("nodename=")) {
+      continue;  // whom a client expects there
     }
     throw Error(ErrorCode::invalid_argument, "`" + text + "`: `" + part + "` is not understood");
   }
@@ -128,12 +55,13 @@ void BoardBridge::add(const BoardPlace& place) {
   serial::Port::check_rate(place.baud);
   State* const state = state_.get();
   const auto is_met = std::make_shared<bool>(false);
-  state->boards.push_back(
-      std::make_unique<serial::BridgedBoard>(state->node, place, state->log, [state, is_met] {
-        const std::lock_guard lock(state->mutex);
-        if (!std::exchange(*is_met, true)) ++state->met;
-        state->changed.notify_all();
-      }));
+  state->boards.push_back(std::make_unique<serial::BridgedBoard>(
+      state->node, place,
+      serial::BridgedBoard::Functions{.log = state->log, .met = [state, is_met](const auto&) {
+                                        const std::lock_guard lock(state->mutex);
+                                        if (!std::exchange(*is_met, true)) ++state->met;
+                                        state->changed.notify_all();
+                                      }}));
 }
 
 bool BoardBridge::wait(std::chrono::milliseconds limit) const {

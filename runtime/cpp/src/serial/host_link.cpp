@@ -66,6 +66,7 @@ void HostLink::send(Time now) {
 void HostLink::finish(Outcome outcome) {
   is_busy_ = false;
   outcome_ = std::move(outcome);
+  before_outcome_ = unasked_.size();
 }
 
 void HostLink::lose_session() {
@@ -93,7 +94,14 @@ std::optional<Time> HostLink::wake_up() const {
 
 std::vector<std::uint8_t> HostLink::take_output() { return std::exchange(output_, {}); }
 std::optional<Outcome> HostLink::take_outcome() { return std::exchange(outcome_, std::nullopt); }
-std::vector<Unasked> HostLink::take_unasked() { return std::exchange(unasked_, {}); }
+std::vector<Unasked> HostLink::take_unasked() {
+  if (!outcome_) return std::exchange(unasked_, {});
+  std::vector<Unasked> later(unasked_.begin() + static_cast<std::ptrdiff_t>(before_outcome_),
+                             unasked_.end());
+  unasked_.resize(before_outcome_);
+  before_outcome_ = 0;
+  return std::exchange(unasked_, std::move(later));
+}
 
 void HostLink::receive(std::span<const std::uint8_t> bytes, Time now) {
   finder_.take(bytes, [&](const Frame& frame) {

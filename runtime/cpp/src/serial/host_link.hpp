@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -66,7 +67,8 @@ class HostLink {
   std::vector<std::uint8_t> take_output();
   /// The outcome of the request, once.
   std::optional<Outcome> take_outcome();
-  /// What the board has sent without being asked, in order.
+  /// What the board has sent without being asked, in order; while there is an outcome, only what it
+  /// has sent before that.
   std::vector<Unasked> take_unasked();
 
   [[nodiscard]] bool is_busy() const { return is_busy_; }
@@ -97,6 +99,7 @@ class HostLink {
   std::vector<std::uint8_t> output_;
   std::vector<Unasked> unasked_;
   std::optional<Outcome> outcome_;
+  std::size_t before_outcome_ = 0;  // so many of unasked_
   BoardFacts facts_;
 
   bool has_session_ = false;

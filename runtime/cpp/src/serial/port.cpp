@@ -4,10 +4,13 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstring>
 #include <utility>
 
 #include "rr/error.hpp"
@@ -28,6 +31,22 @@ speed_t speed_of(std::uint32_t baud) {
               "serial ports have no rate of " + std::to_string(baud) + " baud");
 }
 
+std::string reason(int error) {
+  switch (error) {
+    case EBUSY:
+    case EWOULDBLOCK:
+      return "is in use, by another program or another part of this one";
+    case ENOENT:
+    case ENXIO:
+    case ENODEV:
+      return "does not exist";
+    case ENOTTY:
+      return "is no serial port";
+    default:
+      return std::string("cannot be opened: ") + std::strerror(error);
+  }
+}
+
 }  // namespace
 
 void Port::check_rate(std::uint32_t baud) { (void)speed_of(baud); }
@@ -42,30 +61,36 @@ Port::~Port() {
   ::close(wake_);
 }
 
-bool Port::open() {
+std::string Port::open() {
   close();
   port_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (port_ < 0) return false;
-  termios settings{};
-  if (::tcgetattr(port_, &settings) != 0) {
+  if (port_ < 0) return reason(errno);
+  const auto give_up = [this] {
+    const int error = errno;
     close();
-    return false;
-  }
+    return reason(error);
+  };
+  // Two who read one line would each get half of the answers. The lock is for those who ask for it,
+  // as we do; TIOCEXCL is for all others but those of root.
+  if (::flock(port_, LOCK_EX | LOCK_NB) != 0) return give_up();
+  termios settings{};
+  if (::tcgetattr(port_, &settings) != 0) return give_up();
+  (void)::ioctl(port_, TIOCEXCL);
   ::cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
   settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
   ::cfsetispeed(&settings, speed_of(baud_));
   ::cfsetospeed(&settings, speed_of(baud_));
-  if (::tcsetattr(port_, TCSANOW, &settings) != 0) {
-    close();
-    return false;
-  }
+  if (::tcsetattr(port_, TCSANOW, &settings) != 0) return give_up();
   ::tcflush(port_, TCIOFLUSH);
-  return true;
+  return {};
 }
 
 void Port::close() {
-  if (port_ >= 0) ::close(port_);
+  if (port_ < 0) return;
+  // Whoever else has it open keeps it so.
+  (void)::ioctl(port_, TIOCNXCL);
+  ::close(port_);
   port_ = -1;
 }
 

@@ -23,8 +23,8 @@ class Port {
 
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] bool is_open() const { return port_ >= 0; }
-  /// False when it cannot be opened now.
-  bool open();
+  /// Opens it for this process alone. Empty when it is open, else why it is not: `does not exist`.
+  std::string open();
   void close();
   /// Waits for bytes, until `limit` or wake(). Nothing when the port is gone, which closes it.
   std::optional<std::vector<std::uint8_t>> read(std::chrono::microseconds limit);

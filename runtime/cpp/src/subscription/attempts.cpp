@@ -131,7 +131,9 @@ Services::Reached Services::connect(const std::string& url, const FoundService& 
   const auto choice =
       wanted->choose_node(service.node.is_any() ? parsed.node_id : service.node,
                           service.node_name.empty() ? parsed.node_name : service.node_name, false);
-  if (!choice.is_wanted || !wanted->takes_name(parsed.service)) {
+  // The name of a service that the URL leaves out is known once it is connected.
+  const bool has_name = parsed.service.empty() || wanted->takes_name(parsed.service);
+  if (!choice.is_wanted || !has_name) {
     throw Error(ErrorCode::service_not_found, "the filter does not take `" + url + "`");
   }
   ConnectOptions options{.username = options_.username,
@@ -180,6 +182,8 @@ void Services::check(const Session& session, const std::string& url, FoundServic
   const auto wanted_services = filter();
   if (!wanted_services->choose_node(service.node, service.node_name, true).is_wanted) {
     refusal = "its node";
+  } else if (!wanted_services->takes_name(session.service())) {
+    refusal = "its name";
   } else {
     refusal = wanted_services->refusal(service);
   }

@@ -140,7 +140,8 @@ void ServiceSubscription::update_urls(std::vector<std::string> urls) {
   update_services({std::move(urls)});
 }
 void ServiceSubscription::update_services(std::vector<std::vector<std::string>> services) {
-  need_state(services_).urls().replace(subscription::UrlSource::checked(std::move(services)));
+  subscription::Services& state = need_state(services_);
+  state.urls().replace(subscription::UrlSource::checked(state.core(), std::move(services)));
 }
 void ServiceSubscription::update_types(std::vector<std::string> types, ServiceFilter filter) {
   need_state(services_).look_for(std::move(types), std::move(filter));

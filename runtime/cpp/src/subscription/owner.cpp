@@ -10,7 +10,7 @@ namespace rr::subscription {
 
 std::shared_ptr<Services> Owner::add(std::vector<std::vector<std::string>> services,
                                      SubscriptionOptions options) {
-  const UrlSource::Lists lists = UrlSource::checked(std::move(services));
+  const UrlSource::Lists lists = UrlSource::checked(*host_.core, std::move(services));
   auto subscription = add(std::move(options));
   subscription->urls().replace(lists);
   return subscription;

@@ -64,6 +64,7 @@ class Services final : public Waits, public std::enable_shared_from_this<Service
   void look_for(std::vector<std::string> types, ServiceFilter filter);
   /// What the program says itself.
   [[nodiscard]] UrlSource& urls() { return urls_; }
+  [[nodiscard]] endpoint::Core& core() const { return *host_.core; }
 
   // What handles do; see ServiceSubscription.
   void close();

@@ -19,13 +19,15 @@ bool shares_one(const std::vector<std::string>& a, const std::vector<std::string
 
 }  // namespace
 
-UrlSource::Lists UrlSource::checked(std::vector<std::vector<std::string>> lists) {
+UrlSource::Lists UrlSource::checked(endpoint::Core& core,
+                                    std::vector<std::vector<std::string>> lists) {
   Lists result;
   for (std::vector<std::string>& urls : lists) {
     FoundService& service = result.emplace_back();
     for (const std::string& url : urls) {
       const Url parsed = Url::parse(url);
-      if (parsed.service.empty()) {
+      if (parsed.service.empty() &&
+          !core.channel(parsed.scheme).traits(parsed.scheme).has_one_service) {
         throw Error(ErrorCode::invalid_argument, "`" + url + "` names no service");
       }
       if (service.name.empty()) service.name = parsed.service;

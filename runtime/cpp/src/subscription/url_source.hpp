@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "rr/service_filter.hpp"
+#include "runtime/cpp/src/endpoint/core.hpp"
 
 namespace rr::subscription {
 
@@ -20,8 +21,9 @@ class UrlSource {
 
   /// Of each service its URLs.
   using Lists = std::vector<FoundService>;
-  /// Throws rr::Error (invalid_argument) unless each list has URLs, all of the same service.
-  static Lists checked(std::vector<std::vector<std::string>> lists);
+  /// Throws rr::Error (invalid_argument) unless each list has URLs, all of the same service, which
+  /// those of channels that lead to one service only may leave out.
+  static Lists checked(endpoint::Core& core, std::vector<std::vector<std::string>> lists);
 
   /// These from now on. A service that shares a URL with one before is the same.
   void replace(const Lists& lists);
