@@ -120,6 +120,19 @@ internal static unsafe class Elements
         }
     }
 
+    /// <summary>What is text, and is released.</summary>
+    public static string TakeText(nint data)
+    {
+        try
+        {
+            return Encoding.UTF8.GetString(Bytes(Functions.rr_data_elements(data)));
+        }
+        finally
+        {
+            Functions.rr_data_release(data);
+        }
+    }
+
     private static ReadOnlySpan<byte> Bytes(RrElements elements) => elements.Size <= int.MaxValue
         ? new ReadOnlySpan<byte>(elements.Data, (int)elements.Size)
         : throw new RobdefException(ErrorCode.BufferLimitViolation, "received elements are larger than 2 GiB");
