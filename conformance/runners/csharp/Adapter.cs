@@ -95,7 +95,14 @@ internal sealed class MultiDimAdapter<T>(string name, Adapter<T> item, ValueCode
     {
         int[] dims = [.. Json.Items(json!["dims"]).Select(dim => dim!.GetValue<int>())];
         T[] items = [.. Json.Items(json["array"]).Select(item.Read)];
-        return new MultiDimArray<T>(dims, items);
+        try
+        {
+            return new MultiDimArray<T>(dims, items);
+        }
+        catch (ArgumentException refused)
+        {
+            throw new RobdefException(ErrorCode.DataTypeError, refused.Message);
+        }
     }
 
     public override JsonNode Write(MultiDimArray<T> value) => new JsonObject

@@ -175,7 +175,7 @@ internal sealed partial class CallingNode(Adapters adapters)
         {
             case "attributes":
                 var attributes = new JsonObject();
-                foreach ((string name, VarValue? value) in _clients[target.Client].FetchAttributes())
+                foreach ((string name, VarValue? value) in _clients[target.Client].GetAttributes())
                 {
                     attributes[name] = adapters.Write("varvalue", value);
                 }

@@ -37,11 +37,8 @@ internal static class Outcomes
             return new InvalidOperationException(TextOf("native"));
         }
         var code = (ErrorCode)Json.To<int>(Given("code")!);
-        string name = RobdefException.NameOf(code);
-        if (code == ErrorCode.RemoteError || name.Length == 0)
-        {
-            name = TextOf("name");
-        }
+        bool isNamed = code is ErrorCode.RemoteError or ErrorCode.UnknownError || RobdefException.NameOf(code).Length == 0;
+        string name = isNamed ? TextOf("name") : RobdefException.NameOf(code);
         return new RobdefException(code, name, TextOf("message"), TextOf("subname"), adapters.ReadVarValue(Given("param")));
     }
 }

@@ -109,7 +109,7 @@ internal sealed class Script(Adapters adapters, JsonNode? node)
         }
         catch (RobdefException error) when (wanted != result)
         {
-            return error.Message;
+            return $"{error.Name}: {error.Message}";
         }
     };
 

@@ -67,6 +67,14 @@ public sealed class Client<TStub> : IDisposable, IAsyncDisposable
         }
     }
 
+    /// <summary>What the service said about itself in connecting.</summary>
+    public unsafe Dictionary<string, VarValue?> GetAttributes()
+    {
+        nint error;
+        Failure.Check(Functions.rr_client_attributes(_session.Client, out nint data, &error), error, _session.Types);
+        return Elements.Take(data, VarValueCodec.StringMap, _session.Types.Registry) ?? [];
+    }
+
     /// <summary>What the service says about itself now; asked in the thread of the caller.</summary>
     public unsafe Dictionary<string, VarValue?> FetchAttributes()
     {

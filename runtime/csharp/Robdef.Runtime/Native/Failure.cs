@@ -63,7 +63,7 @@ internal static unsafe class Failure
             RobdefException own => own,
             OperationCanceledException => new RobdefException(ErrorCode.OperationAborted, exception.Message),
             NotImplementedException => new RobdefException(ErrorCode.NotImplementedError, exception.Message),
-            _ => new RobdefException(ErrorCode.UnknownError, exception.GetType().FullName ?? "", exception.Message),
+            _ => new RobdefException(ErrorCode.RemoteError, exception.GetType().FullName ?? "", exception.Message),
         };
         using var name = new NativeText(error.Name);
         using var message = new NativeText(error.Message);

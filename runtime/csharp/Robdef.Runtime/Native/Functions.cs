@@ -81,6 +81,8 @@ internal static unsafe partial class Functions
     [LibraryImport(Library)]
     public static partial RrStr rr_client_remote_name(SafeHandle client);
     [LibraryImport(Library)]
+    public static partial int rr_client_attributes(SafeHandle client, out nint data, nint* error);
+    [LibraryImport(Library)]
     public static partial int rr_client_fetch_attributes(SafeHandle client, out nint data, nint* error);
     [LibraryImport(Library)]
     public static partial int rr_client_authenticate(SafeHandle client, RrStr user, RrStr password, RrElements* credentials, nint* error);

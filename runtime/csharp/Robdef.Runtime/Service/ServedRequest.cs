@@ -61,11 +61,12 @@ public readonly struct ServedRequest
 
     internal bool HasArguments => _info.Arguments.Count != 0;
 
-    /// <summary>The only argument.</summary>
+    /// <summary>What a property is set to, or what a step of a generator takes.</summary>
     public T Argument<T>(ValueCodec<T> codec)
     {
         ArgumentNullException.ThrowIfNull(codec);
-        return codec.Read(Elements.Reader(_info.Arguments, _types.Registry).Read());
+        FieldReader arguments = Arguments;
+        return arguments.Read(codec, IsSet ? "value"u8 : "parameter"u8);
     }
 
     /// <summary>Answers with a value, when it is there.</summary>
