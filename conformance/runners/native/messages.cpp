@@ -47,9 +47,9 @@ Json encode(const Json& request) {
 
 extern "C" {
 
-/// The answer to a line {do: message or element, ...} of `decode` (it has `hex`) or `encode` (it has
-/// `decoded`), as conformance/README.md says, or {error}. To be freed with conformance_free; NULL
-/// without memory.
+/// The answer to a line {do: message or element, ...} of `decode` (it has `hex`) or `encode` (it
+/// has `decoded`), as conformance/README.md says, or {error}. To be freed with conformance_free;
+/// NULL without memory.
 __attribute__((visibility("default"))) char* conformance_answer(const char* line);
 __attribute__((visibility("default"))) void conformance_free(char* text);
 
