@@ -82,7 +82,7 @@ void collect_messages(const Json& json, std::set<std::string>& texts, bool& echo
 }  // namespace
 
 bool is_host_specific(const std::string& error_name) {
-  static const std::regex mangled(R"((St|S[a-z]|N|NSt)?\d.*|std::.*)");
+  static const std::regex mangled(R"((St|S[a-z]|N|NSt)?\d.*|std::.*|std\.exception)");
   return std::regex_match(error_name, mangled);
 }
 

@@ -132,6 +132,7 @@ TEST(HostSpecificNames, AreToldFromThoseOfTheProtocol) {
   EXPECT_TRUE(is_host_specific("St13runtime_error"));
   EXPECT_TRUE(is_host_specific("N5boost10wrapexceptISt12out_of_rangeEE"));
   EXPECT_TRUE(is_host_specific("std::exception"));
+  EXPECT_TRUE(is_host_specific("std.exception"));  // what our own C++ runtime says
   EXPECT_FALSE(is_host_specific("RobotRaconteur.OutOfRange"));
   EXPECT_FALSE(is_host_specific("conformance.types.ProbeFault"));
 }

@@ -9,44 +9,14 @@ using Xunit;
 
 namespace Robdef.Runtime.Tests;
 
-/// <summary>A client and a service, both in C#, over the network of this machine, in both message formats.</summary>
+/// <summary>A client and a service, the client in C# and the service in C# or C++, over the network of this machine, in both message formats.</summary>
 public sealed class LiveTests
 {
-    /// <summary>A service and a client of it.</summary>
-    private sealed class Pair : IDisposable
-    {
-        private readonly Node _serving = new();
-        private readonly Node _calling;
-
-        public Pair(bool isOld)
-        {
-            _calling = new Node(new NodeOptions { ClientWithoutVersion4 = isOld });
-            int port = _serving.Listen("rr+tcp://127.0.0.1:0");
-            _serving.Register("arm", Arm).Dispose();
-            Client = _calling.Connect<ArmStub>($"rr+tcp://127.0.0.1:{port}/?service=arm");
-            Assert.Equal(isOld ? MessageVersion.V2 : MessageVersion.V4, Client.MessageVersion);
-        }
-
-        public TestArm Arm { get; } = new();
-
-        public Client<ArmStub> Client { get; }
-
-        public ArmStub Stub => Client.Root;
-
-        public void Dispose()
-        {
-            Client.Dispose();
-            _calling.Dispose();
-            _serving.Dispose();
-        }
-    }
-
     [Theory]
-    [InlineData(false)]
-    [InlineData(true)]
-    public async Task Properties_and_functions_carry_their_values(bool isOld)
+    [ClassData(typeof(Pairs))]
+    public async Task Properties_and_functions_carry_their_values(bool isOld, bool isCpp)
     {
-        using var pair = new Pair(isOld);
+        using var pair = new Pair(isOld, isCpp);
         ArmStub arm = pair.Stub;
         arm.SetSpeed(2.5);
         Assert.Equal(2.5, arm.GetSpeed());
@@ -65,11 +35,10 @@ public sealed class LiveTests
     }
 
     [Theory]
-    [InlineData(false)]
-    [InlineData(true)]
-    public async Task An_exception_of_the_definition_arrives_as_its_class(bool isOld)
+    [ClassData(typeof(Pairs))]
+    public async Task An_exception_of_the_definition_arrives_as_its_class(bool isOld, bool isCpp)
     {
-        using var pair = new Pair(isOld);
+        using var pair = new Pair(isOld, isCpp);
         Stuck stuck = Assert.Throws<Stuck>(() => pair.Stub.Fail("rusty"));
         Assert.Equal("rusty", stuck.Message);
         Assert.Equal("by.test", stuck.SubName);
@@ -81,11 +50,10 @@ public sealed class LiveTests
     }
 
     [Theory]
-    [InlineData(false)]
-    [InlineData(true)]
-    public async Task Events_come_until_their_handler_is_taken_away(bool isOld)
+    [ClassData(typeof(Pairs))]
+    public async Task Events_come_until_their_handler_is_taken_away(bool isOld, bool isCpp)
     {
-        using var pair = new Pair(isOld);
+        using var pair = new Pair(isOld, isCpp);
         var came = new TaskCompletionSource<(double, string)>(TaskCreationOptions.RunContinuationsAsynchronously);
         int count = 0;
         void Handle(double x, string label)
@@ -104,11 +72,10 @@ public sealed class LiveTests
     }
 
     [Theory]
-    [InlineData(false)]
-    [InlineData(true)]
-    public async Task Objrefs_give_stubs_of_their_types(bool isOld)
+    [ClassData(typeof(Pairs))]
+    public async Task Objrefs_give_stubs_of_their_types(bool isOld, bool isCpp)
     {
-        using var pair = new Pair(isOld);
+        using var pair = new Pair(isOld, isCpp);
         IJoint joint = await pair.Stub.GetJointsAsync(3);
         await joint.SetAngleAsync(0.25);
         Assert.Equal(0.25, pair.Stub.GetJoints(3).GetAngle());
@@ -117,11 +84,10 @@ public sealed class LiveTests
     }
 
     [Theory]
-    [InlineData(false)]
-    [InlineData(true)]
-    public async Task Pipes_carry_packets_both_ways(bool isOld)
+    [ClassData(typeof(Pairs))]
+    public async Task Pipes_carry_packets_both_ways(bool isOld, bool isCpp)
     {
-        using var pair = new Pair(isOld);
+        using var pair = new Pair(isOld, isCpp);
         using PipeEndpoint<double> end = await pair.Stub.Samples.ConnectAsync();
         for (int i = 1; i <= 3; ++i)
         {
@@ -137,17 +103,16 @@ public sealed class LiveTests
             }
         }
         Assert.Equal([2, 4, 6], came);
-        pair.Arm.Samples.Send(100);
+        pair.Stub.Broadcast(100);
         Assert.True(end.TryReceive(TimeSpan.FromSeconds(20), out double all));
         Assert.Equal(100, all);
     }
 
     [Theory]
-    [InlineData(false)]
-    [InlineData(true)]
-    public async Task Wires_hold_the_newest_value_and_tell_of_changes(bool isOld)
+    [ClassData(typeof(Pairs))]
+    public async Task Wires_hold_the_newest_value_and_tell_of_changes(bool isOld, bool isCpp)
     {
-        using var pair = new Pair(isOld);
+        using var pair = new Pair(isOld, isCpp);
         using WireConnection<Vector3> wire = await pair.Stub.Force.ConnectAsync();
         var changed = new TaskCompletionSource<Vector3>(TaskCreationOptions.RunContinuationsAsynchronously);
         wire.ValueChanged += (value, time) => changed.TrySetResult(value);
@@ -160,11 +125,10 @@ public sealed class LiveTests
     }
 
     [Theory]
-    [InlineData(false)]
-    [InlineData(true)]
-    public async Task A_service_calls_back_the_client_that_asks(bool isOld)
+    [ClassData(typeof(Pairs))]
+    public async Task A_service_calls_back_the_client_that_asks(bool isOld, bool isCpp)
     {
-        using var pair = new Pair(isOld);
+        using var pair = new Pair(isOld, isCpp);
         pair.Stub.SetAsk(question => Task.FromResult(question * 10));
         Assert.Equal(71, await pair.Stub.AskBackAsync(7));
         pair.Stub.SetAsk(async question =>
@@ -178,11 +142,10 @@ public sealed class LiveTests
     }
 
     [Theory]
-    [InlineData(false)]
-    [InlineData(true)]
-    public async Task Memories_are_read_and_written_in_parts(bool isOld)
+    [ClassData(typeof(Pairs))]
+    public async Task Memories_are_read_and_written_in_parts(bool isOld, bool isCpp)
     {
-        using var pair = new Pair(isOld);
+        using var pair = new Pair(isOld, isCpp);
         Assert.Equal(1000, pair.Stub.Buffer.GetLength());
         pair.Stub.Buffer.Write(10, [1, 2, 3]);
         double[] read = new double[5];
@@ -201,11 +164,10 @@ public sealed class LiveTests
     }
 
     [Theory]
-    [InlineData(false)]
-    [InlineData(true)]
-    public async Task Generators_give_take_and_do_both(bool isOld)
+    [ClassData(typeof(Pairs))]
+    public async Task Generators_give_take_and_do_both(bool isOld, bool isCpp)
     {
-        using var pair = new Pair(isOld);
+        using var pair = new Pair(isOld, isCpp);
         List<int> counted = [];
         await foreach (int value in await pair.Stub.CountAsync(4))
         {
@@ -218,8 +180,9 @@ public sealed class LiveTests
             Assert.True(sink.TryNext(6));
             sink.Close();
         }
-        await pair.Arm.Collecting.Task.WaitAsync(TimeSpan.FromSeconds(20));
-        Assert.Equal([5, 6], pair.Arm.Collected);
+        Assert.True(SpinWait.SpinUntil(() => pair.Stub.GetCollected().Length == 2, TimeSpan.FromSeconds(20)));
+        int[] collected = await pair.Stub.GetCollectedAsync();
+        Assert.Equal([5, 6], collected);
         using GeneratorFilter<int, int> twice = pair.Stub.Twice();
         Assert.True(twice.TryNext(21, out int doubled));
         Assert.Equal(42, doubled);
@@ -229,7 +192,7 @@ public sealed class LiveTests
     [Fact]
     public async Task A_cancelled_call_ends_and_the_next_one_works()
     {
-        using var pair = new Pair(isOld: false);
+        using var pair = new Pair();
         using var stop = new CancellationTokenSource(50);
         await Assert.ThrowsAnyAsync<OperationCanceledException>(() => pair.Stub.WaitLongAsync(stop.Token));
         using var again = new CancellationTokenSource(50);
@@ -240,7 +203,7 @@ public sealed class LiveTests
     [Fact]
     public void Calls_of_many_threads_get_their_own_answers()
     {
-        using var pair = new Pair(isOld: false);
+        using var pair = new Pair();
         Parallel.For(0, 2000, i => Assert.Equal(i + 1.0, pair.Stub.Add(i, 1)));
     }
 
@@ -259,7 +222,7 @@ public sealed class LiveTests
 
     private static WeakReference Serve()
     {
-        using var pair = new Pair(isOld: false);
+        using var pair = new Pair();
         Assert.Equal(3, pair.Stub.Add(1, 2));
         return new WeakReference(pair.Arm);
     }

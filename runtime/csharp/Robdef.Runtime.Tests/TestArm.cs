@@ -21,9 +21,21 @@ internal sealed class TestArm : ArmDefault
         Force.SetHandler((value, time, client) => Force.Send(value with { X = value.X + 1 }));
     }
 
-    public List<int> Collected { get; } = [];
+    private readonly List<int> _collected = [];
 
-    public TaskCompletionSource Collecting { get; } = new(TaskCreationOptions.RunContinuationsAsynchronously);
+    public override ValueTask<int[]> GetCollectedAsync()
+    {
+        lock (_collected)
+        {
+            return new([.. _collected]);
+        }
+    }
+
+    public override ValueTask BroadcastAsync(double packet)
+    {
+        Samples.Send(packet);
+        return default;
+    }
 
     public override ValueTask<int> GetCallsAsync() => new(_calls);
 
@@ -72,9 +84,11 @@ internal sealed class TestArm : ArmDefault
     {
         await foreach (int value in values)
         {
-            Collected.Add(value);
+            lock (_collected)
+            {
+                _collected.Add(value);
+            }
         }
-        Collecting.SetResult();
     }
 
     public override async IAsyncEnumerable<int> TwiceAsync(IAsyncEnumerable<int> values)

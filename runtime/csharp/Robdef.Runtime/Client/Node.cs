@@ -7,56 +7,6 @@ using Robdef.Runtime.Native;
 
 namespace Robdef.Runtime;
 
-/// <summary>How a node is made. What is not set is as the native runtime has it.</summary>
-public sealed record NodeOptions
-{
-    /// <summary>Its name: letters, digits, `_`, `.` and `-`, a letter first.</summary>
-    public string Name { get; init; } = "";
-
-    /// <summary>Its id; a random one when empty.</summary>
-    public Guid Id { get; init; }
-
-    /// <summary>How long requests may take.</summary>
-    public TimeSpan? RequestTimeout { get; init; }
-
-    /// <summary>How long connecting may take.</summary>
-    public TimeSpan? ConnectTimeout { get; init; }
-
-    /// <summary>Clients of this node offer only the older message format.</summary>
-    public bool ClientWithoutVersion4 { get; init; }
-
-    /// <summary>Clients of this node do not offer codes for names.</summary>
-    public bool ClientWithoutStringTable { get; init; }
-
-    /// <summary>Capabilities that services do not offer: 1 version 4, 2 string table, 4 combined connect.</summary>
-    public int ServerWithout { get; init; }
-
-    /// <summary>Services offer codes for names.</summary>
-    public bool ServerStringTable { get; init; }
-
-    /// <summary>How often silent connections are tested.</summary>
-    public TimeSpan? HeartbeatPeriod { get; init; }
-
-    /// <summary>The largest message, in bytes.</summary>
-    public int MessageSize { get; init; }
-
-    /// <summary>The largest part of a memory in one request, in bytes.</summary>
-    public int MemoryTransferLimit { get; init; }
-}
-
-/// <summary>How a client connects.</summary>
-public sealed record ConnectOptions
-{
-    /// <summary>The user, where the service has users.</summary>
-    public string UserName { get; init; } = "";
-
-    /// <summary>The user's password.</summary>
-    public string Password { get; init; } = "";
-
-    /// <summary>How long each request may take; the node's limit when not set.</summary>
-    public TimeSpan? RequestTimeout { get; init; }
-}
-
 /// <summary>One participant: offers services, and connects to those of others. May be used by any thread.</summary>
 public sealed class Node : IDisposable
 {
@@ -105,21 +55,19 @@ public sealed class Node : IDisposable
     }
 
     /// <summary>Connects to the service at a URL, in the thread of the caller.</summary>
-    public unsafe Client<TStub> Connect<TStub>(string url, ConnectOptions? options = null)
-        where TStub : Stub, IStub<TStub>
+    public Client<TStub> Connect<TStub>(string url, ConnectOptions? options = null)
+        where TStub : Stub, IStub<TStub> =>
+        ConnectNow(url, TStub.RrServiceDefinition.Known, TStub.RrTypeName, TStub.RrCreate, options);
+
+    /// <summary>
+    /// Connects to a service whose root may be of any type: its stub is of the class that one of the definitions
+    /// has for it, and else a plain one.
+    /// </summary>
+    public Client<Stub> Connect(string url, IEnumerable<ServiceDefinition> definitions, ConnectOptions? options = null)
     {
-        KnownTypes types = TStub.RrServiceDefinition.Known;
-        options ??= new ConnectOptions();
-        using var text = new NativeText(url);
-        using var user = new NativeText(options.UserName);
-        using var password = new NativeText(options.Password);
-        using var type = new NativeText(TStub.RrTypeName);
-        RrStr first = text.Value;
-        RrConnectOptions native = Native(options, user.Value, password.Value, type.Value);
-        nint error;
-        int status = Functions.rr_client_connect(_handle, &first, 1, &native, out nint client, &error);
-        Failure.Check(status, error, types);
-        return new Client<TStub>(new Session(new ClientHandle(client), this, types));
+        ArgumentNullException.ThrowIfNull(definitions);
+        var types = new KnownTypes(definitions);
+        return ConnectNow(url, types, "", types.MakeStub, options);
     }
 
     /// <summary>Connects to the service at a URL.</summary>
@@ -131,15 +79,13 @@ public sealed class Node : IDisposable
             return Task.FromCanceled<Client<TStub>>(cancel);
         }
         KnownTypes types = TStub.RrServiceDefinition.Known;
-        options ??= new ConnectOptions();
         // Connecting has its own limit and cannot be cancelled: the token ends the waiting.
-        var completion = new TaskCompletion<Client<TStub>>(types, client => new Client<TStub>(new Session(new ClientHandle(client), this, types)), CancellationToken.None);
+        var completion = new TaskCompletion<Client<TStub>>(types,
+            client => new Client<TStub>(new Session(new ClientHandle(client), this, types), TStub.RrCreate), CancellationToken.None);
         using var text = new NativeText(url);
-        using var user = new NativeText(options.UserName);
-        using var password = new NativeText(options.Password);
-        using var type = new NativeText(TStub.RrTypeName);
+        using var terms = new ConnectTerms(options, TStub.RrTypeName);
         RrStr first = text.Value;
-        RrConnectOptions native = Native(options, user.Value, password.Value, type.Value);
+        RrConnectOptions native = terms.Native;
         RrCompletion done = completion.Native;
         nint error;
         int status = Functions.rr_client_connect_async(_handle, &first, 1, &native, &done, &error);
@@ -182,69 +128,17 @@ public sealed class Node : IDisposable
         }
     }
 
-    private static unsafe RrConnectOptions Native(ConnectOptions options, RrStr user, RrStr password, RrStr type) => new()
+    private unsafe Client<TStub> ConnectNow<TStub>(string url, KnownTypes types, string typeName, Func<ObjectHandle, TStub> create,
+        ConnectOptions? options)
+        where TStub : Stub
     {
-        Size = (nuint)sizeof(RrConnectOptions),
-        Username = user,
-        Password = password,
-        ObjectType = type,
-        RequestTimeoutMs = options.RequestTimeout is { } timeout ? Times.Milliseconds(timeout) : 0,
-    };
-}
-
-/// <summary>The connection of a client: what its objects have in common.</summary>
-internal sealed class Session
-{
-    public Session(ClientHandle client, Node node, KnownTypes types)
-    {
-        Client = client;
-        Node = node;
-        Types = types;
-        Version = (MessageVersion)Functions.rr_client_message_version(client);
-    }
-
-    public ClientHandle Client { get; }
-
-    /// <summary>Kept, so that it does not end while a client uses it.</summary>
-    public Node Node { get; }
-
-    public KnownTypes Types { get; }
-
-    public MessageVersion Version { get; }
-
-    public ObjectHandle Handle(nint native) => new(new RemoteHandle(native), this);
-}
-
-/// <summary>A session with a service. Disposing it ends the session; its stubs then fail.</summary>
-/// <typeparam name="TStub">The stub of the root object.</typeparam>
-public sealed class Client<TStub> : IDisposable, IAsyncDisposable
-    where TStub : Stub, IStub<TStub>
-{
-    private readonly Session _session;
-
-    internal unsafe Client(Session session)
-    {
-        _session = session;
+        using var text = new NativeText(url);
+        using var terms = new ConnectTerms(options, typeName);
+        RrStr first = text.Value;
+        RrConnectOptions native = terms.Native;
         nint error;
-        Failure.Check(Functions.rr_client_root(session.Client, out nint root, &error), error, session.Types);
-        Root = TStub.RrCreate(session.Handle(root));
+        int status = Functions.rr_client_connect(_handle, &first, 1, &native, out nint client, &error);
+        Failure.Check(status, error, types);
+        return new Client<TStub>(new Session(new ClientHandle(client), this, types), create);
     }
-
-    /// <summary>The root object.</summary>
-    public TStub Root { get; }
-
-    /// <summary>Whether the session goes on.</summary>
-    public bool IsOpen => Functions.rr_client_is_open(_session.Client) != 0;
-
-    /// <summary>The message format in which this connection speaks.</summary>
-    public MessageVersion MessageVersion => _session.Version;
-
-    /// <summary>Tells the service, waits for its answer for half a second at most, and ends the connection.</summary>
-    public void Close() => Functions.rr_client_close(_session.Client);
-
-    /// <summary>Closes the session and lets go of it.</summary>
-    public void Dispose() => _session.Client.Dispose();
-
-    /// <summary>The same, on another thread.</summary>
-    public ValueTask DisposeAsync() => new(Task.Run(_session.Client.Dispose));
 }

@@ -99,6 +99,20 @@ public class Stub(ObjectHandle rrHandle)
         Failure.Check(Functions.rr_object_exit_monitor(RrHandle.Native, null, &error), error, RrHandle.Types);
     }
 
+    /// <summary>The type of what is at an objref now, qualified.</summary>
+    /// <param name="member">The objref, as the definition calls it.</param>
+    /// <param name="index">Its index, if it has one.</param>
+    public unsafe string RrFindType(string member, ObjectIndex index = default)
+    {
+        using var name = new NativeText(member);
+        using var text = new NativeText(index.Text ?? "");
+        var nativeIndex = new RrIndex { Form = (uint)index.Form, Number = index.Number, Text = text.Value };
+        nint error;
+        int status = Functions.rr_object_find_type(RrHandle.Native, name.Value, &nativeIndex, null, out nint data, &error);
+        Failure.Check(status, error, RrHandle.Types);
+        return Elements.TakeText(data);
+    }
+
     /// <summary>Asks for a property.</summary>
     protected Call RrGet(ReadOnlySpan<byte> member, MemberAccess access = MemberAccess.None) =>
         new(RrHandle, member, PropertyGet, access);

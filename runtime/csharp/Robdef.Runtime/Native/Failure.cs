@@ -63,7 +63,7 @@ internal static unsafe class Failure
             RobdefException own => own,
             OperationCanceledException => new RobdefException(ErrorCode.OperationAborted, exception.Message),
             NotImplementedException => new RobdefException(ErrorCode.NotImplementedError, exception.Message),
-            _ => new RobdefException(ErrorCode.UnknownError, exception.GetType().FullName ?? "", exception.Message),
+            _ => new RobdefException(ErrorCode.RemoteError, exception.GetType().FullName ?? "", exception.Message),
         };
         using var name = new NativeText(error.Name);
         using var message = new NativeText(error.Message);
@@ -113,6 +113,19 @@ internal static unsafe class Elements
         try
         {
             return codec.Read(Reader(Functions.rr_data_elements(data), registry).Read());
+        }
+        finally
+        {
+            Functions.rr_data_release(data);
+        }
+    }
+
+    /// <summary>What is text, and is released.</summary>
+    public static string TakeText(nint data)
+    {
+        try
+        {
+            return Encoding.UTF8.GetString(Bytes(Functions.rr_data_elements(data)));
         }
         finally
         {

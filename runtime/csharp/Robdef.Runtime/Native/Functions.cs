@@ -75,6 +75,20 @@ internal static unsafe partial class Functions
     [LibraryImport(Library)]
     public static partial int rr_client_is_open(SafeHandle client);
     [LibraryImport(Library)]
+    public static partial void rr_client_cancel_calls(SafeHandle client);
+    [LibraryImport(Library)]
+    public static partial RrNodeId rr_client_remote_node(SafeHandle client);
+    [LibraryImport(Library)]
+    public static partial RrStr rr_client_remote_name(SafeHandle client);
+    [LibraryImport(Library)]
+    public static partial int rr_client_attributes(SafeHandle client, out nint data, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_client_fetch_attributes(SafeHandle client, out nint data, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_client_authenticate(SafeHandle client, RrStr user, RrStr password, RrElements* credentials, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_client_logout(SafeHandle client, nint* error);
+    [LibraryImport(Library)]
     public static partial uint rr_client_message_version(SafeHandle client);
     [LibraryImport(Library)]
     public static partial int rr_client_root(SafeHandle client, out nint root, nint* error);
@@ -93,6 +107,8 @@ internal static unsafe partial class Functions
     public static partial int rr_object_call(SafeHandle handle, uint request, RrStr member, RrElements* elements, RrCallOptions* options, out nint answer, nint* error);
     [LibraryImport(Library)]
     public static partial int rr_object_call_async(SafeHandle handle, uint request, RrStr member, RrElements* elements, RrCallOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_object_find_type(SafeHandle handle, RrStr member, RrIndex* index, RrCallOptions* options, out nint data, nint* error);
     [LibraryImport(Library)]
     public static partial int rr_object_lock(SafeHandle handle, int sessionOnly, RrCallOptions* options, nint* error);
     [LibraryImport(Library)]
@@ -125,10 +141,6 @@ internal static unsafe partial class Functions
     public static partial void rr_generator_release(nint generator);
 
     [LibraryImport(Library)]
-    public static partial int rr_memory_length(SafeHandle handle, RrStr member, RrCallOptions* options, out ulong length, nint* error);
-    [LibraryImport(Library)]
-    public static partial int rr_memory_dims(SafeHandle handle, RrStr member, RrCallOptions* options, ulong* dims, nuint* count, nint* error);
-    [LibraryImport(Library)]
     public static partial int rr_memory_read(SafeHandle handle, RrStr member, RrMemoryType* type, ulong* position, ulong* count, nuint dims, void* items, nuint size, RrCallOptions* options, nint* error);
     [LibraryImport(Library)]
     public static partial int rr_memory_write(SafeHandle handle, RrStr member, RrMemoryType* type, ulong* position, ulong* count, nuint dims, void* items, nuint size, RrCallOptions* options, nint* error);
@@ -151,6 +163,8 @@ internal static unsafe partial class Functions
     public static partial int rr_pipe_is_open(SafeHandle pipe);
     [LibraryImport(Library)]
     public static partial int rr_pipe_index(SafeHandle pipe);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_is_unreliable(SafeHandle pipe);
     [LibraryImport(Library)]
     public static partial uint rr_pipe_client(SafeHandle pipe);
     [LibraryImport(Library)]
@@ -230,6 +244,14 @@ internal static unsafe partial class Functions
     [LibraryImport(Library)]
     public static partial int rr_served_pipe_send(SafeHandle served, uint member, RrElements* packet, nint* error);
     [LibraryImport(Library)]
+    public static partial int rr_served_pipe_endpoints(SafeHandle served, uint member, nint* pipes, nuint* count, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_served_pipe_set_backlog_limit(SafeHandle served, uint member, nuint packets, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_served_wire_connections(SafeHandle served, uint member, nint* wires, nuint* count, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_served_wire_set_lifespan(SafeHandle served, uint member, int lifespanMs, nint* error);
+    [LibraryImport(Library)]
     public static partial int rr_served_wire_set_handler(SafeHandle served, uint member, RrServedWireHandler* handler, nint* error);
     [LibraryImport(Library)]
     public static partial int rr_served_wire_send(SafeHandle served, uint member, RrElements* value, nint* error);
@@ -250,6 +272,18 @@ internal static unsafe partial class Functions
     [LibraryImport(Library)]
     public static partial int rr_service_release_path(SafeHandle service, RrStr path, uint client, nint* error);
     [LibraryImport(Library)]
+    public static partial RrStr rr_service_name(SafeHandle service);
+    [LibraryImport(Library)]
+    public static partial int rr_service_set_attributes(SafeHandle service, RrElements* attributes, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_service_clients(SafeHandle service, nint context, delegate* unmanaged[Cdecl]<nint, RrClientInfo*, void> each, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_service_disconnect(SafeHandle service, uint client);
+    [LibraryImport(Library)]
     public static partial uint rr_current_client();
+    [LibraryImport(Library)]
+    public static partial int rr_current_user(out nint name, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_current_user_has(RrStr privilege);
 }
 #pragma warning restore IDE1006, CA1707

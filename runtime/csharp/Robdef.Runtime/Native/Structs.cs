@@ -269,6 +269,17 @@ internal unsafe struct RrMemorySource
 }
 
 [StructLayout(LayoutKind.Sequential)]
+internal struct RrClientInfo
+{
+    public nuint Size;
+    public uint Client;
+    public uint Reserved;
+    public RrNodeId Node;
+    public RrStr NodeName;
+    public RrStr User;
+}
+
+[StructLayout(LayoutKind.Sequential)]
 internal unsafe struct RrServiceOptions
 {
     public nuint Size;
@@ -279,7 +290,7 @@ internal unsafe struct RrServiceOptions
     public uint UserIsOptional;
     public int MonitorPatienceMs;
     public nint Context;
-    public delegate* unmanaged[Cdecl]<nint, void*, void> OnClientConnected;
-    public delegate* unmanaged[Cdecl]<nint, void*, void> OnClientDisconnected;
+    public delegate* unmanaged[Cdecl]<nint, RrClientInfo*, void> OnClientConnected;
+    public delegate* unmanaged[Cdecl]<nint, RrClientInfo*, void> OnClientDisconnected;
     public delegate* unmanaged[Cdecl]<nint, void> Drop;
 }

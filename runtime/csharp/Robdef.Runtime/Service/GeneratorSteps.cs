@@ -155,10 +155,19 @@ internal sealed class SinkSteps<T>(KnownTypes types, Func<IAsyncEnumerable<T>, V
     private readonly Parameters<T> _parameters = new();
     private Task? _work;
 
+    /// <summary>Begins the work, which may refuse at once: then the function of the service fails.</summary>
+    public void Begin()
+    {
+        _work = work(_parameters.ReadAsync()).AsTask();
+        if (_work.IsFaulted)
+        {
+            _work.GetAwaiter().GetResult();
+        }
+    }
+
     protected override Task StepAsync(ServedRequest request)
     {
         T value = request.Argument(codec);
-        _work ??= work(_parameters.ReadAsync()).AsTask();
         return StepAsync(request, value);
     }
 
@@ -204,7 +213,11 @@ internal sealed class FilterSteps<TIn, TOut>(KnownTypes types, Func<IAsyncEnumer
 {
     private readonly SemaphoreSlim _turn = new(1);
     private readonly Parameters<TIn> _parameters = new();
+    private IAsyncEnumerable<TOut>? _made;
     private IAsyncEnumerator<TOut>? _values;
+
+    /// <summary>Asks for the sequence, which may be refused at once: then the function of the service fails.</summary>
+    public void Begin() => _made = work(_parameters.ReadAsync());
 
     protected override Task StepAsync(ServedRequest request)
     {
@@ -227,7 +240,7 @@ internal sealed class FilterSteps<TIn, TOut>(KnownTypes types, Func<IAsyncEnumer
         await _turn.WaitAsync().ConfigureAwait(false);
         try
         {
-            _values ??= work(_parameters.ReadAsync()).GetAsyncEnumerator(Ended.Token);
+            _values ??= _made!.GetAsyncEnumerator(Ended.Token);
             _ = _parameters.Give(value);
             if (await _values.MoveNextAsync().ConfigureAwait(false))
             {

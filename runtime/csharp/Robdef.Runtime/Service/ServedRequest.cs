@@ -14,6 +14,8 @@ public readonly struct ServedRequest
 {
     private const uint Get = 1;
     private const uint Set = 2;
+    private const uint PeekIn = 7;
+    private const uint PeekOut = 8;
 
     private readonly nint _request;
     private readonly RrRequestInfo _info;
@@ -47,6 +49,10 @@ public readonly struct ServedRequest
     /// <summary>The arguments by their names.</summary>
     public FieldReader Arguments => Elements.Fields(_info.Arguments, _types.Registry);
 
+    internal bool IsPeek => _info.Kind is PeekIn or PeekOut;
+
+    internal bool IsPeekIn => _info.Kind == PeekIn;
+
     internal nint Native => _request;
 
     internal KnownTypes Types => _types;
@@ -55,11 +61,12 @@ public readonly struct ServedRequest
 
     internal bool HasArguments => _info.Arguments.Count != 0;
 
-    /// <summary>The only argument.</summary>
+    /// <summary>What a property is set to, or what a step of a generator takes.</summary>
     public T Argument<T>(ValueCodec<T> codec)
     {
         ArgumentNullException.ThrowIfNull(codec);
-        return codec.Read(Elements.Reader(_info.Arguments, _types.Registry).Read());
+        FieldReader arguments = Arguments;
+        return arguments.Read(codec, IsSet ? "value"u8 : "parameter"u8);
     }
 
     /// <summary>Answers with a value, when it is there.</summary>
@@ -106,7 +113,9 @@ public readonly struct ServedRequest
     public ValueTask AnswerSink<T>(Func<IAsyncEnumerable<T>, ValueTask> work, ValueCodec<T> codec)
     {
         ArgumentNullException.ThrowIfNull(work);
-        return AnswerGenerator(new SinkSteps<T>(_types, work, codec));
+        var steps = new SinkSteps<T>(_types, work, codec);
+        steps.Begin();
+        return AnswerGenerator(steps);
     }
 
     /// <summary>Answers with a generator that takes and gives values.</summary>
@@ -114,7 +123,9 @@ public readonly struct ServedRequest
         ValueCodec<TOut> given)
     {
         ArgumentNullException.ThrowIfNull(work);
-        return AnswerGenerator(new FilterSteps<TIn, TOut>(_types, work, taken, given));
+        var steps = new FilterSteps<TIn, TOut>(_types, work, taken, given);
+        steps.Begin();
+        return AnswerGenerator(steps);
     }
 
     internal unsafe void Answer<T>(T value, ValueCodec<T> codec)
@@ -143,10 +154,10 @@ public readonly struct ServedRequest
     {
         if (skeleton is null)
         {
-            throw new RobdefException(ErrorCode.ObjectNotFound, "there is no such object");
+            throw new RobdefException(ErrorCode.ServiceError, "there is no such object");
         }
         nint error;
-        int status = Functions.rr_request_answer_object(_request, skeleton.RrServe(), 0, &error);
+        int status = Functions.rr_request_answer_object(_request, skeleton.RrServe(), skeleton.RrIsPerClient ? 1 : 0, &error);
         Failure.Check(status, error, _types);
         Functions.rr_request_release(_request);
     }

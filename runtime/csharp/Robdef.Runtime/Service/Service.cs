@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 using System;
 using System.Collections.Generic;
+using System.Runtime.CompilerServices;
+using System.Runtime.InteropServices;
 using Robdef.Runtime.Native;
 
 namespace Robdef.Runtime;
@@ -17,16 +19,35 @@ public sealed record ServiceOptions
     /// <summary>With users: clients may connect without one.</summary>
     public bool UserIsOptional { get; init; }
 
+    /// <summary>How long a client may have an object to itself without asking for anything; 30 s when not set.</summary>
+    public TimeSpan? MonitorPatience { get; init; }
+
+    /// <summary>Told of each client that has connected. On a thread of the node.</summary>
+    public Action<ServedClient>? ClientConnected { get; init; }
+
+    /// <summary>Told of each client whose session has ended. On a thread of the node.</summary>
+    public Action<ServedClient>? ClientDisconnected { get; init; }
+
     /// <summary>Definitions whose types may be in varvalues and varobjects, beside that of the root.</summary>
     public IReadOnlyList<ServiceDefinition> ExtraDefinitions { get; init; } = [];
 }
+
+/// <summary>A client of a service.</summary>
+/// <param name="Client">The number by which members know it.</param>
+/// <param name="Node">The id of its node.</param>
+/// <param name="NodeName">The name of its node.</param>
+/// <param name="User">Who is logged in; empty for nobody, and where it has just connected or left.</param>
+public sealed record ServedClient(uint Client, Guid Node, string NodeName, string User);
 
 /// <summary>A service that a node offers. Disposing it lets go of it; the service goes on until it is closed or the node ends.</summary>
 public sealed class Service : IDisposable
 {
     private readonly ServiceHandle _handle;
 
-    private Service(ServiceHandle handle) => _handle = handle;
+    internal Service(ServiceHandle handle) => _handle = handle;
+
+    /// <summary>Its name.</summary>
+    public string Name => Failure.Text(Functions.rr_service_name(_handle));
 
     /// <summary>Tells all clients that the service is closed, and ends their sessions. The name is free again.</summary>
     public void Close() => Functions.rr_service_close(_handle);
@@ -39,6 +60,44 @@ public sealed class Service : IDisposable
         Failure.Check(Functions.rr_service_release_path(_handle, text.Value, 0, &error), error, KnownTypes.None);
     }
 
+    /// <summary>Forgets the object of its own that one client has at a path, and those below.</summary>
+    public unsafe void ReleasePath(string path, uint client)
+    {
+        using var text = new NativeText(path);
+        nint error;
+        Failure.Check(Functions.rr_service_release_path(_handle, text.Value, client, &error), error, KnownTypes.None);
+    }
+
+    /// <summary>What clients that ask from now on are told about the service.</summary>
+    public unsafe void SetAttributes(Dictionary<string, VarValue?> attributes)
+    {
+        using var values = new NativeElements(attributes);
+        RrElements native = values.Value;
+        nint error;
+        Failure.Check(Functions.rr_service_set_attributes(_handle, &native, &error), error, KnownTypes.None);
+    }
+
+    /// <summary>The clients that are connected now.</summary>
+    public unsafe IReadOnlyList<ServedClient> GetClients()
+    {
+        var clients = new List<ServedClient>();
+        var sink = new ClientSink(clients.Add, null);
+        nint context = Context.Of(sink);
+        try
+        {
+            nint error;
+            Failure.Check(Functions.rr_service_clients(_handle, context, &ClientSink.OnConnected, &error), error, KnownTypes.None);
+        }
+        finally
+        {
+            Context.Free(context);
+        }
+        return clients;
+    }
+
+    /// <summary>Ends the session of a client, if it has one.</summary>
+    public void Disconnect(uint client) => Functions.rr_service_disconnect(_handle, client);
+
     /// <summary>Lets go of the service, which goes on.</summary>
     public void Dispose() => _handle.Dispose();
 
@@ -46,11 +105,7 @@ public sealed class Service : IDisposable
     {
         KnownTypes types = root.RrTypes;
         using var text = new NativeText(name);
-        using ElementWriter writer = new(MessageVersion.V4);
-        if (options.Attributes is not null)
-        {
-            VarValueCodec.StringMap.Write(writer, "attributes"u8, options.Attributes);
-        }
+        using var attributes = new NativeElements(options.Attributes);
         var extra = new nint[options.ExtraDefinitions.Count];
         for (int i = 0; i < extra.Length; ++i)
         {
@@ -63,18 +118,25 @@ public sealed class Service : IDisposable
             using var lines = new NativeText(options.Users);
             Failure.Check(Functions.rr_users_from_text(lines.Value, out users, &error), error, types);
         }
-        fixed (byte* attributes = writer.Written)
         fixed (nint* definitions = extra)
         {
             var native = new RrServiceOptions
             {
                 Size = (nuint)sizeof(RrServiceOptions),
-                Attributes = Elements.Of(attributes, writer),
+                Attributes = attributes.Value,
                 ExtraDefinitions = definitions,
                 ExtraDefinitionCount = (nuint)extra.Length,
                 Users = users,
                 UserIsOptional = options.UserIsOptional ? 1u : 0,
+                MonitorPatienceMs = options.MonitorPatience is { } patience ? Times.Milliseconds(patience) : 0,
             };
+            if (options.ClientConnected is not null || options.ClientDisconnected is not null)
+            {
+                native.Context = Context.Of(new ClientSink(options.ClientConnected, options.ClientDisconnected));
+                native.OnClientConnected = &ClientSink.OnConnected;
+                native.OnClientDisconnected = &ClientSink.OnDisconnected;
+                native.Drop = &Context.Drop;
+            }
             int status = Functions.rr_service_register(node.Handle, text.Value, root.RrServe(), &native, out nint service, &error);
             if (users != 0)
             {
@@ -84,4 +146,34 @@ public sealed class Service : IDisposable
             return new Service(new ServiceHandle(service));
         }
     }
+}
+
+/// <summary>Where the native runtime tells of a service's clients.</summary>
+internal sealed unsafe class ClientSink(Action<ServedClient>? connected, Action<ServedClient>? disconnected)
+{
+    [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
+    public static void OnConnected(nint context, RrClientInfo* client) =>
+        Tell(context, *client, static (sink, one) => sink.Connect(one));
+
+    [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
+    public static void OnDisconnected(nint context, RrClientInfo* client) =>
+        Tell(context, *client, static (sink, one) => sink.Disconnect(one));
+
+    private static void Tell(nint context, RrClientInfo client, Action<ClientSink, ServedClient> tell)
+    {
+        try
+        {
+            var node = new Guid(new ReadOnlySpan<byte>(client.Node.Bytes, 16), bigEndian: true);
+            tell(Context.Get<ClientSink>(context),
+                new ServedClient(client.Client, node, Failure.Text(client.NodeName), Failure.Text(client.User)));
+        }
+        catch (Exception exception)
+        {
+            Unhandled.Report(exception);
+        }
+    }
+
+    private void Connect(ServedClient client) => connected?.Invoke(client);
+
+    private void Disconnect(ServedClient client) => disconnected?.Invoke(client);
 }

@@ -9,91 +9,6 @@ using Robdef.Runtime.Native;
 
 namespace Robdef.Runtime;
 
-/// <summary>The table of an object's members, made once for its class.</summary>
-public sealed unsafe class ServedType
-{
-    private readonly Lock _lock = new();
-    private readonly string _name;
-    private ObjectTypeHandle? _handle;
-
-    /// <summary>A table.</summary>
-    /// <param name="definition">Where the object is declared.</param>
-    /// <param name="name">Its name there.</param>
-    /// <param name="members">In the order of their numbers.</param>
-    public ServedType(ServiceDefinition definition, string name, IReadOnlyList<ServedMember> members)
-    {
-        ArgumentNullException.ThrowIfNull(definition);
-        Definition = definition;
-        _name = name;
-        Members = members;
-    }
-
-    /// <summary>Where the object is declared.</summary>
-    public ServiceDefinition Definition { get; }
-
-    /// <summary>In the order of their numbers.</summary>
-    public IReadOnlyList<ServedMember> Members { get; }
-
-    internal ObjectTypeHandle Handle
-    {
-        get
-        {
-            lock (_lock)
-            {
-                return _handle ??= Make();
-            }
-        }
-    }
-
-    private ObjectTypeHandle Make()
-    {
-        var texts = new List<nint>();
-        RrStr Text(string text)
-        {
-            byte* copy = (byte*)Marshal.StringToCoTaskMemUTF8(text);
-            texts.Add((nint)copy);
-            return new RrStr { Data = copy, Size = (nuint)System.Text.Encoding.UTF8.GetByteCount(text) };
-        }
-        var members = new RrMember[Members.Count];
-        for (int i = 0; i < members.Length; ++i)
-        {
-            ServedMember member = Members[i];
-            members[i] = new RrMember
-            {
-                Name = Text(member.Name),
-                Kind = (uint)member.Kind,
-                Access = (uint)member.Access,
-                ReturnsValue = member.ReturnsValue ? 1u : 0,
-                Generator = (uint)member.Generator,
-                Index = (uint)member.Index,
-                ObjectType = Text(member.ObjectType),
-                Memory = new RrMemoryType
-                {
-                    Element = member.Memory.Element,
-                    IsMulti = member.Memory.IsMulti ? 1u : 0,
-                    Access = member.Kind == MemberKind.Memory ? (uint)member.Access : 0,
-                    TransferSize = member.Memory.TransferSize,
-                },
-            };
-        }
-        try
-        {
-            fixed (RrMember* first = members)
-            {
-                nint error;
-                int status = Functions.rr_object_type_new(Definition.Handle, Text(_name), first, (nuint)members.Length,
-                    (nuint)sizeof(RrMember), out nint type, &error);
-                Failure.Check(status, error, KnownTypes.None);
-                return new ObjectTypeHandle(type);
-            }
-        }
-        finally
-        {
-            texts.ForEach(Marshal.FreeCoTaskMem);
-        }
-    }
-}
-
 /// <summary>
 /// An object that services offer. Generated classes derive from it. Its members are called on
 /// threads of the node: for each client one at a time, of different clients at once. A member that is
@@ -103,6 +18,7 @@ public abstract unsafe class Skeleton
 {
     private readonly Lock _lock = new();
     private readonly Dictionary<uint, Action<ServedHandle>> _streams = [];
+    private readonly Dictionary<uint, WirePeeks> _peeks = [];
     private ServedHandle? _handle;
     private int _paths;
 
@@ -112,10 +28,39 @@ public abstract unsafe class Skeleton
     /// <summary>The client whose request this thread handles; 0 outside of that.</summary>
     public static uint RrCurrentClient => Functions.rr_current_client();
 
+    /// <summary>Who is logged in there; null for nobody.</summary>
+    public static string? RrCurrentUser
+    {
+        get
+        {
+            nint error;
+            Failure.Check(Functions.rr_current_user(out nint name, &error), error, KnownTypes.None);
+            return name == 0 ? null : Elements.TakeText(name);
+        }
+    }
+
+    /// <summary>
+    /// The object is its client's own: each client that follows the objref asks for one, and it is released when
+    /// the client goes. To be set before an objref gives it.
+    /// </summary>
+    public bool RrIsPerClient { get; init; }
+
+    /// <summary>With one, clients may have the object to themselves; null: they may not.</summary>
+    protected virtual ObjectMonitor? RrMonitor => null;
+
+    /// <summary>Whether the user of the request that this thread handles has a privilege.</summary>
+    public static bool RrCurrentUserHas(string privilege)
+    {
+        using var text = new NativeText(privilege);
+        return Functions.rr_current_user_has(text.Value) != 0;
+    }
+
     internal KnownTypes RrTypes => RrType.Definition.Known;
 
-    /// <summary>The object is reached at a path for the first time.</summary>
-    protected virtual void RrAttached(string path)
+    /// <summary>The object is reached at a path for the first time, before any request; of the root while it is registered.</summary>
+    /// <param name="service">The service, which may be kept.</param>
+    /// <param name="path">Of the object.</param>
+    protected virtual void RrAttached(Service service, string path)
     {
     }
 
@@ -171,8 +116,18 @@ public abstract unsafe class Skeleton
         }
     }
 
+    /// <summary>Who answers when a client asks for the values of a wire.</summary>
+    internal void RrSetPeeks(uint member, WirePeeks peeks)
+    {
+        lock (_lock)
+        {
+            _peeks[member] = peeks;
+        }
+    }
+
     private ServedHandle Make()
     {
+        ObjectMonitor? monitor = RrMonitor;
         var native = new RrObjectHandler
         {
             Size = (nuint)sizeof(RrObjectHandler),
@@ -180,6 +135,8 @@ public abstract unsafe class Skeleton
             OnRequest = &OnRequest,
             OnAttached = &OnAttached,
             OnReleased = &OnReleased,
+            OnMonitorEnter = monitor is null ? null : &OnMonitorEnter,
+            OnMonitorExit = monitor is null ? null : &OnMonitorExit,
             Drop = &Context.Drop,
         };
         nint error;
@@ -205,7 +162,8 @@ public abstract unsafe class Skeleton
         try
         {
             Skeleton skeleton = Context.Get<Skeleton>(context);
-            ValueTask work = skeleton.RrRequestAsync(new ServedRequest(request, *info, skeleton.RrTypes));
+            var served = new ServedRequest(request, *info, skeleton.RrTypes);
+            ValueTask work = served.IsPeek ? skeleton.Peek(served) : skeleton.RrRequestAsync(served);
             if (!work.IsCompletedSuccessfully)
             {
                 _ = work.AsTask();
@@ -218,10 +176,48 @@ public abstract unsafe class Skeleton
         }
     }
 
+    private ValueTask Peek(ServedRequest request)
+    {
+        WirePeeks peeks;
+        lock (_lock)
+        {
+            peeks = _peeks[request.Member];
+        }
+        return peeks.Answer(request);
+    }
+
+    [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
+    private static int OnMonitorEnter(nint context, int waitMs)
+    {
+        try
+        {
+            ObjectMonitor? monitor = Context.Get<Skeleton>(context).RrMonitor;
+            return monitor is not null && monitor.TryEnter(TimeSpan.FromMilliseconds(waitMs)) ? 1 : 0;
+        }
+        catch (Exception exception)
+        {
+            Unhandled.Report(exception);
+            return 0;
+        }
+    }
+
+    [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
+    private static void OnMonitorExit(nint context)
+    {
+        try
+        {
+            Context.Get<Skeleton>(context).RrMonitor?.Exit();
+        }
+        catch (Exception exception)
+        {
+            Unhandled.Report(exception);
+        }
+    }
+
     [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
     private static void OnAttached(nint context, nint service, RrStr path)
     {
-        Functions.rr_service_release(service);
+        var handle = new ServiceHandle(service);
         try
         {
             Skeleton skeleton = Context.Get<Skeleton>(context);
@@ -229,7 +225,7 @@ public abstract unsafe class Skeleton
             {
                 ++skeleton._paths;
             }
-            skeleton.RrAttached(Failure.Text(path));
+            skeleton.RrAttached(new Service(handle), Failure.Text(path));
         }
         catch (Exception exception)
         {
@@ -269,108 +265,4 @@ public static class NotServed
     /// <summary>A NotImplementedError that names the member.</summary>
     public static RobdefException Member(string name) =>
         new(ErrorCode.NotImplementedError, $"the member `{name}` is not implemented");
-}
-
-/// <summary>An event or the call of a callback, made by generated code. Used once.</summary>
-public unsafe ref struct ServedCall
-{
-    private readonly Skeleton _skeleton;
-    private readonly uint _member;
-    private readonly MemberAccess _access;
-    private ElementWriter? _writer;
-
-    internal ServedCall(Skeleton skeleton, uint member, MemberAccess access)
-    {
-        _skeleton = skeleton;
-        _member = member;
-        _access = access;
-    }
-
-    /// <summary>Puts an argument in front of those that are there.</summary>
-    public ServedCall With<T>(scoped ReadOnlySpan<byte> name, ValueCodec<T> codec, T value)
-    {
-        ArgumentNullException.ThrowIfNull(codec);
-        _writer ??= Writers.Rent(MessageVersion.V4);
-        codec.Write(_writer, name, value);
-        return this;
-    }
-
-    /// <summary>Sends the event to all clients. Never waits; without a service nobody is told.</summary>
-    public void Fire()
-    {
-        ElementWriter? writer = _writer;
-        fixed (byte* first = writer is null ? default : writer.Written)
-        {
-            RrElements elements = writer is null ? default : Elements.Of(first, writer);
-            if (_skeleton.RrServed is { IsClosed: false } served)
-            {
-                nint error;
-                int status = Functions.rr_served_event_fire(served, _member, &elements, &error);
-                GiveBack();
-                Failure.Check(status, error, _skeleton.RrTypes);
-            }
-        }
-    }
-
-    /// <summary>Calls the function of one client, and waits in this thread.</summary>
-    public T Call<T>(uint client, ValueCodec<T> codec, CancellationToken cancel) =>
-        Elements.Take(Send(client, cancel), codec, _skeleton.RrTypes.Registry);
-
-    /// <summary>The same without a result.</summary>
-    public void Call(uint client, CancellationToken cancel) => Functions.rr_data_release(Send(client, cancel));
-
-    /// <summary>Calls the function of one client.</summary>
-    public Task<T> CallAsync<T>(uint client, ValueCodec<T> codec, CancellationToken cancel) => Begin(client, codec, cancel);
-
-    /// <summary>The same without a result.</summary>
-    public Task CallAsync(uint client, CancellationToken cancel) => Begin<bool>(client, null, cancel);
-
-    private readonly ServedHandle Served => _skeleton.RrServed
-        ?? throw new RobdefException(ErrorCode.InvalidOperation, "no service offers the object");
-
-    private nint Send(uint client, CancellationToken cancel)
-    {
-        var cancellation = new NativeCancellation(cancel);
-        ElementWriter? writer = _writer;
-        fixed (byte* first = writer is null ? default : writer.Written)
-        {
-            cancellation.Begin();
-            RrElements elements = writer is null ? default : Elements.Of(first, writer);
-            var options = new RrCallOptions { Size = (nuint)sizeof(RrCallOptions), Access = (uint)_access, Cancellation = cancellation.Handle };
-            nint error;
-            int status = Functions.rr_served_callback_call(Served, _member, client, &elements, &options, out nint answer, &error);
-            cancellation.End();
-            GiveBack();
-            return status == 0 ? answer : throw cancellation.Failed(Failure.Take(status, error, _skeleton.RrTypes));
-        }
-    }
-
-    private Task<T> Begin<T>(uint client, ValueCodec<T>? codec, CancellationToken cancel)
-    {
-        if (cancel.IsCancellationRequested)
-        {
-            return Task.FromCanceled<T>(cancel);
-        }
-        var completion = new AnswerCompletion<T>(_skeleton.RrTypes, codec, cancel);
-        ElementWriter? writer = _writer;
-        fixed (byte* first = writer is null ? default : writer.Written)
-        {
-            RrElements elements = writer is null ? default : Elements.Of(first, writer);
-            var options = new RrCallOptions { Size = (nuint)sizeof(RrCallOptions), Access = (uint)_access, Cancellation = completion.Cancellation };
-            RrCompletion native = completion.Native;
-            nint error;
-            int status = Functions.rr_served_callback_call_async(Served, _member, client, &elements, &options, &native, &error);
-            GiveBack();
-            return status == 0 ? completion.Task : Task.FromException<T>(completion.Abandon(native, status, error));
-        }
-    }
-
-    private void GiveBack()
-    {
-        if (_writer is not null)
-        {
-            Writers.Return(_writer);
-            _writer = null;
-        }
-    }
 }

@@ -47,7 +47,12 @@ public abstract class StructCodec<T>(string qualifiedName, int fieldCount) : Val
             return null;
         }
         element.Expect(ElementType.Structure);
-        element.ExpectTypeName(_name);
+        if (!element.TypeName.SequenceEqual(_name))
+        {
+            // The recorded library reads it as what it says it is, and then fails.
+            element.Registry.Find(element).ReadVarying(element);
+            throw element.Error(ErrorCode.DataTypeMismatch, $"is a `{Encoding.UTF8.GetString(element.TypeName)}`, not a `{qualifiedName}`");
+        }
         FieldReader fields = element.Fields;
         return ReadFields(ref fields);
     }

@@ -91,8 +91,14 @@ public sealed class PipeEndpoint<T> : IAsyncEnumerable<T>, IDisposable
     /// <summary>Whether both sides have it.</summary>
     public bool IsOpen => Functions.rr_pipe_is_open(_handle) != 0;
 
+    /// <summary>Both sides have agreed that packets may be lost or come in another order.</summary>
+    public bool IsUnreliable => Functions.rr_pipe_is_unreliable(_handle) != 0;
+
     /// <summary>On the service's side: the client. 0 on the client's side.</summary>
     public uint Client => Functions.rr_pipe_client(_handle);
+
+    /// <summary>Whether packets that are sent from now on are acknowledged. Off at first.</summary>
+    public void AskForAcknowledgements(bool on) => Functions.rr_pipe_ask_for_acknowledgements(_handle, on ? 1 : 0);
 
     /// <summary>How many packets can be received now.</summary>
     public int Available => (int)Functions.rr_pipe_available(_handle);
@@ -168,7 +174,7 @@ public sealed class PipeEndpoint<T> : IAsyncEnumerable<T>, IDisposable
     /// <summary>Calls these for the packets that wait and those that come, in order, one at a time; null takes them away.</summary>
     /// <param name="onPacket">Gets each packet, which is then not kept; null: they are kept.</param>
     /// <param name="onClosed">Once, behind the packets.</param>
-    /// <param name="onAcknowledged">Numbers of packets that the other side has; asks it to say so.</param>
+    /// <param name="onAcknowledged">Numbers of packets that the other side has, of those that are acknowledged.</param>
     public unsafe void SetHandler(Action<T>? onPacket, Action? onClosed = null, Action<uint>? onAcknowledged = null)
     {
         nint error;
@@ -176,10 +182,6 @@ public sealed class PipeEndpoint<T> : IAsyncEnumerable<T>, IDisposable
         {
             Failure.Check(Functions.rr_pipe_set_handler(_handle, null, &error), error, _types);
             return;
-        }
-        if (onAcknowledged is not null)
-        {
-            Functions.rr_pipe_ask_for_acknowledgements(_handle, 1);
         }
         var native = new RrPipeHandler
         {

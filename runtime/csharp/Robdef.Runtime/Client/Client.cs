@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+using System;
+using System.Collections.Generic;
+using System.Threading;
+using System.Threading.Tasks;
+using Robdef.Runtime.Native;
+
+namespace Robdef.Runtime;
+
+/// <summary>The connection of a client: what its objects have in common.</summary>
+internal sealed class Session
+{
+    public Session(ClientHandle client, Node node, KnownTypes types)
+    {
+        Client = client;
+        Node = node;
+        Types = types;
+        Version = (MessageVersion)Functions.rr_client_message_version(client);
+    }
+
+    public ClientHandle Client { get; }
+
+    /// <summary>Kept, so that it does not end while a client uses it.</summary>
+    public Node Node { get; }
+
+    public KnownTypes Types { get; }
+
+    public MessageVersion Version { get; }
+
+    public ObjectHandle Handle(nint native) => new(new RemoteHandle(native), this);
+}
+
+/// <summary>A session with a service. Disposing it ends the session; its stubs then fail.</summary>
+/// <typeparam name="TStub">The stub of the root object.</typeparam>
+public sealed class Client<TStub> : IDisposable, IAsyncDisposable
+    where TStub : Stub
+{
+    private readonly Session _session;
+
+    internal unsafe Client(Session session, Func<ObjectHandle, TStub> create)
+    {
+        _session = session;
+        nint error;
+        Failure.Check(Functions.rr_client_root(session.Client, out nint root, &error), error, session.Types);
+        Root = create(session.Handle(root));
+    }
+
+    /// <summary>The root object.</summary>
+    public TStub Root { get; }
+
+    /// <summary>Whether the session goes on.</summary>
+    public bool IsOpen => Functions.rr_client_is_open(_session.Client) != 0;
+
+    /// <summary>The message format in which this connection speaks.</summary>
+    public MessageVersion MessageVersion => _session.Version;
+
+    /// <summary>The name of the service's node.</summary>
+    public string RemoteName => Failure.Text(Functions.rr_client_remote_name(_session.Client));
+
+    /// <summary>The id of the service's node.</summary>
+    public unsafe Guid RemoteNode
+    {
+        get
+        {
+            RrNodeId id = Functions.rr_client_remote_node(_session.Client);
+            return new Guid(new ReadOnlySpan<byte>(id.Bytes, 16), bigEndian: true);
+        }
+    }
+
+    /// <summary>What the service said about itself in connecting.</summary>
+    public unsafe Dictionary<string, VarValue?> GetAttributes()
+    {
+        nint error;
+        Failure.Check(Functions.rr_client_attributes(_session.Client, out nint data, &error), error, _session.Types);
+        return Elements.Take(data, VarValueCodec.StringMap, _session.Types.Registry) ?? [];
+    }
+
+    /// <summary>What the service says about itself now; asked in the thread of the caller.</summary>
+    public unsafe Dictionary<string, VarValue?> FetchAttributes()
+    {
+        nint error;
+        Failure.Check(Functions.rr_client_fetch_attributes(_session.Client, out nint data, &error), error, _session.Types);
+        return Elements.Take(data, VarValueCodec.StringMap, _session.Types.Registry) ?? [];
+    }
+
+    /// <summary>Logs in, perhaps as another user than in connecting.</summary>
+    public void Authenticate(string userName, string password) => Authenticate(userName, password, null);
+
+    /// <summary>Logs in with something else than a password.</summary>
+    public void Authenticate(string userName, Dictionary<string, VarValue?> credentials) => Authenticate(userName, "", credentials);
+
+    /// <summary>Logs out.</summary>
+    public unsafe void Logout()
+    {
+        nint error;
+        Failure.Check(Functions.rr_client_logout(_session.Client, &error), error, _session.Types);
+    }
+
+    /// <summary>Ends all open calls with OperationCancelled.</summary>
+    public void CancelCalls() => Functions.rr_client_cancel_calls(_session.Client);
+
+    /// <summary>Tells the service, waits for its answer for half a second at most, and ends the connection.</summary>
+    public void Close() => Functions.rr_client_close(_session.Client);
+
+    /// <summary>Closes the session and lets go of it.</summary>
+    public void Dispose() => _session.Client.Dispose();
+
+    /// <summary>The same, on another thread.</summary>
+    public ValueTask DisposeAsync() => new(Task.Run(_session.Client.Dispose));
+
+    private unsafe void Authenticate(string userName, string password, Dictionary<string, VarValue?>? credentials)
+    {
+        using var user = new NativeText(userName);
+        using var secret = new NativeText(password);
+        using var values = new NativeElements(credentials);
+        RrElements native = values.Value;
+        nint error;
+        int status = Functions.rr_client_authenticate(_session.Client, user.Value, secret.Value, &native, &error);
+        Failure.Check(status, error, _session.Types);
+    }
+}

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+using System;
+using System.Runtime.CompilerServices;
+using System.Runtime.InteropServices;
+using System.Threading;
+using System.Threading.Tasks;
+using Robdef.Runtime.Native;
+
+namespace Robdef.Runtime;
+
+/// <summary>Moves parts of a memory: numbers as they lie in memory, others piece by piece.</summary>
+internal sealed unsafe class MemoryTransfer<T>(Stub stub, string member, MemberAccess access, ItemCodec<T> codec, bool isMulti)
+{
+    private const uint GetParameter = 1175;
+
+    private readonly ObjectHandle _object = stub.RrHandle;
+    private readonly byte[] _name = System.Text.Encoding.UTF8.GetBytes(member);
+
+    private bool IsNumbers => codec.TypeName.IsEmpty;
+
+    public Task<ulong> AskAsync(string what, CancellationToken cancel) => Question(what).RunAsync(ValueCodec.UInt64, cancel);
+
+    public ulong Ask(string what, CancellationToken cancel) => Question(what).Run(ValueCodec.UInt64, cancel);
+
+    public Task<ulong[]> AskDimsAsync(CancellationToken cancel) => Question("Dimensions").RunAsync(ValueCodec.UInt64.Array, cancel);
+
+    public ulong[] AskDims(CancellationToken cancel) => Question("Dimensions").Run(ValueCodec.UInt64.Array, cancel);
+
+    public void Read(ReadOnlySpan<ulong> position, ReadOnlySpan<ulong> count, Span<T> items)
+    {
+        ArgumentOutOfRangeException.ThrowIfNotEqual(count.Length, position.Length);
+        using var name = new NativeText(member);
+        RrMemoryType type = Type;
+        nint error;
+        fixed (ulong* where = position, many = count)
+        {
+            if (IsNumbers)
+            {
+                fixed (byte* first = Bytes(items))
+                {
+                    int status = Functions.rr_memory_read(_object.Native, name.Value, &type, where, many, (nuint)position.Length,
+                        first, (nuint)((long)items.Length * Unsafe.SizeOf<T>()), null, &error);
+                    Failure.Check(status, error, _object.Types);
+                }
+                return;
+            }
+            var buffer = new T[items.Length];
+            var pieces = new MemoryPieces<T>(codec, _object, buffer, count.ToArray(), isMulti);
+            Transfer(pieces, native => Functions.rr_memory_read_pieces(_object.Native, native.Name, native.Type, native.Position, native.Count,
+                native.Dims, native.Pieces, null, native.Error), name.Value, &type, where, many, position.Length);
+            buffer.CopyTo(items);
+        }
+    }
+
+    public void Write(ReadOnlySpan<ulong> position, ReadOnlySpan<ulong> count, ReadOnlySpan<T> items)
+    {
+        ArgumentOutOfRangeException.ThrowIfNotEqual(count.Length, position.Length);
+        using var name = new NativeText(member);
+        RrMemoryType type = Type;
+        nint error;
+        fixed (ulong* where = position, many = count)
+        {
+            if (IsNumbers)
+            {
+                fixed (byte* first = Bytes(items))
+                {
+                    int status = Functions.rr_memory_write(_object.Native, name.Value, &type, where, many, (nuint)position.Length,
+                        first, (nuint)((long)items.Length * Unsafe.SizeOf<T>()), null, &error);
+                    Failure.Check(status, error, _object.Types);
+                }
+                return;
+            }
+            var pieces = new MemoryPieces<T>(codec, _object, items.ToArray(), count.ToArray(), isMulti);
+            Transfer(pieces, native => Functions.rr_memory_write_pieces(_object.Native, native.Name, native.Type, native.Position, native.Count,
+                native.Dims, native.Pieces, null, native.Error), name.Value, &type, where, many, position.Length);
+        }
+    }
+
+    private Call Question(string what) => new Call(_object, _name, GetParameter, MemberAccess.None)
+        .With("parameter"u8, ValueCodec.String, what);
+
+    private RrMemoryType Type => new()
+    {
+        Element = (uint)codec.ArrayType,
+        IsMulti = isMulti ? 1u : 0,
+        Access = (uint)access,
+        TransferSize = codec.TransferSize,
+    };
+
+    /// <summary>The bytes of numbers; only called for these.</summary>
+    private static Span<byte> Bytes(ReadOnlySpan<T> items) =>
+        MemoryMarshal.CreateSpan(ref Unsafe.As<T, byte>(ref MemoryMarshal.GetReference(items)), items.Length * Unsafe.SizeOf<T>());
+
+    private void Transfer(MemoryPieces pieces, Func<PieceArguments, int> run, RrStr name, RrMemoryType* type, ulong* position,
+        ulong* count, int dims)
+    {
+        nint context = Context.Of(pieces);
+        try
+        {
+            var native = new RrMemoryPieces
+            {
+                Size = (nuint)sizeof(RrMemoryPieces),
+                Context = context,
+                Take = &MemoryPieces.OnTake,
+                Give = &MemoryPieces.OnGive,
+            };
+            nint error = 0;
+            int status = run(new PieceArguments(name, type, position, count, (nuint)dims, &native, &error));
+            if (status != 0)
+            {
+                RobdefException failure = Failure.Take(status, error, _object.Types);
+                throw pieces.Failed ?? failure;
+            }
+        }
+        finally
+        {
+            Context.Free(context);
+        }
+    }
+}

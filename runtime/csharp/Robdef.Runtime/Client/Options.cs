@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+using System;
+using System.Collections.Generic;
+
+namespace Robdef.Runtime;
+
+/// <summary>How a node is made. What is not set is as the native runtime has it.</summary>
+public sealed record NodeOptions
+{
+    /// <summary>Its name: letters, digits, `_`, `.` and `-`, a letter first.</summary>
+    public string Name { get; init; } = "";
+
+    /// <summary>Its id; a random one when empty.</summary>
+    public Guid Id { get; init; }
+
+    /// <summary>How long requests may take.</summary>
+    public TimeSpan? RequestTimeout { get; init; }
+
+    /// <summary>How long connecting may take.</summary>
+    public TimeSpan? ConnectTimeout { get; init; }
+
+    /// <summary>Clients of this node offer only the older message format.</summary>
+    public bool ClientWithoutVersion4 { get; init; }
+
+    /// <summary>Clients of this node do not offer codes for names.</summary>
+    public bool ClientWithoutStringTable { get; init; }
+
+    /// <summary>Capabilities that services do not offer: 1 version 4, 2 string table, 4 connecting in one step.</summary>
+    public int ServerWithout { get; init; }
+
+    /// <summary>Services offer codes for names.</summary>
+    public bool ServerStringTable { get; init; }
+
+    /// <summary>How often silent connections are tested.</summary>
+    public TimeSpan? HeartbeatPeriod { get; init; }
+
+    /// <summary>The largest message, in bytes.</summary>
+    public int MessageSize { get; init; }
+
+    /// <summary>The largest part of a memory in one request, in bytes.</summary>
+    public int MemoryTransferLimit { get; init; }
+}
+
+/// <summary>How a client connects.</summary>
+public sealed record ConnectOptions
+{
+    /// <summary>The user, where the service has users.</summary>
+    public string UserName { get; init; } = "";
+
+    /// <summary>The user's password.</summary>
+    public string Password { get; init; } = "";
+
+    /// <summary>What the user shows instead of a password.</summary>
+    public Dictionary<string, VarValue?>? Credentials { get; init; }
+
+    /// <summary>What the root object must be or implement, qualified; empty: what the client's stub is for.</summary>
+    public string ObjectType { get; init; } = "";
+
+    /// <summary>How long each request may take; the node's limit when not set.</summary>
+    public TimeSpan? RequestTimeout { get; init; }
+
+    /// <summary>
+    /// Told once when the session has ended, whoever ended it: OperationAborted for this side, ConnectionError for
+    /// a lost connection or a service that sends this client away, ServiceNotFound for a service that was closed.
+    /// Not when connecting has failed. On a thread of the node.
+    /// </summary>
+    public Action<RobdefException>? Closed { get; init; }
+
+    /// <summary>Told that the service has released the object at a path, and all below it. On a thread of the node.</summary>
+    public Action<string>? PathReleased { get; init; }
+}
