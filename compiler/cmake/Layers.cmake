@@ -12,6 +12,7 @@ set(robdef_layers
   "compiler/backends: compiler/diagnostics compiler/model compiler/output"
   # A sketch is C++ too: words and literals are the same.
   "compiler/backends/arduino: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/check_values.hpp compiler/backends/implements.hpp compiler/backends/literals.hpp compiler/backends/print.hpp compiler/backends/words.hpp compiler/backends/cpp/constants.hpp compiler/backends/cpp/literal_text.hpp compiler/backends/cpp/names.hpp"
+  "compiler/backends/cbus: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/print.hpp compiler/backends/words.hpp compiler/backends/cpp/names.hpp"
   "compiler/backends/cpp: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/check_values.hpp compiler/backends/implements.hpp compiler/backends/literals.hpp compiler/backends/print.hpp compiler/backends/words.hpp"
   "compiler/backends/csharp: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/check_values.hpp compiler/backends/implements.hpp compiler/backends/literals.hpp compiler/backends/print.hpp compiler/backends/words.hpp"
   # Uses generated code, which stands on the runtime.
@@ -29,7 +30,7 @@ set(robdef_layers
   "runtime/cpp/include/rr/realtime: runtime/cpp/include/rr/error.hpp"
   "runtime/cpp/include/rr/realtime/service.hpp: runtime/cpp/include/rr"
   "runtime/cpp/src/realtime: runtime/cpp/include/rr/error.hpp runtime/cpp/include/rr/realtime"
-  "runtime/cpp/src/realtime/service: runtime/cpp/include/rr runtime/cpp/src/realtime/testing runtime/cpp/src/node/testing"
+  "runtime/cpp/src/realtime/service: runtime/cpp/include/rr runtime/cpp/src/realtime runtime/cpp/src/node/testing"
   "runtime/cpp/src/codec: runtime/cpp/include/rr"
   "runtime/cpp/src/value: runtime/cpp/include/rr runtime/cpp/src/codec"
   "runtime/cpp/src/channel: runtime/cpp/include/rr runtime/cpp/src/codec"

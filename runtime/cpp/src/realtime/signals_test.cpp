@@ -30,7 +30,7 @@ struct Words {
 /// ROBDEF_SNAPSHOTS of the environment; ./check --long asks for ten million.
 std::uint64_t snapshot_count() {
   const char* const wanted = std::getenv("ROBDEF_SNAPSHOTS");
-  return wanted == nullptr ? 200'000 : std::strtoull(wanted, nullptr, 10);
+  return wanted == nullptr ? 50'000 : std::strtoull(wanted, nullptr, 10);
 }
 
 TEST(RealtimeSignals, ASnapshotIsNeverTorn) {
