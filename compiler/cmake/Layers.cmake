@@ -63,7 +63,8 @@ set(robdef_layers
 
   "conformance: runtime/cpp/include/rr runtime/cpp/src/replay"
   "benchmarks: runtime/cpp/include/rr compiler"
-  "examples: runtime/cpp/include/rr")
+  "examples: runtime/cpp/include/rr"
+  "examples/dual_arm/cpp/dual_arm_test.cpp: examples runtime/cpp/include/rr runtime/cpp/src/realtime/testing")
 
 # Pattern of an outside header: the only folders or files that may include it. The parser's runtime and
 # Asio each have one place where they can be exchanged.

@@ -16,6 +16,7 @@ extern "C" {
 /*
  * An arm as real-time nodes see it.
  */
+
 /* experimental.arm.Joint */
 /*
  * One joint.

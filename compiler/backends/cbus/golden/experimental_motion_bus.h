@@ -12,6 +12,7 @@
 extern "C" {
 #endif
 
+
 /* experimental.motion.Vector3 */
 typedef struct {
   double x;

@@ -121,6 +121,9 @@ bool can_watch() {
 #endif
 }
 
+Watched::Watched(Cost& cost) { watched = &cost; }
+Watched::~Watched() { watched = nullptr; }
+
 void* shared_memory(std::size_t size) {
   void* const memory =
       mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);

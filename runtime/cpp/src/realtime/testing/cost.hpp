@@ -23,6 +23,14 @@ bool can_watch();
 /// Runs `prepare`, which gives the function to be watched, in a process of its own, which ends with
 /// it; its other threads go on meanwhile. What it cost; `report` may hand numbers back.
 void watch(Cost& cost, const std::function<std::function<void()>()>& prepare);
+/// Counts what the calling thread allocates and locks, as long as it lives.
+class Watched {
+ public:
+  explicit Watched(Cost& cost);
+  ~Watched();
+  Watched(const Watched&) = delete;
+  Watched& operator=(const Watched&) = delete;
+};
 /// Memory that both processes see, for a Cost and whatever is reported.
 void* shared_memory(std::size_t size);
 
