@@ -4,6 +4,7 @@
 
 #include "compiler/backends/arduino/backend.hpp"
 #include "compiler/backends/backend.hpp"
+#include "compiler/backends/cbus/backend.hpp"
 #include "compiler/backends/cpp/backend.hpp"
 #include "compiler/backends/csharp/backend.hpp"
 
@@ -13,7 +14,8 @@ const std::vector<const Backend*>& backends() {
   static const cpp::CppBackend cpp;
   static const csharp::CSharpBackend csharp;
   static const arduino::ArduinoBackend arduino;
-  static const std::vector<const Backend*> all{&cpp, &csharp, &arduino};
+  static const cbus::CBusBackend cbus;
+  static const std::vector<const Backend*> all{&cpp, &csharp, &arduino, &cbus};
   return all;
 }
 

@@ -12,6 +12,7 @@ set(robdef_layers
   "compiler/backends: compiler/diagnostics compiler/model compiler/output"
   # A sketch is C++ too: words and literals are the same.
   "compiler/backends/arduino: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/check_values.hpp compiler/backends/implements.hpp compiler/backends/literals.hpp compiler/backends/print.hpp compiler/backends/words.hpp compiler/backends/cpp/constants.hpp compiler/backends/cpp/literal_text.hpp compiler/backends/cpp/names.hpp"
+  "compiler/backends/cbus: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/print.hpp compiler/backends/words.hpp compiler/backends/cpp/names.hpp"
   "compiler/backends/cpp: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/check_values.hpp compiler/backends/implements.hpp compiler/backends/literals.hpp compiler/backends/print.hpp compiler/backends/words.hpp"
   "compiler/backends/csharp: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/check_values.hpp compiler/backends/implements.hpp compiler/backends/literals.hpp compiler/backends/print.hpp compiler/backends/words.hpp"
   # Uses generated code, which stands on the runtime.
@@ -25,6 +26,11 @@ set(robdef_layers
   "compiler/driver/recordings_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
 
   "runtime/cpp/include/rr:"
+  # Of the wire runtime, errors only; what binds the two has a header of its own.
+  "runtime/cpp/include/rr/realtime: runtime/cpp/include/rr/error.hpp"
+  "runtime/cpp/include/rr/realtime/service.hpp: runtime/cpp/include/rr"
+  "runtime/cpp/src/realtime: runtime/cpp/include/rr/error.hpp runtime/cpp/include/rr/realtime"
+  "runtime/cpp/src/realtime/service: runtime/cpp/include/rr runtime/cpp/src/realtime runtime/cpp/src/node/testing"
   "runtime/cpp/src/codec: runtime/cpp/include/rr"
   "runtime/cpp/src/value: runtime/cpp/include/rr runtime/cpp/src/codec"
   "runtime/cpp/src/channel: runtime/cpp/include/rr runtime/cpp/src/codec"
@@ -58,7 +64,8 @@ set(robdef_layers
   "conformance: runtime/cpp/include/rr runtime/cpp/src/replay"
   "conformance/runners/board: runtime/cpp/include/rr conformance runtime/arduino/bench/plugged_board.hpp"
   "benchmarks: runtime/cpp/include/rr compiler"
-  "examples: runtime/cpp/include/rr")
+  "examples: runtime/cpp/include/rr"
+  "examples/dual_arm/cpp/dual_arm_test.cpp: examples runtime/cpp/include/rr runtime/cpp/src/realtime/testing")
 
 # Pattern of an outside header: the only folders or files that may include it. The parser's runtime and
 # Asio each have one place where they can be exchanged.
@@ -67,7 +74,7 @@ set(robdef_outside_headers
   "^boost/| runtime/cpp/include/rr/async.hpp runtime/cpp/src/channel/web_socket.cpp runtime/cpp/src/channel/memory_stream.hpp"
   "^openssl/| runtime/cpp/src/channel"
   "^rr/async\\.hpp$| runtime/cpp/src runtime/cpp/stress examples conformance benchmarks compiler/backends"
-  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/serial runtime/cpp/src/channel runtime/cpp/src/discovery runtime/cpp/src/endpoint runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp conformance benchmarks"
+  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/serial runtime/cpp/src/channel runtime/cpp/src/discovery runtime/cpp/src/endpoint runtime/cpp/src/realtime/udp_socket.cpp runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp conformance benchmarks"
   "^fmt/| compiler benchmarks"
   "^nlohmann/| runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"
   "^histedit\\.h$| compiler/driver/live/line_reader.cpp"

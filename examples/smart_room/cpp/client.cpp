@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "RobotCameraHost_interface.hpp"
-#include "examples/smart_room/cpp/png_file.hpp"
+#include "examples/drawing/png_file.hpp"
 #include "rr/node.hpp"
 
 namespace {
@@ -63,7 +63,7 @@ int main(int argc, char** argv) try {
   if (!frame) throw rr::Error(rr::ErrorCode::null_value, "the camera gave no picture");
   std::printf("a picture of %d x %d pixels\n", frame->width, frame->height);
   if (!picture_file.empty()) {
-    smart_room::write_png(picture_file, frame->width, frame->height, frame->data);
+    drawing::write_png(picture_file, frame->width, frame->height, frame->data);
     std::printf("written to %s\n", picture_file.c_str());
   }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "examples/smart_room/cpp/png_file.hpp"
+#include "examples/drawing/png_file.hpp"
 
 #include <png.h>
 
 #include <cstddef>
 #include <stdexcept>
 
-namespace smart_room {
+namespace drawing {
 
 void write_png(const std::string& path, int width, int height, std::span<const std::uint8_t> rgb) {
   if (width <= 0 || height <= 0 ||
@@ -24,4 +24,4 @@ void write_png(const std::string& path, int width, int height, std::span<const s
   }
 }
 
-}  // namespace smart_room
+}  // namespace drawing

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "rr/realtime/layout.hpp"
+
+/// The packet in which real-time nodes exchange state: each is complete, and older ones mean
+/// nothing. All numbers have their least significant byte first:
+///
+///   0   4  `RRSF`
+///   4   2  version of this format: 1
+///   6   2  bytes of the payload
+///   8   8  hash of the layout
+///   16  8  epoch: when the sender began, larger for a later begin
+///   24  8  sequence number, from 0 in each epoch
+///   32  8  time stamp in nanoseconds, by the sender's clock
+///   40     payload: the signals as Layout packs them
+///   .   4  CRC-32 (that of Ethernet) of all before it
+namespace rr::realtime {
+
+struct FrameHeader {
+  std::uint64_t schema = 0;  ///< Layout::hash()
+  std::uint64_t epoch = 0;
+  std::uint64_t sequence = 0;
+  std::int64_t stamp = 0;  ///< nanoseconds
+
+  bool operator==(const FrameHeader&) const = default;
+};
+
+inline constexpr std::size_t frame_header_size = 40;
+inline constexpr std::size_t frame_overhead = frame_header_size + 4;
+inline constexpr std::size_t largest_frame = largest_payload + frame_overhead;
+
+/// CRC-32 with the polynomial 0x04C11DB7, reflected, from and to all ones.
+[[nodiscard]] std::uint32_t crc32(std::span<const std::byte> bytes);
+
+/// Writes header and checksum around the payload, which stands at frame_header_size already.
+/// `frame` is as large as payload and frame_overhead. Allocates nothing.
+void seal_frame(const FrameHeader& header, std::span<std::byte> frame);
+
+enum class FrameFault : std::uint8_t {
+  none,
+  foreign,  ///< no frame, or one of another version
+  damaged,  ///< the length does not fit, or the checksum
+};
+
+/// Reads a frame; the payload lies in it. Allocates nothing.
+FrameFault open_frame(std::span<const std::byte> frame, FrameHeader& header,
+                      std::span<const std::byte>& payload);
+
+}  // namespace rr::realtime
