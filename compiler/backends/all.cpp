@@ -6,14 +6,16 @@
 #include "compiler/backends/backend.hpp"
 #include "compiler/backends/cpp/backend.hpp"
 #include "compiler/backends/csharp/backend.hpp"
+#include "compiler/backends/matlab/backend.hpp"
 
 namespace robdef {
 
 const std::vector<const Backend*>& backends() {
   static const cpp::CppBackend cpp;
   static const csharp::CSharpBackend csharp;
+  static const matlab::MatlabBackend matlab;
   static const arduino::ArduinoBackend arduino;
-  static const std::vector<const Backend*> all{&cpp, &csharp, &arduino};
+  static const std::vector<const Backend*> all{&cpp, &csharp, &matlab, &arduino};
   return all;
 }
 
