@@ -3,9 +3,11 @@
 
 #include <mex.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,6 +33,10 @@ class Call {
                  std::to_string(arguments_.size()));
   }
   [[nodiscard]] bool has(std::size_t index) const { return index < arguments_.size(); }
+  /// Those from `index` on.
+  [[nodiscard]] std::span<const mxArray* const> rest(std::size_t index) const {
+    return std::span(arguments_).subspan(std::min(index, arguments_.size()));
+  }
   [[nodiscard]] std::uint64_t handle(std::size_t index) const {
     return read_number<std::uint64_t>((*this)[index]);
   }
@@ -75,6 +81,8 @@ std::vector<Command> subscription_commands();
 std::vector<Command> member_subscription_commands();
 std::vector<Command> discovery_commands();
 std::vector<Command> node_commands();
+std::vector<Command> typed_commands();
+std::vector<Command> record_commands();
 
 /// Runs the command of this name. Throws rr::Error (invalid_argument) when there is none.
 void run_command(Runtime& runtime, const std::string& name, Call& call);

@@ -151,6 +151,8 @@ void definition(Runtime& runtime, Call& call) {
 
 }  // namespace
 
+mxArray* make_empty(const TypePlan& plan) { return make_empty(plan, 0); }
+
 std::vector<Command> definition_commands() {
   return {{"constants", constants}, {"create", create}, {"definitions", definitions},
           {"definition", definition}};

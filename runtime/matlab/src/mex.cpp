@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one function of the MEX file: `rrmex('command', arguments...)`.
+// The function of the MEX file: `rrmex('command', arguments...)`.
 #include <mex.h>
 
 #include <memory>
 #include <string>
 
 #include "rr/matlab/failure.hpp"
+#include "rr/matlab/module.hpp"
 #include "runtime/matlab/src/objects.hpp"
 
 namespace {
 
 std::unique_ptr<rr::matlab::Runtime> runtime;  // from the first command to the end, or shutdown
+std::span<const rr::matlab::Module* const> compiled_in;
 int depth = 0;                                 // handlers call this again
 
 // Of commands that run in each other.
@@ -37,6 +39,7 @@ void shut_down() {
 rr::matlab::Runtime& need_runtime() {
   if (!runtime) {
     runtime = std::make_unique<rr::matlab::Runtime>();
+    runtime->modules = compiled_in;
     mexLock();
     mexAtExit(at_exit);
   }
@@ -66,10 +69,9 @@ std::optional<rr::matlab::Failure> run_guarded(int result_count, mxArray** resul
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) void mexFunction(int result_count,
-                                                                   mxArray** results,
-                                                                   int argument_count,
-                                                                   const mxArray** arguments) {
+void rr::matlab::run_mex(std::span<const Module* const> modules, int result_count,
+                         mxArray** results, int argument_count, const mxArray** arguments) {
+  compiled_in = modules;
   rr::matlab::Failure failed;
   {
     auto failure = run_guarded(result_count, results, argument_count, arguments);

@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -21,12 +22,21 @@
 #include "runtime/matlab/src/handles.hpp"
 #include "runtime/matlab/src/interrupts.hpp"
 #include "runtime/matlab/src/log.hpp"
+#include "runtime/matlab/src/plans.hpp"
 #include "runtime/matlab/src/queue.hpp"
 #include "runtime/matlab/src/user_functions.hpp"
 
 namespace rr::matlab {
 
 class Connection;
+struct Module;
+
+/// Definitions that came with generated classes.
+struct RecordTypes {
+  explicit RecordTypes(dynamic::Definitions given) : definitions(std::move(given)) {}
+  dynamic::Definitions definitions;
+  Plans plans;
+};
 
 /// The one node of an interpreter, and what the interpreter holds of it. Made by the first command,
 /// on the interpreter's thread, which alone uses it; what threads of the node have for that one
@@ -43,6 +53,14 @@ class Runtime {
   UserFunctions& functions() { return functions_; }
   Log& log() { return *log_; }
   [[nodiscard]] const std::shared_ptr<Queue>& queue() const { return queue_; }
+
+  /// The generated classes that are compiled in.
+  std::span<const Module* const> modules;
+  /// The definitions of generated records, by their services.
+  std::map<std::string, std::unique_ptr<RecordTypes>> records;
+  /// Whether a call may block this thread: nobody waits for it meanwhile, and it is told of
+  /// interrupts.
+  [[nodiscard]] bool may_block() const;
 
   /// How long calls wait for their answers; 0: as the node does.
   std::chrono::milliseconds request_timeout{0};
@@ -92,7 +110,6 @@ class Runtime {
   std::unique_ptr<CallScope> make_scope(const Waiting& waiting,
                                         std::optional<std::chrono::milliseconds> limit) const;
   void interrupted();
-  [[nodiscard]] bool may_block() const;
 
   std::shared_ptr<Queue> queue_;
   std::shared_ptr<Log> log_;

@@ -37,6 +37,9 @@ dynamic::Value plain_from_mex(const mxArray* given);
 /// The same in the other direction, without RobotRaconteurVarValue around it.
 mxArray* plain_to_mex(const dynamic::Value& value);
 
+/// A value with nothing in it, to be filled by the user.
+mxArray* make_empty(const TypePlan& plan);
+
 /// struct('seconds', int64, 'nanoseconds', int32).
 mxArray* time_to_mex(const TimeSpec& time);
 

@@ -46,18 +46,11 @@ classdef RobotRaconteurObject < handle
         case 2
           varargout = {};
           return
-        case 3
-          value = RobotRaconteurObject(value);
+        case {3, 4}
+          value = rr_wrap(obj, value, kind);
           used = 1 + called;
-        case 4
-          value = RobotRaconteurGenerator(value);
-          used = 1 + called;
-        case 5
-          value = RobotRaconteurWire(obj, value);
-        case 6
-          value = RobotRaconteurPipe(obj, value);
-        case 7
-          value = RobotRaconteurMemory(obj, value);
+        otherwise
+          value = rr_wrap(obj, value, kind);
       end
       if numel(s) > used
         if called && used == 1 && isempty(arguments)
@@ -180,20 +173,7 @@ classdef RobotRaconteurObject < handle
     end
 
     function disp(obj)
-      if obj.rr_h == 0
-        fprintf('  closed object of a service\n');
-        return
-      end
-      about = rrmex('about', obj.rr_h);
-      fprintf('  %s at %s\n', about.type, about.path);
-      if ~about.is_open
-        fprintf('  the connection has ended\n');
-        return
-      end
-      [names, declarations] = rrmex('members', obj.rr_h);
-      for i = 1:numel(names)
-        fprintf('    %s%s\n', declarations{i}, rr_shown_value(obj, names{i}, declarations{i}));
-      end
+      rr_show(obj);
     end
 
     function display(obj)
