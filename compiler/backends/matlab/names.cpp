@@ -56,32 +56,14 @@ constexpr auto keywords = std::to_array<std::string_view>({"__FILE__",
                                                            "unwind_protect_cleanup",
                                                            "while"});
 
-// Of handle classes and of rr.Stub, and words that begin a block inside a classdef.
-constexpr auto class_words = std::to_array<std::string_view>({"addlistener",
-                                                              "delete",
-                                                              "disp",
-                                                              "display",
-                                                              "enumeration",
-                                                              "eq",
-                                                              "events",
-                                                              "findobj",
-                                                              "findprop",
-                                                              "ge",
-                                                              "gt",
-                                                              "isvalid",
-                                                              "le",
-                                                              "listener",
-                                                              "lt",
-                                                              "methods",
-                                                              "ne",
-                                                              "notify",
-                                                              "numArgumentsFromSubscript",
-                                                              "numel",
-                                                              "properties",
-                                                              "size",
-                                                              "subsasgn",
-                                                              "subsindex",
-                                                              "subsref"});
+// Of handle classes and of RobotRaconteurStub, and words that begin a block inside a classdef.
+constexpr auto class_words = std::to_array<std::string_view>(
+    {"addlistener", "delete",     "disp",       "display",  "enumeration",
+     "eq",          "events",     "findobj",    "findprop", "ge",
+     "gt",          "isvalid",    "le",         "listener", "lt",
+     "members",     "methods",    "ne",         "notify",   "numArgumentsFromSubscript",
+     "numel",       "properties", "servicedef", "size",     "subsasgn",
+     "subsindex",   "subsref",    "type"});
 
 bool contains(const auto& words, std::string_view word) {
   return std::ranges::find(words, word) != words.end();

@@ -41,6 +41,22 @@ classdef RobotRaconteurStub < handle
       listener = RobotRaconteurListener(rrmex('listen', obj.rr_h, event, handler));
     end
 
+    function text = type(obj)
+      %TYPE The type of the object, in full; it may be one that implements the class's.
+      text = rrmex('about', obj.rr_h).type;
+    end
+
+    function text = members(obj)
+      %MEMBERS The declarations of the members, one in each cell.
+      [names, text] = rrmex('members', obj.rr_h);
+    end
+
+    function text = servicedef(obj)
+      %SERVICEDEF The definition in which the object is declared, as the service has sent it.
+      name = rrmex('about', obj.rr_h).type;
+      text = rrmex('definition', obj.rr_h, name(1:find(name == '.', 1, 'last') - 1));
+    end
+
     function disp(obj)
       rr_show(obj);
     end
@@ -82,6 +98,11 @@ classdef RobotRaconteurStub < handle
         return
       end
       value = rrmex('record', name);
+      if ~isstruct(value) && ~isempty(given)
+        % A namedarray: numbers in a column, which can be given by their names, all of them.
+        value = rrmex('record', name, struct(given{:}));
+        return
+      end
       if mod(numel(given), 2) ~= 0
         error('RobotRaconteur:InvalidArgument', '%s: expected names and values', name);
       end
