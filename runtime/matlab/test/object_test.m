@@ -107,11 +107,11 @@
 %!error <as asked for> bench().fail('some.other.Fault')
 %!error id=some.other:Fault bench().fail('some.other.Fault')
 %!error id=RobotRaconteur:ValueError bench().fail('ValueError')
-%!error id=RobotRaconteur:MemberNotFound bench().not_there
-%!error id=RobotRaconteur:MemberNotFound bench().not_there()
-%!error <has no member `not_there`> bench().not_there
-%!error id=RobotRaconteur:InvalidArgument bench().add(1)
-%!error id=RobotRaconteur:InvalidArgument bench().add(1, 2, 3)
+%!error id=RobotRaconteur:MemberNotFound bench().not_there % by name
+%!error id=RobotRaconteur:MemberNotFound bench().not_there() % by name
+%!error <has no member `not_there`> bench().not_there % by name
+%!error id=RobotRaconteur:InvalidArgument bench().add(1) % by name
+%!error id=RobotRaconteur:InvalidArgument bench().add(1, 2, 3) % by name
 %!error id=RobotRaconteur:WriteOnlyMember bench().password
 %!error id=RobotRaconteur:OutOfRange bench().get_tools(-1)
 %!error id=RobotRaconteur:InvalidArgument bench().get_tools('x')
