@@ -7,15 +7,17 @@
 #include "compiler/backends/cbus/backend.hpp"
 #include "compiler/backends/cpp/backend.hpp"
 #include "compiler/backends/csharp/backend.hpp"
+#include "compiler/backends/matlab/backend.hpp"
 
 namespace robdef {
 
 const std::vector<const Backend*>& backends() {
   static const cpp::CppBackend cpp;
   static const csharp::CSharpBackend csharp;
+  static const matlab::MatlabBackend matlab;
   static const arduino::ArduinoBackend arduino;
   static const cbus::CBusBackend cbus;
-  static const std::vector<const Backend*> all{&cpp, &csharp, &arduino, &cbus};
+  static const std::vector<const Backend*> all{&cpp, &csharp, &matlab, &arduino, &cbus};
   return all;
 }
 

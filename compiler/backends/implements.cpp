@@ -30,4 +30,10 @@ std::string plural_of(const Member& member) {
   return std::string(model::name_of(member.kind)) + "s";
 }
 
+void report_unserved(const Member& member, std::string_view language, Report& report) {
+  report.add(Code::R0904, member.span,
+             "the " + std::string(language) + " runtime does not serve " + plural_of(member) +
+                 "; `" + member.name + "` is left out");
+}
+
 }  // namespace robdef

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
+#include "compiler/diagnostics/report.hpp"
 #include "compiler/model/model.hpp"
 
 namespace robdef {
@@ -13,5 +15,7 @@ const model::Object* origin(const model::Object& object, const std::string& name
 
 /// What its kind is called among those that are not served.
 std::string plural_of(const model::Member& member);
+/// Reports R0904 for a member that the runtime of `language` cannot serve.
+void report_unserved(const model::Member& member, std::string_view language, Report& report);
 
 }  // namespace robdef

@@ -15,6 +15,15 @@
 # again exactly what depends on it; files whose text stays the same are not touched.
 #
 # Works with the target robdef of this tree and with robdef::robdef of an installed package.
+#
+# robdef_generate_matlab(TARGET
+#   FILES a.robdef ...        definitions to generate classes for, imports among them
+#   [IMPORT_PATHS dir ...]
+#   [OUTPUT_DIR dir])         default: <current binary folder>/TARGET_robdef
+#
+# Makes the library TARGET: the MEX file rrmex for Octave with the stubs of all FILES compiled in, in
+# OUTPUT_DIR, where the package classes are. In the path, that folder comes before the toolbox. Needs
+# the target robdef::matlab.
 
 # The paths below OUTPUT_DIR that are generated for `file`. They follow from the service line, so they
 # are known before the compiler is built; a test compares them with what is generated.
@@ -100,4 +109,56 @@ function(robdef_generate target)
   # By property, so that the caller may link in either form of target_link_libraries.
   set_property(TARGET ${target} APPEND PROPERTY LINK_LIBRARIES robdef::runtime)
   set_property(TARGET ${target} APPEND PROPERTY INTERFACE_LINK_LIBRARIES robdef::runtime)
+endfunction()
+
+function(robdef_generate_matlab target)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "OUTPUT_DIR" "FILES;IMPORT_PATHS")
+  if(arg_UNPARSED_ARGUMENTS OR NOT arg_FILES)
+    message(FATAL_ERROR "usage: robdef_generate_matlab(TARGET FILES ... [IMPORT_PATHS ...] [OUTPUT_DIR dir]); not understood: ${arg_UNPARSED_ARGUMENTS}")
+  endif()
+  if(NOT arg_OUTPUT_DIR)
+    set(arg_OUTPUT_DIR "${target}_robdef")
+  endif()
+  cmake_path(ABSOLUTE_PATH arg_OUTPUT_DIR BASE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}" NORMALIZE)
+
+  set(files "")
+  set(search "")
+  set(client "${arg_OUTPUT_DIR}/client")
+  set(outputs "${client}/client.cpp")
+  foreach(folder IN LISTS arg_IMPORT_PATHS)
+    cmake_path(ABSOLUTE_PATH folder BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" NORMALIZE)
+    list(APPEND search "-I${folder}")
+  endforeach()
+  foreach(file IN LISTS arg_FILES)
+    cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" NORMALIZE)
+    list(APPEND files "${file}")
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
+    robdef_output_names("${file}" cpp names)
+    list(FILTER names INCLUDE REGEX "\\.cpp$")
+    string(REGEX REPLACE "\\.cpp$" "" name "${names}")
+    list(APPEND outputs "${client}/cpp/${name}.cpp" "${client}/mex/${name}.mex.cpp")
+  endforeach()
+
+  # The classes name the MEX file's members by their places in all of the files: one command for all.
+  set(stamp "${CMAKE_CURRENT_BINARY_DIR}/${target}_robdef.stamp")
+  add_custom_command(
+    OUTPUT "${stamp}"
+    BYPRODUCTS ${outputs}
+    COMMAND robdef::robdef generate --lang matlab -o "${arg_OUTPUT_DIR}" ${search}
+            --depfile "${stamp}.d" --depfile-target "${stamp}" ${files}
+    COMMAND ${CMAKE_COMMAND} -E touch "${stamp}"
+    DEPENDS ${files} robdef::robdef
+    DEPFILE "${stamp}.d"
+    COMMENT "Generating MATLAB classes for ${target}"
+    VERBATIM)
+  add_custom_target(${target}_robdef DEPENDS "${stamp}")
+
+  add_library(${target} MODULE ${outputs})
+  add_dependencies(${target} ${target}_robdef)
+  set_target_properties(${target} PROPERTIES
+    PREFIX "" OUTPUT_NAME rrmex SUFFIX .mex LIBRARY_OUTPUT_DIRECTORY "${arg_OUTPUT_DIR}"
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  target_include_directories(${target} PRIVATE "${client}/cpp" "${client}/mex")
+  # Of the runtime nothing is seen outside; see runtime/matlab.
+  target_link_libraries(${target} PRIVATE robdef::matlab)
 endfunction()

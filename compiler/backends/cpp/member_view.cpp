@@ -11,6 +11,7 @@
 #include "compiler/backends/cpp/member_lines.hpp"
 #include "compiler/backends/cpp/view_parts.hpp"
 #include "compiler/backends/implements.hpp"
+#include "compiler/backends/member_facts.hpp"
 #include "compiler/backends/words.hpp"
 
 namespace robdef::cpp {
@@ -56,7 +57,7 @@ class MemberMaker {
         view.number = std::to_string(served++);
         view.entry = member_table_ + "[" + view.number + "]";
       } else {
-        report_unserved(member);
+        report_unserved(member, "C++", context_.report);
       }
       make_value(view, member);
       if (view.is_served) make_served(view, member);
@@ -68,36 +69,11 @@ class MemberMaker {
  private:
   MemberView common(const Member& member) {
     MemberView view;
-    view.wire_name = member.name;
+    describe_member(view, member, runtime_abilities);
     view.name = member_name(object_, member.name);
     view.doc = doc_lines(member.documentation, in_class);
-    view.kind = model::name_of(member.kind);
-    view.is_property = member.kind == MemberKind::property;
-    view.is_function = member.kind == MemberKind::function;
-    view.is_event = member.kind == MemberKind::event;
-    view.is_objref = member.kind == MemberKind::objref;
-    view.is_pipe = member.kind == MemberKind::pipe;
-    view.is_callback = member.kind == MemberKind::callback;
-    view.is_wire = member.kind == MemberKind::wire;
-    view.is_memory = member.kind == MemberKind::memory;
-    view.is_served = runtime_abilities.serve(member);
     view.is_inherited = origin(object_, member.name) != nullptr;
-    view.is_readonly = member.access.is_readonly;
-    view.is_writeonly = member.access.is_writeonly;
-    view.is_unreliable = member.access.is_unreliable;
-    view.is_nolock = member.access.is_nolock;
-    view.is_nolockread = member.access.is_nolockread;
-    view.is_perclient = member.access.is_perclient;
-    view.is_urgent = member.access.is_urgent;
-    view.can_get = view.is_property && !view.is_writeonly;
-    view.can_set = view.is_property && !view.is_readonly;
     return view;
-  }
-
-  void report_unserved(const Member& member) {
-    context_.report.add(Code::R0904, member.span,
-                        "the C++ runtime does not serve " + plural_of(member) + "; `" +
-                            member.name + "` is left out");
   }
 
   /// Types, parameters and names.
@@ -116,7 +92,6 @@ class MemberMaker {
     for (const ParameterView& parameter : view.parameters) names.push_back(parameter.name);
     view.arguments = join(names, ", ");
     view.token = context_.names.local("Token", taken);
-    view.robdef_type = member.type.text();
     view.getter = "get_" + member.name;
     view.setter = "set_" + member.name;
     if (member.kind == MemberKind::objref) {
@@ -149,8 +124,6 @@ class MemberMaker {
   }
 
   void make_reference(MemberView& view, const Member& member) {
-    view.has_int32_index = member.index == model::IndexForm::int32;
-    view.has_string_index = member.index == model::IndexForm::string;
     view.has_index = view.has_int32_index || view.has_string_index;
     if (view.has_int32_index) context_.types.include("<cstdint>");
     if (view.has_string_index) context_.types.include("<string>");

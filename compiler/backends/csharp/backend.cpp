@@ -16,8 +16,7 @@ FileSet CSharpBackend::generate(const model::Model& model, const GenerateOptions
                                 Report& report) const {
   const ModelView view = make_view(model, report);
   if (report.has_errors()) return {};
-  return print_view<ModelView, DefinitionView, ObjectView>(view, embedded_templates(),
-                                                           options.template_folder);
+  return print_view<ModelView, DefinitionView>(view, embedded_templates(), options.template_folder);
 }
 
 std::string CSharpBackend::view(const model::Model& model, Report& report) const {

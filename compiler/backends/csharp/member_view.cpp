@@ -9,6 +9,7 @@
 #include "compiler/backends/csharp/constants.hpp"
 #include "compiler/backends/csharp/view_parts.hpp"
 #include "compiler/backends/implements.hpp"
+#include "compiler/backends/member_facts.hpp"
 #include "compiler/backends/words.hpp"
 
 namespace robdef::csharp {
@@ -27,7 +28,10 @@ std::string angled(const std::vector<std::string>& items) {
 class MemberMaker {
  public:
   MemberMaker(const Object& object, const Context& context)
-      : object_(object), context_(context), taken_(context.report), served_(context.report) {}
+      : object_(object),
+        context_(context),
+        taken_("C#", context.report),
+        served_("C#", context.report) {}
 
   void make(ObjectView& object) {
     for (std::size_t i = 0; i < object.constants.size(); ++i) {
@@ -42,9 +46,7 @@ class MemberMaker {
         make_served(view, member);
         add_names(view, member);
       } else {
-        context_.report.add(Code::R0904, member.span,
-                            "the C# runtime does not serve " + plural_of(member) + "; `" +
-                                member.name + "` is left out");
+        report_unserved(member, "C#", context_.report);
       }
       object.members.push_back(std::move(view));
     }
@@ -53,30 +55,15 @@ class MemberMaker {
  private:
   MemberView common(const Member& member) {
     MemberView view;
-    view.wire_name = member.name;
+    describe_member(view, member, runtime_abilities);
     view.name = is_called_by_itself(member)
                     ? member_name(member.name, "", member.span, context_.report)
                     : pascal(member.name);
     view.doc = summary(member.documentation, in_class);
-    view.kind = model::name_of(member.kind);
-    view.is_property = member.kind == MemberKind::property;
-    view.is_function = member.kind == MemberKind::function;
-    view.is_event = member.kind == MemberKind::event;
-    view.is_objref = member.kind == MemberKind::objref;
-    view.is_pipe = member.kind == MemberKind::pipe;
-    view.is_callback = member.kind == MemberKind::callback;
-    view.is_wire = member.kind == MemberKind::wire;
-    view.is_memory = member.kind == MemberKind::memory;
-    view.is_served = runtime_abilities.serve(member);
     view.is_inherited = origin(object_, member.name) != nullptr;
     view.is_hiding = !view.is_inherited && is_implemented(member.name);
-    view.is_perclient = member.access.is_perclient;
-    view.is_urgent = member.access.is_urgent;
-    view.can_get = view.is_property && !member.access.is_writeonly;
-    view.can_set = view.is_property && !member.access.is_readonly;
     view.access = access_text(member.access);
     if (view.is_urgent) view.urgent = ", " + runtime("MemberAccess") + ".Urgent";
-    view.robdef_type = member.type.text();
     return view;
   }
 
@@ -150,8 +137,6 @@ class MemberMaker {
   }
 
   void make_reference(MemberView& view, const Member& member) {
-    view.has_int32_index = member.index == model::IndexForm::int32;
-    view.has_string_index = member.index == model::IndexForm::string;
     if (view.has_int32_index) view.index_type = "int index";
     if (view.has_string_index) view.index_type = "string index";
     const bool has_index = !view.index_type.empty();

@@ -78,22 +78,12 @@ bool has_default(const model::Object& object) {
   });
 }
 
-bool NameSet::add(const std::string& name, Span span, std::string_view what) {
-  const auto [place, is_new] = taken_.emplace(name, span);
-  if (is_new) return true;
-  report_.add(Code::R0901, span, "the C# name `" + name + "` is made twice")
-      .label("the " + std::string(what) + " made here")
-      .also(place->second, "is called like this one");
-  return false;
-}
-
 std::string member_name(std::string_view wire_name, std::string_view owner, Span span,
                         Report& report) {
   std::string name = pascal(wire_name);
   if (name != owner && !is_inherited_name(name)) return name;
   name += '_';
-  report.add(Code::R0903, span, "`" + std::string(wire_name) + "` is reserved in C#")
-      .label("becomes `" + name + "`");
+  report_renamed(wire_name, name, "C#", span, report);
   return name;
 }
 
@@ -110,7 +100,7 @@ Names::Names(const model::Definition& definition, const model::Model& model, Rep
 }
 
 void Names::add_types(Report& report) {
-  NameSet types(report);
+  NameSet types("C#", report);
   const auto add_all = [&](const auto& all, std::string_view what) {
     for (const auto& one : all) types.add(pascal(one.name), one.span, what);
   };

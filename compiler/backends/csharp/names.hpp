@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
-#include <map>
 #include <set>
 #include <string>
 #include <string_view>
 
+#include "compiler/backends/name_set.hpp"
 #include "compiler/diagnostics/report.hpp"
 #include "compiler/model/model.hpp"
 
@@ -37,19 +36,6 @@ std::string default_name(const model::Object& object);
 bool has_default(const model::Object& object);
 /// The class that holds the constants of a definition.
 inline constexpr std::string_view constants_class = "Constants";
-
-/// Names that must differ, with where each comes from.
-class NameSet {
- public:
-  explicit NameSet(Report& report) : report_(report) {}
-  /// Reports R0901 for a name that is there. `what` says what is called so: `stub`.
-  /// False when it was there.
-  bool add(const std::string& name, Span span, std::string_view what);
-
- private:
-  Report& report_;
-  std::map<std::string, Span, std::less<>> taken_;
-};
 
 /// `name`, with `_` behind it where C# or the type around it, `owner`, has it already; then R0903
 /// is reported.

@@ -76,7 +76,7 @@ EnumView make_enum(const model::Enum& enumeration, Report& report) {
   view.wire_name = enumeration.name;
   view.name = pascal(enumeration.name);
   view.doc = summary(enumeration.documentation, 0);
-  NameSet names(report);
+  NameSet names("C#", report);
   for (const model::EnumValue& value : enumeration.values) {
     const std::string name = pascal(value.name);
     names.add(name, value.span, "value");
@@ -131,7 +131,7 @@ RecordView make_record(const model::Record& record, const Context& context) {
   }
   view.packed_size = std::to_string(record.packed_size);
   view.constants = make_constants(record.constants, view.name, context, 4);
-  NameSet names(context.report);
+  NameSet names("C#", context.report);
   for (std::size_t i = 0; i < view.constants.size(); ++i) {
     names.add(view.constants[i].name, record.constants[i].span, "constant");
   }
@@ -237,7 +237,7 @@ class DefinitionMaker {
   }
 
   void check_constants() {
-    NameSet names(context_.report);
+    NameSet names("C#", context_.report);
     for (std::size_t i = 0; i < view_.constants.size(); ++i) {
       names.add(view_.constants[i].name, definition_.constants[i].span, "constant");
     }

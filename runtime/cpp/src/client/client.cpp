@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/stub_beside.hpp"
 #include "runtime/cpp/src/client/session.hpp"
 
 namespace rr {
@@ -47,6 +48,12 @@ std::string ClientBase::find_object_type(const std::string& path) const {
 }
 std::map<std::string, VarValue> ClientBase::fetch_attributes() const {
   return session_->ask_attributes();
+}
+
+std::shared_ptr<Stub> make_stub_beside(const Stub& stub, const ObjectType& type) {
+  const std::shared_ptr<Session>& session = stub.rr_session();
+  if (!session) throw Error(ErrorCode::invalid_operation, "the stub has no session");
+  return session->make_stub_beside(stub, type);
 }
 
 void refuse_stub() {

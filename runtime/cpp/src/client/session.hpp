@@ -125,6 +125,9 @@ class Session final : public channel::Receiver,
                              Milliseconds timeout);
   void start_find(std::string path, std::string wanted, Milliseconds timeout,
                   std::shared_ptr<Completion> completion);
+  /// One more stub for the object of another, of a class that the caller knows to fit; find() goes
+  /// on giving the other one.
+  std::shared_ptr<Stub> make_stub_beside(const Stub& stub, const ObjectType& type);
   std::string ask_object_type(const std::string& path, Milliseconds timeout);
   std::map<std::string, VarValue> ask_attributes();
   /// See ClientBase.

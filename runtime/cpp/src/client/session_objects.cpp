@@ -95,6 +95,15 @@ std::shared_ptr<Stub> Session::make_stub(const std::string& told, const std::str
   return stub;
 }
 
+std::shared_ptr<Stub> Session::make_stub_beside(const Stub& stub, const ObjectType& type) {
+  std::shared_ptr<Stub> beside = type.make_stub();
+  beside->rr_session_ = shared_from_this();
+  beside->rr_path_ = stub.rr_path();
+  beside->rr_timeout_ = stub.rr_timeout();
+  beside->rr_take_object_type(type);
+  return beside;
+}
+
 std::vector<std::string> Session::root_types() const {
   return all_types(object_type_, object_implements_);
 }

@@ -9,6 +9,7 @@
 #include "experimental/objrefs.hpp"
 #include "experimental/pods.hpp"
 #include "experimental/properties.hpp"
+#include "rr/stub_beside.hpp"
 #include "runtime/cpp/src/dynamic/connected.hpp"
 #include "runtime/cpp/src/dynamic/testing.hpp"
 
@@ -118,6 +119,15 @@ TEST(DynamicClient, CallsFunctions) {
   EXPECT_EQ(report.type_text(), "experimental.functions.Report");
   const Value any = machine->call("a_function_whose_name_is_rather_long", {report, List{1}});
   EXPECT_EQ(any.at("first"), report);
+}
+
+TEST(DynamicClient, HasAStubOfGeneratedCodeBesideIt) {
+  const Connected<Machine> machine;
+  const auto stub = stub_beside<functions::MachineStub>(machine->stub());
+  stub->move_to(1, 2);
+  EXPECT_EQ(machine.skeleton->at, std::pair(1.0, 2.0));
+  EXPECT_EQ(stub->rr_path(), machine->path());
+  EXPECT_EQ(machine->call("speed").as<double>(), 1);
 }
 
 TEST(DynamicClient, NamesFunctionAndParameterInErrors) {

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "rr/matlab/typed.hpp"
+
+/// Arrays of numbers, pods and namedarrays. Part of rr/matlab/typed.hpp.
+namespace rr::matlab {
+
+/// Sizes as they travel, first index fastest.
+using WireDims = std::vector<std::uint32_t>;
+
+/// Items of these sizes, which stand before the one that all have in the interpreter. Those of a
+/// namedarray have their numbers as first dimension.
+template <class T>
+mxArray* make_items(std::span<const T> items, Dims dims, bool has_dims, VarValues& varvalues) {
+  if constexpr (Number<T>) {
+    return make_numbers<T>(items, full_dims(std::move(dims)));
+  } else if constexpr (NamedArray<T>) {
+    using Item = typename Typed<T>::Item;
+    if (has_dims) dims = full_dims(std::move(dims));
+    dims.insert(dims.begin(), static_cast<mwSize>(Typed<T>::count));
+    const auto* const numbers = reinterpret_cast<const Item*>(items.data());
+    return make_numbers<Item>({numbers, items.size() * Typed<T>::count}, dims);
+  } else {
+    mxArray* const records = Typed<T>::make_array(full_dims(std::move(dims)));
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      Typed<T>::fill(records, i, items[i], varvalues);
+    }
+    return records;
+  }
+}
+template <class T>
+mxArray* make_items(std::span<const T> items, VarValues& varvalues) {
+  return make_items<T>(items, {static_cast<mwSize>(items.size())}, false, varvalues);
+}
+
+/// Whether `given` is made of T, not looking at its sizes.
+template <class T>
+bool holds_items(const mxArray* given) {
+  if constexpr (Number<T> || NamedArray<T>) {
+    return is_numeric(given);
+  } else {
+    return mxIsStruct(given);
+  }
+}
+
+template <class T>
+void read_items(const mxArray* given, std::span<T> items, VarValues& varvalues) {
+  if constexpr (Number<T>) {
+    read_numbers<T>(given, items.data());
+  } else if constexpr (NamedArray<T>) {
+    using Item = typename Typed<T>::Item;
+    read_numbers<Item>(given, reinterpret_cast<Item*>(items.data()));
+  } else {
+    Typed<T>::check_fields(given);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      Typed<T>::read_item(given, i, items[i], varvalues);
+    }
+  }
+}
+
+/// How many T there are in a row or column, or in the columns of a matrix for a namedarray. Throws
+/// Misfit.
+template <class T>
+std::size_t item_count(const mxArray* given) {
+  need_form(holds_items<T>(given));
+  if constexpr (NamedArray<T>) {
+    need_form(mxGetNumberOfDimensions(given) == 2 && mxGetM(given) == Typed<T>::count);
+    return static_cast<std::size_t>(mxGetN(given));
+  } else {
+    need_form(is_vector(given));
+    return count_of(given);
+  }
+}
+
+/// The sizes of an array with `rank` of them; 0: as many as the interpreter has. Throws Misfit.
+template <class T>
+WireDims item_dims(const mxArray* given, std::size_t rank) {
+  need_form(holds_items<T>(given));
+  WireDims dims;
+  for (const mwSize dim : dims_of(given)) dims.push_back(static_cast<std::uint32_t>(dim));
+  if constexpr (NamedArray<T>) {
+    need_form(dims.front() == Typed<T>::count);
+    dims.erase(dims.begin());
+  }
+  // The interpreter leaves out ones at the end, and has two dimensions at least.
+  if (rank == 0) return dims;
+  while (dims.size() < rank) dims.push_back(1);
+  while (dims.size() > rank && dims.back() == 1) dims.pop_back();
+  need_form(dims.size() == rank);
+  return dims;
+}
+
+template <class T>
+struct Typed<Array<T>> {
+  static mxArray* make(const Array<T>& value, VarValues& varvalues) {
+    return make_items<T>({value.data(), value.size()}, varvalues);
+  }
+  static void read(const mxArray* given, Array<T>& value, VarValues& varvalues) {
+    Array<T> items(item_count<T>(given));
+    if (items.size() != 0) read_items<T>(given, items.mutate(), varvalues);
+    value = std::move(items);
+  }
+};
+
+template <class T, std::size_t Length>
+struct Typed<std::array<T, Length>> {
+  static mxArray* make(const std::array<T, Length>& value, VarValues& varvalues) {
+    return make_items<T>(value, varvalues);
+  }
+  static void read(const mxArray* given, std::array<T, Length>& value, VarValues& varvalues) {
+    need_form(item_count<T>(given) == Length);
+    read_items<T>(given, value, varvalues);
+  }
+};
+
+template <class T, std::size_t Maximum>
+struct Typed<BoundedArray<T, Maximum>> {
+  static mxArray* make(const BoundedArray<T, Maximum>& value, VarValues& varvalues) {
+    return make_items<T>({value.data(), value.size()}, varvalues);
+  }
+  static void read(const mxArray* given, BoundedArray<T, Maximum>& value, VarValues& varvalues) {
+    const std::size_t count = item_count<T>(given);
+    need_form(count <= Maximum);
+    value.resize(count);
+    read_items<T>(given, {value.data(), count}, varvalues);
+  }
+};
+
+template <class T>
+struct Typed<MultiArray<T>> {
+  static mxArray* make(const MultiArray<T>& value, VarValues& varvalues) {
+    return make_items<T>({value.items.data(), value.items.size()},
+                         Dims(value.dims.begin(), value.dims.end()), true, varvalues);
+  }
+  static void read(const mxArray* given, MultiArray<T>& value, VarValues& varvalues) {
+    value.dims = item_dims<T>(given, 0);
+    std::size_t count = 1;
+    for (const std::uint32_t dim : value.dims) count *= dim;
+    Array<T> items(count);
+    if (count != 0) read_items<T>(given, items.mutate(), varvalues);
+    value.items = std::move(items);
+  }
+};
+
+template <class T, std::size_t... Sizes>
+struct Typed<FixedMultiArray<T, Sizes...>> {
+  using Value = FixedMultiArray<T, Sizes...>;
+  static mxArray* make(const Value& value, VarValues& varvalues) {
+    return make_items<T>(value.items, Dims{static_cast<mwSize>(Sizes)...}, true, varvalues);
+  }
+  static void read(const mxArray* given, Value& value, VarValues& varvalues) {
+    need_form(item_dims<T>(given, sizeof...(Sizes)) ==
+              WireDims(Value::dims.begin(), Value::dims.end()));
+    read_items<T>(given, value.items, varvalues);
+  }
+};
+
+}  // namespace rr::matlab

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// Objects of generated classes: the same as all others, but members are known by their places. With
+// the classes' stubs compiled in, properties and functions go through these; arguments of another
+// form than the usual one, and everything else, go the way of the dynamic object, so that both
+// behave alike.
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "rr/error.hpp"
+#include "rr/matlab/module.hpp"
+#include "rr/registry.hpp"
+#include "rr/stub_beside.hpp"
+#include "runtime/matlab/src/objects.hpp"
+
+namespace rr::matlab {
+namespace {
+
+/// An object of a generated class.
+class TypedHandle final : public ObjectHandle {
+ public:
+  TypedHandle(const ObjectHandle& object, std::vector<std::string> names,
+              std::shared_ptr<Stub> stub, std::span<const TypedMember> members)
+      : ObjectHandle(object.connection(), object.object()),
+        names_(std::move(names)),
+        stub_(std::move(stub)),
+        members_(members) {}
+
+  [[nodiscard]] const std::string& name(std::size_t index) const {
+    if (index < names_.size()) return names_[index];
+    throw Error(ErrorCode::member_not_found,
+                "the object has no member number " + std::to_string(index));
+  }
+  /// Null where there is no typed stub, or the member is used by its name.
+  [[nodiscard]] const TypedMember* typed(std::size_t index) const {
+    const bool has_one = stub_ && members_[index].run != nullptr;
+    return has_one ? &members_[index] : nullptr;
+  }
+  [[nodiscard]] Stub& stub() const { return *stub_; }
+
+ private:
+  const std::vector<std::string> names_;
+  const std::shared_ptr<Stub> stub_;
+  const std::span<const TypedMember> members_;
+};
+
+/// A typed call as it goes on in this interpreter.
+class RunningCall final : public TypedCall {
+ public:
+  RunningCall(Runtime& runtime, TypedHandle& object) : runtime_(runtime), object_(object) {}
+
+  void block(void (*body)(void*), void* context) override {
+    has_begun_ = true;
+    runtime_.call_directly([&] { body(context); });
+  }
+  mxArray* make(const VarValue& value) override {
+    return to_mex(object_.connection()->client().value(value), any_plan(),
+                  object_.connection()->plans);
+  }
+  VarValue read(const mxArray* given) override {
+    return dynamic::to_varvalue(any_from_mex(given, object_.context(object_.object().types())));
+  }
+  /// Whether something may have been sent.
+  [[nodiscard]] bool has_begun() const { return has_begun_; }
+
+ private:
+  const TypePlan& any_plan() {
+    return *object_.connection()->plans.plan(object_.object().types(), "varvalue");
+  }
+
+  Runtime& runtime_;
+  TypedHandle& object_;
+  bool has_begun_ = false;
+};
+
+const TypedObject* find_class(const Runtime& runtime, const std::string& name) {
+  for (const Module* const module : runtime.modules) {
+    for (const TypedObject& object : module->objects) {
+      if (object.name == name) return &object;
+    }
+  }
+  return nullptr;
+}
+
+/// Whether an object's type is `wanted` or implements it, directly or not.
+bool is_or_implements(const ObjectType& type, const TypeRegistry& types, const std::string& wanted,
+                      std::set<std::string>& seen) {
+  if (type.name == wanted) return true;
+  for (const std::string_view base : type.implements) {
+    std::string name(base);
+    // Names without a dot are of the type's own definition.
+    if (name.find('.') == std::string::npos) {
+      name = std::string(type.definition.name) + "." + name;
+    }
+    if (!seen.insert(name).second) continue;
+    if (name == wanted) return true;
+    const ObjectType* const found = types.find_object(name);
+    if (found != nullptr && is_or_implements(*found, types, wanted, seen)) return true;
+  }
+  return false;
+}
+
+void check_class(const ObjectHandle& object, const std::string& wanted) {
+  std::set<std::string> seen;
+  const ObjectType& type = object.object().stub().rr_object_type();
+  const dynamic::Definitions types = object.object().types();
+  if (is_or_implements(type, types.registry(), wanted, seen)) return;
+  throw Error(ErrorCode::service_error,
+              "the object is a `" + std::string(type.name) + "`, not a `" + wanted + "`");
+}
+
+std::vector<std::string> read_names(const mxArray* given) {
+  std::vector<std::string> names;
+  for (const mxArray* const cell : read_cells(given)) names.push_back(read_text(cell));
+  return names;
+}
+
+// What was compiled in must be of the same definition as the class.
+void check_names(const TypedObject& compiled, const std::vector<std::string>& names) {
+  bool is_same = compiled.members.size() == names.size();
+  for (std::size_t i = 0; is_same && i < names.size(); ++i) {
+    is_same = compiled.members[i].name == names[i];
+  }
+  if (is_same) return;
+  throw Error(ErrorCode::invalid_operation, "the MEX file was built for another definition of `" +
+                                                std::string(compiled.name) + "`: build it again");
+}
+
+// typed(object, class, names): number of the same object, with members by their places
+void typed(Runtime& runtime, Call& call) {
+  const auto object = object_of(runtime, call);
+  const std::string name = call.text(1);
+  std::vector<std::string> names = read_names(call[2]);
+  check_class(*object, name);
+  std::shared_ptr<Stub> stub;
+  std::span<const TypedMember> members;
+  const TypedObject* const compiled = find_class(runtime, name);
+  // What a subscription has connected has no client that could read varvalues.
+  if (compiled != nullptr && object->connection()->client().rr_session()) {
+    check_names(*compiled, names);
+    stub = make_stub_beside(object->object().stub(), compiled->type());
+    members = compiled->members;
+  }
+  call.give(give_handle(
+      runtime, std::make_shared<TypedHandle>(*object, std::move(names), std::move(stub), members)));
+}
+
+/// Runs another command with the arguments of this one behind `first`, and gives its result, unless
+/// it says that there is none.
+void forward(Runtime& runtime, const char* command, Call& call,
+             const std::vector<const mxArray*>& first) {
+  std::vector<const mxArray*> arguments = first;
+  for (std::size_t i = 2; i < call.size(); ++i) arguments.push_back(call[i]);
+  mxArray* results[] = {nullptr, nullptr};
+  Call inner(2, results, static_cast<int>(arguments.size()), arguments.data());
+  run_command(runtime, command, inner);
+  const bool is_nothing = results[1] != nullptr && read_number<int>(results[1]) == 2;
+  if (results[0] != nullptr && !is_nothing) call.give(results[0]);
+}
+
+// member(object, place, arguments...): a property's value, a function's result; a property with an
+// argument is set
+void member(Runtime& runtime, Call& call) {
+  const auto object = runtime.handles().get<TypedHandle>(call.handle(0));
+  runtime.current = object->connection();
+  const std::size_t place = read_number<std::uint32_t>(call[1]);
+  const std::string& name = object->name(place);
+  const TypedMember* const typed = object->typed(place);
+  if (typed != nullptr && runtime.may_block()) {
+    RunningCall running(runtime, *object);
+    try {
+      if (mxArray* const result = typed->run(object->stub(), call.rest(2), running)) {
+        call.give(result);
+      }
+      return;
+    } catch (const Misfit&) {
+      if (running.has_begun()) throw;
+    }
+  }
+  const bool is_set = call.size() > 2 && object->resolve(name).use == Use::get;
+  if (is_set) return forward(runtime, "assign", call, {call[0], make_text(name)});
+  forward(runtime, "access", call, {call[0], make_text(name), mxCreateLogicalScalar(true)});
+}
+
+}  // namespace
+
+std::vector<Command> typed_commands() { return {{"typed", typed}, {"member", member}}; }
+
+}  // namespace rr::matlab

@@ -1,0 +1,89 @@
+% What generated classes have besides what the dynamic object has.
+
+%!function c = bench()
+%!  persistent kept
+%!  if isempty(kept)
+%!    kept = rr_bench();
+%!  end
+%!  c = kept;
+%!endfunction
+
+%!test % classes
+%! c = bench();
+%! assert(class(c), 'experimental.bench.Bench');
+%! assert(class(c.get_tool()), 'experimental.bench.Tool');
+%! assert(class(c.get_any_tool()), 'RobotRaconteurObject');
+%! dynamic = RobotRaconteur.ConnectService( ...
+%!   ['rr+tcp://127.0.0.1:', getenv('RR_TEST_PORT'), '/?service=bench']);
+%! again = experimental.bench.Bench(dynamic);
+%! again.v_int32 = 77;
+%! assert(dynamic.v_int32, int32(77));
+%! assert(again == dynamic);
+
+%!error id=RobotRaconteur:ServiceError experimental.bench.Tool(bench())
+%!error <not a `experimental.bench.Tool`> experimental.bench.Tool(bench())
+%!error id=RobotRaconteur:InvalidArgument experimental.bench.Bench()
+%!error id=RobotRaconteur:MemberNotFound rrmex('member', bench().rr_h, 1000)
+
+%!test % constants, enums and exceptions without a connection
+%! assert(experimental.bench.Constants.LIMIT, int32(42));
+%! assert(experimental.bench.Constants.WEIGHTS, [0.25; -0.5]);
+%! assert(experimental.bench.Constants.GREETING, 'hello');
+%! assert(experimental.bench.Constants.LIMITS.least, int32(42));
+%! assert(experimental.bench.Tool.TEETH, int32(7));
+%! assert(experimental.bench.Mode.failed, int32(-1));
+%! c = bench();
+%! c.v_mode = experimental.bench.Mode.running;
+%! assert(c.v_mode, experimental.bench.Mode.running);
+%! try
+%!   c.lose_tool('attic');
+%!   error('not thrown');
+%! catch err
+%!   assert(experimental.bench.ToolLost.is(err));
+%! end
+%! try
+%!   experimental.bench.ToolLost.raise('100% lost');
+%! catch err
+%!   assert(err.identifier, experimental.bench.ToolLost.identifier);
+%!   assert(err.message, '100% lost');
+%! end
+
+%!test % structs
+%! r = experimental.bench.Report();
+%! assert(fieldnames(r), {'count'; 'text'; 'numbers'; 'mode'; 'next'; 'extra'});
+%! assert(r.count, int32(0));
+%! r = experimental.bench.Report('count', 5, 'numbers', [1 2]);
+%! assert(r.count, int32(5));
+%! assert(r.numbers, [1; 2]);
+%! r.next = experimental.bench.Report('text', 'inner');
+%! c = bench();
+%! c.report = r;
+%! assert(c.report.next.text, 'inner');
+
+%!test % pods and namedarrays
+%! s = experimental.bench.Sample('sequence', 3, 'acceleration', [1 2 3]);
+%! assert(class(s.acceleration), 'single');
+%! assert(s.acceleration, single([1; 2; 3]));
+%! assert(experimental.bench.Vector3(), zeros(3, 1));
+%! assert(experimental.bench.Vector3('x', 1, 'y', 2, 'z', 3), [1; 2; 3]);
+%! assert(experimental.bench.Vector3([4 5 6]), [4; 5; 6]);
+
+%!error <experimental.bench.Report.count: int32 cannot hold 1.5> experimental.bench.Report('count', 1.5)
+%!error id=RobotRaconteur:DataTypeMismatch experimental.bench.Sample('acceleration', [1 2])
+%!error id=RobotRaconteur:DataTypeMismatch experimental.bench.Vector3([1 2])
+%!error <has no field `nothing`> experimental.bench.Report('nothing', 1)
+
+%!test % help
+%! assert(~isempty(strfind(evalc('help experimental.bench.Bench'), 'Has a member of each kind')));
+
+%!test % many calls leave nothing behind
+%! c = rr_bench();
+%! held = rrmex('node').held;
+%! for k = 1:100
+%!   c.v_double = k;
+%!   t = c.get_tool();
+%!   t.force = k;
+%! end
+%! assert(c.v_double, 100);
+%! clear t
+%! assert(rrmex('node').held, held);

@@ -1,0 +1,120 @@
+classdef RobotRaconteurStub < handle
+  %ROBOTRACONTEURSTUB The base of the classes that robdef generates for the objects of a definition.
+  %   They are used as a RobotRaconteurObject, and in its place wherever one is taken, but their
+  %   members are listed in the class, with help, and faster.
+  properties (Hidden)
+    rr_h = uint64(0);
+  end
+  methods
+    function obj = RobotRaconteurStub(type, names, varargin)
+      if isempty(varargin)
+        error('RobotRaconteur:InvalidArgument', 'expected a URL, or an object');
+      end
+      other = varargin{1};
+      if ~isa(other, 'RobotRaconteurObject') && ~isa(other, 'RobotRaconteurStub')
+        other = RobotRaconteur.ConnectService(varargin{:});
+      end
+      obj.rr_h = rrmex('typed', other.rr_h, type, names);
+    end
+
+    function delete(obj)
+      if obj.rr_h ~= 0
+        rrmex('close', obj.rr_h);
+        obj.rr_h = uint64(0);
+      end
+    end
+
+    function answer = isvalid(obj)
+      answer = obj.rr_h ~= 0;
+    end
+
+    function answer = eq(a, b)
+      answer = rrmex('same', a.rr_h, b.rr_h);
+    end
+
+    function answer = ne(a, b)
+      answer = ~(a == b);
+    end
+
+    function listener = addlistener(obj, event, handler)
+      %ADDLISTENER Call handler(parameters...) for each event; delete(listener) ends it.
+      listener = RobotRaconteurListener(rrmex('listen', obj.rr_h, event, handler));
+    end
+
+    function text = type(obj)
+      %TYPE The type of the object, in full; it may be one that implements the class's.
+      text = rrmex('about', obj.rr_h).type;
+    end
+
+    function text = members(obj)
+      %MEMBERS The declarations of the members, one in each cell.
+      [names, text] = rrmex('members', obj.rr_h);
+    end
+
+    function text = servicedef(obj)
+      %SERVICEDEF The definition in which the object is declared, as the service has sent it.
+      name = rrmex('about', obj.rr_h).type;
+      text = rrmex('definition', obj.rr_h, name(1:find(name == '.', 1, 'last') - 1));
+    end
+
+    function disp(obj)
+      rr_show(obj);
+    end
+
+    function value = rr_access(obj, name, varargin)
+      [value, kind] = rrmex('access', obj.rr_h, name, true, varargin{:});
+      value = rr_wrap(obj, value, kind);
+    end
+
+    function rr_assign(obj, name, value)
+      rrmex('assign', obj.rr_h, name, value);
+    end
+
+    function rr_written(obj, name, value)
+      % The part of a memory has been written when the memory itself comes back.
+      if ~isa(value, 'RobotRaconteurMemory')
+        rrmex('assign', obj.rr_h, name, value);
+      end
+    end
+
+    function rr_async(obj, name, arguments, handler, more)
+      if numel(more) > 2
+        error('RobotRaconteur:InvalidArgument', ...
+              '%s: expected handler, parameter, seconds', name);
+      end
+      given = {[], -1};
+      given(1:numel(more)) = more;
+      rrmex('async', obj.rr_h, name(7:end), handler, given{:}, arguments{:});
+    end
+  end
+
+  methods (Static)
+    function value = rr_record(name, definitions, given)
+      if ~rrmex('record_known', name)
+        rrmex('record_define', name, unique(definitions()));
+      end
+      if numel(given) == 1
+        value = rrmex('record', name, given{1});
+        return
+      end
+      value = rrmex('record', name);
+      if ~isstruct(value) && ~isempty(given)
+        % A namedarray: numbers in a column, which can be given by their names, all of them.
+        value = rrmex('record', name, struct(given{:}));
+        return
+      end
+      if mod(numel(given), 2) ~= 0
+        error('RobotRaconteur:InvalidArgument', '%s: expected names and values', name);
+      end
+      for i = 1:2:numel(given)
+        if ~isfield(value, given{i})
+          error('RobotRaconteur:InvalidArgument', '%s has no field `%s`', name, given{i});
+        end
+        value.(given{i}) = given{i + 1};
+      end
+      if ~isempty(given)
+        value = rrmex('record', name, value);
+      end
+    end
+  end
+end

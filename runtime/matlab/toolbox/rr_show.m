@@ -1,0 +1,17 @@
+function rr_show(obj)
+  % What disp shows of an object: type, path, members with the values that can be read.
+  if obj.rr_h == 0
+    fprintf('  closed object of a service\n');
+    return
+  end
+  about = rrmex('about', obj.rr_h);
+  fprintf('  %s at %s\n', about.type, about.path);
+  if ~about.is_open
+    fprintf('  the connection has ended\n');
+    return
+  end
+  [names, declarations] = rrmex('members', obj.rr_h);
+  for i = 1:numel(names)
+    fprintf('    %s%s\n', declarations{i}, rr_shown_value(obj, names{i}, declarations{i}));
+  end
+end
