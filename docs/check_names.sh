@@ -19,7 +19,7 @@ for page in "$@"; do
       build/release/*)  # a program
         program=$(basename "${name%% *}")
         # By its name, or as one of several: `smart_room_${program}`.
-        grep -rqE "(add_executable|robdef_test)\(($program[ )]|${program%_*}_[$])" --include=CMakeLists.txt \
+        grep -rqE "((add_executable|robdef_test)\(|OUTPUT_NAME )(${program}([ )]|$)|${program%_*}_[$])" --include=CMakeLists.txt \
           compiler runtime conformance examples || complain "$page" "program $program"
         ;;
       docs/* | runtime/* | examples/* | compiler/* | benchmarks/* | conformance/* | rr/*)  # a file
