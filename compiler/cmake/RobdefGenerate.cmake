@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 # robdef_generate(TARGET
 #   FILES a.robdef ...        definitions to generate code for; absolute or in the current source folder
-#   LANGUAGE cpp
+#   LANGUAGE cpp              or cbus: C99 for pods as buses
 #   [IMPORT_PATHS dir ...]    where imported definitions are looked for; the folders of FILES and the
 #                             environment variable ROBOTRACONTEUR_ROBDEF_PATH are searched too
 #   [OUTPUT_DIR dir])         default: <current binary folder>/TARGET_robdef
 #
 # Generates code while TARGET is built, and adds it to TARGET: the sources, the include folder and
 # the runtime, both passed on to what links TARGET. TARGET is a library or program made before.
-# For a service a.b.c the header is included as "a/b/c.hpp". Nothing is generated for imports: give
+# For a service a.b.c the header is included as "a/b/c.hpp", of a bus as "a_b_c_bus.h"; a bus stands on
+# robdef::cbus and not on the runtime, and what Simulink needs lies beside it. Nothing is generated for imports: give
 # them as FILES too, here or in another target that is linked.
 #
 # Each definition has a command of its own that knows all files it read, so an edited import runs
@@ -30,15 +31,19 @@
 function(robdef_output_names file language result)
   if(language STREQUAL "cpp")
     set(endings .hpp .cpp)
+    set(separator "/")
+  elseif(language STREQUAL "cbus")
+    set(endings _bus.h _bus.c)
+    set(separator "_")
   else()
-    message(FATAL_ERROR "robdef_generate: unknown LANGUAGE `${language}`; known: cpp")
+    message(FATAL_ERROR "robdef_generate: unknown LANGUAGE `${language}`; known: cpp, cbus")
   endif()
   file(READ "${file}" text)
   # The first statement; in front of it may stand blanks and a byte order mark.
   if(NOT text MATCHES "(^|\n)[^A-Za-z0-9_#\n]*service[ \t\r\n\\\\]+([A-Za-z0-9_.]+)")
     message(FATAL_ERROR "${file}: there is no service line")
   endif()
-  string(REPLACE "." "/" path "${CMAKE_MATCH_2}")
+  string(REPLACE "." "${separator}" path "${CMAKE_MATCH_2}")
   list(TRANSFORM endings PREPEND "${path}")
   set(${result} "${endings}" PARENT_SCOPE)
 endfunction()
@@ -107,8 +112,12 @@ function(robdef_generate target)
 
   target_include_directories(${target} PUBLIC "$<BUILD_INTERFACE:${arg_OUTPUT_DIR}>")
   # By property, so that the caller may link in either form of target_link_libraries.
-  set_property(TARGET ${target} APPEND PROPERTY LINK_LIBRARIES robdef::runtime)
-  set_property(TARGET ${target} APPEND PROPERTY INTERFACE_LINK_LIBRARIES robdef::runtime)
+  set(library robdef::runtime)
+  if(arg_LANGUAGE STREQUAL "cbus")
+    set(library robdef::cbus)
+  endif()
+  set_property(TARGET ${target} APPEND PROPERTY LINK_LIBRARIES ${library})
+  set_property(TARGET ${target} APPEND PROPERTY INTERFACE_LINK_LIBRARIES ${library})
 endfunction()
 
 function(robdef_generate_matlab target)

@@ -35,7 +35,7 @@ void print_rule(const TemplateFolder& folder, const OutputRule& rule, const Mode
 }  // namespace
 
 std::string_view CBusBackend::summary() const {
-  return "C99 for the pods of a definition as buses of real-time nodes, and for Simulink";
+  return "pods as buses of real-time nodes, in C99 and for Simulink";
 }
 
 FileSet CBusBackend::generate(const model::Model& model, const GenerateOptions& options,

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -59,6 +60,16 @@ TEST(CBusReject, EachFileGivesWhatStandsBesideIt) {
     (void)make_view(compiled.model, report);
     EXPECT_EQ(corpus.difference(input, ".stderr", render(report, *compiled.sources, Format::text)),
               "");
+  }
+}
+
+TEST(CBusReject, EachCodeOfBusesHasAFile) {
+  const GoldenCorpus corpus(ROBDEF_REJECT_DIR);
+  for (const CodeEntry& entry : code_entries()) {
+    if (!entry.name.starts_with("R093")) continue;
+    EXPECT_TRUE(std::ranges::any_of(corpus.inputs(), [&](const fs::path& input) {
+      return input.filename().string().starts_with(entry.name);
+    })) << entry.name;
   }
 }
 

@@ -88,14 +88,15 @@ struct Cycle {
 /// Allocates nothing once it is made; of the kernel it needs the clock only.
 class CyclicLoop {
  public:
-  /// The first cycle is due one period after start. Throws rr::Error (invalid_argument) for a
-  /// period that is not positive. The clock outlives the loop.
+  /// The first cycle is due one period from now, or from when run() begins. Throws rr::Error
+  /// (invalid_argument) for a period that is not positive. The clock outlives the loop.
   CyclicLoop(Nanoseconds period, Clock& clock);
 
   /// Calls `function(const Cycle&)` until stop(), in the caller's thread, and passes on what it
   /// throws.
   template <class Function>
   void run(Function function) {
+    next_.due = clock_.now() + period_;
     while (!is_stopped_.load(std::memory_order_relaxed)) {
       clock_.sleep_until(next_.due);
       run_cycle(function);

@@ -44,9 +44,12 @@ class BusService {
   BusService(const BusService&) = delete;
   BusService& operator=(const BusService&) = delete;
 
-  /// Each client of the wire gets the group when it has changed, and so do those who peek.
+  /// Each client of the wire gets the group when it has changed; who peeks gets a snapshot of the
+  /// moment, also when this has ended, so the group lives longer than the object. Throws rr::Error
+  /// (write_only_member) for a wire that sends nothing.
   template <Pod T>
   void publish(const SignalGroup<T>& group, const WireServer<T>& wire) {
+    wire.set_in(group.read());
     wire.on_peek_in([&group] { return group.read(); });
     add([&group, wire, seen = std::uint64_t{0}]() mutable {
       const std::uint64_t version = group.version();
@@ -55,7 +58,8 @@ class BusService {
       wire.set_in(group.read());
     });
   }
-  /// What clients send or poke becomes the group's value, the newest of all.
+  /// What clients send or poke becomes the group's value, the newest of all. The group lives longer
+  /// than the object.
   template <Pod T>
   static void accept(const WireServer<T>& wire, CommandGroup<T>& group) {
     wire.on_peek_out([&group] { return group.newest(); });
