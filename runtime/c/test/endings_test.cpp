@@ -218,6 +218,24 @@ TEST(Contexts, OfASessionAreDroppedBehindItsEnd) {
   EXPECT_EQ(state.dropped, 1);
 }
 
+TEST(Contexts, OfEventsAreDroppedWhenTheirSessionHasEndedAlthoughTheSubscriptionIsHeld) {
+  Pair pair("counter");
+  Held held;
+  rr_event_handler handler{};
+  handler.size = sizeof handler;
+  handler.context = &held;
+  handler.on_event = [](void*, const rr_elements*, rr_data*) {};
+  handler.drop = Held::drop;
+  rr_subscription* subscription = nullptr;
+  ASSERT_EQ(rr_event_subscribe(pair.root.get(), view("noted"), &handler, &subscription, nullptr),
+            RR_OK);
+  EXPECT_EQ(held.dropped, 0);
+  rr_client_close(pair.client.get());
+  EXPECT_TRUE(eventually([&] { return held.dropped == 1; }));
+  rr_subscription_release(subscription);
+  EXPECT_EQ(held.dropped, 1);
+}
+
 TEST(Sessions, MayBeReleasedWhileOtherThreadsCall) {
   Pair pair;
   std::vector<std::thread> threads;

@@ -399,12 +399,15 @@ void Session::closed() {
     handlers.swap(handlers_);
   }
   callbacks_.end();
-  if (!on_closed) return;
-  try {
-    on_closed(*why);
-  } catch (const std::exception& error) {
-    core_->log(LogLevel::error, std::string("an on_closed handler has thrown: ") + error.what());
+  if (on_closed) {
+    try {
+      on_closed(*why);
+    } catch (const std::exception& error) {
+      core_->log(LogLevel::error, std::string("an on_closed handler has thrown: ") + error.what());
+    }
   }
+  // Whoever holds a Subscription holds no more than that: the functions, and what they own, go now.
+  for (const auto& handler : handlers) handler->disconnect();
 }
 
 void Session::attend(channel::Time now) {

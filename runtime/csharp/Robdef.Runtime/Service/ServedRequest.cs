@@ -65,8 +65,12 @@ public readonly struct ServedRequest
     public T Argument<T>(ValueCodec<T> codec)
     {
         ArgumentNullException.ThrowIfNull(codec);
+        if (!IsSet)
+        {
+            return codec.Read(Elements.Reader(_info.Arguments, _types.Registry).Read());
+        }
         FieldReader arguments = Arguments;
-        return arguments.Read(codec, IsSet ? "value"u8 : "parameter"u8);
+        return arguments.Read(codec, "value"u8);
     }
 
     /// <summary>Answers with a value, when it is there.</summary>
