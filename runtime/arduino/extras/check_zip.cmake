@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Whether the zip is a library as the Arduino IDE wants it, with the files of this folder and no others.
 #   cmake -D ZIP=... -D SOURCE_DIR=runtime/arduino -D VERSION=0.1.0 -D FOLDER=scratch -P check_zip.cmake
+cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE ${FOLDER})
 file(MAKE_DIRECTORY ${FOLDER})
 file(ARCHIVE_EXTRACT INPUT ${ZIP} DESTINATION ${FOLDER})
