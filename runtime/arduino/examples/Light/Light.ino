@@ -2,7 +2,7 @@
 // A lamp of three colours and a sensor of light, served over the serial port. The lamp's parts are on
 // pins 9, 10 and 11 (behind transistors), the sensor is on A0.
 //
-//   robdef bridge --board /dev/ttyACM0
+//   robdef bridge /dev/ttyACM0 --listen 6257
 //
 // makes it a service that any client can use.
 #include <Robdef.h>
