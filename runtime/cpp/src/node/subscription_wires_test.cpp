@@ -165,6 +165,7 @@ class OtherWired final : public Skeleton {
  public:
   [[nodiscard]] const ObjectType& rr_object_type() const override { return rr_OtherWired; }
   void rr_dispatch(std::size_t, Request&) override {}
+  std::shared_ptr<Skeleton> rr_child(std::size_t, const ObjectIndex&) override { return nullptr; }
   [[nodiscard]] WireServer<std::string> level() const { return {*this, other_members[0]}; }
 };
 
