@@ -101,8 +101,7 @@ TEST_F(Members, ErrorsNameTheMemberAndTheType) {
               HasSubstr("member ticked: expected property, wire or memory, got event"));
   EXPECT_THAT(err({"set", "add", "1"}),
               HasSubstr("member add: expected property, wire or memory, got function"));
-  EXPECT_THAT(err({"call", "gain"}),
-              HasSubstr("member gain: expected function, got property"));
+  EXPECT_THAT(err({"call", "gain"}), HasSubstr("member gain: expected function, got property"));
   EXPECT_THAT(err({"call", "add", "1"}), HasSubstr("member add: expected 2 arguments"));
   EXPECT_THAT(err({"call", "add", "1", "true"}),
               HasSubstr("member add, parameter b: expected double, got bool"));
