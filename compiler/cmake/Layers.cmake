@@ -54,9 +54,11 @@ set(robdef_layers
   "runtime/c/test: runtime/c/include runtime/cpp/include/rr runtime/cpp/src/node/testing runtime/cpp/src/client/definition_text.hpp"
   "runtime/matlab: runtime/cpp/include/rr"
   "runtime/cpp/src/tap: runtime/cpp/include/rr"
-  "runtime/cpp/src/replay: runtime/cpp/include/rr runtime/cpp/src/channel/capabilities.hpp runtime/cpp/src/channel/socket.hpp"
+  "runtime/cpp/src/replay: runtime/cpp/include/rr runtime/cpp/src/channel/capabilities.hpp runtime/cpp/src/channel/layer.hpp runtime/cpp/src/channel/socket.hpp"
   "runtime/cpp/src/node/replay_test.cpp: runtime/cpp/include/rr runtime/cpp/src/node runtime/cpp/src/replay"
+  "runtime/cpp/src/node/tls_peer_test.cpp: runtime/cpp/include/rr runtime/cpp/src/node runtime/cpp/src/channel runtime/cpp/src/replay"
   "runtime/cpp/fuzz: runtime/cpp/include/rr runtime/cpp/src"
+  "runtime/cpp/browser: runtime/cpp/include/rr runtime/cpp/src/node/testing"
   "runtime/cpp/bench: runtime/cpp/include/rr runtime/cpp/src"
   "runtime/cpp/stress: runtime/cpp/include/rr runtime/cpp/src/node/testing"
 
@@ -64,7 +66,8 @@ set(robdef_layers
   "runtime/cpp/src/serial: runtime/cpp/include/rr runtime/cpp/src/dynamic runtime/arduino/src/rr/protocol.h"
   "runtime/arduino: runtime/cpp/src/serial runtime/cpp/include/rr runtime/cpp/src/node/testing"
 
-  "conformance: runtime/cpp/include/rr runtime/cpp/src/replay"
+  # The suite's connections have the same layers around them as those of nodes.
+  "conformance: runtime/cpp/include/rr runtime/cpp/src/replay runtime/cpp/src/channel/layer.hpp runtime/cpp/src/channel/tls.hpp runtime/cpp/src/channel/web_socket.hpp"
   "conformance/runners/board: runtime/cpp/include/rr conformance runtime/arduino/bench/plugged_board.hpp"
   "benchmarks: runtime/cpp/include/rr compiler"
   "examples: runtime/cpp/include/rr"
@@ -75,7 +78,7 @@ set(robdef_layers
 set(robdef_outside_headers
   "^(antlr4|Robdef(Lexer|Parser))| compiler/syntax"
   "^boost/| runtime/cpp/include/rr/async.hpp runtime/cpp/src/channel/web_socket.cpp runtime/cpp/src/channel/memory_stream.hpp"
-  "^openssl/| runtime/cpp/src/channel"
+  "^openssl/| runtime/cpp/src/channel conformance/harness/web_socket_recording.cpp"
   "^rr/async\\.hpp$| runtime/cpp/src runtime/cpp/stress examples conformance benchmarks compiler/backends"
   "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/serial runtime/cpp/src/channel runtime/cpp/src/discovery runtime/cpp/src/endpoint runtime/cpp/src/realtime/udp_socket.cpp runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp conformance benchmarks"
   "^fmt/| compiler benchmarks"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -104,6 +105,34 @@ Step step_of(int index, const Json& frames) {
   return step;
 }
 
+// The recordings of web sockets do not say which frames belong to which step. A step that asks the
+// service for something has one request and its answers, connecting as many as it takes.
+Json step_frames_of(const Json& plan, const std::vector<Frame>& frames) {
+  static const std::set<std::string> asking = {"get", "set", "call", "objref", "disconnect"};
+  constexpr int combined = 121;  // which connecting ends with (04, section 8)
+  constexpr int last = 107;
+  Json all = Json::array();
+  std::size_t next = 0;
+  const auto take_exchange = [&] {
+    if (next < frames.size()) ++next;
+    while (next < frames.size() && !frames[next].from_client) ++next;
+  };
+  for (const Json& step : plan.at("steps")) {
+    const std::size_t first = next;
+    if (step.at("op") == "connect") {
+      for (int type = 0; type != combined && type != last && next < frames.size();) {
+        type = frames[next].entry_type();
+        take_exchange();
+      }
+    } else if (asking.contains(step.at("op"))) {
+      take_exchange();
+    }
+    all.push_back(next == first ? Json() : Json::array({first, next - 1}));
+  }
+  if (next != frames.size()) throw std::runtime_error("frames that belong to no step");
+  return all;
+}
+
 std::vector<Step> steps_of(const Json& json, const fs::path& folder) {
   std::vector<Step> steps;
   if (!json.contains("plan")) {
@@ -128,6 +157,26 @@ std::vector<Step> steps_of(const Json& json, const fs::path& folder) {
   return steps;
 }
 
+// One connection, which the client ends, with the plan of the scenario's name.
+void add_web_socket(Scenario& scenario, Json json, const fs::path& folder, const Blobs& blobs) {
+  const Json& recorded = json.at("web_socket_frames");
+  scenario.web_socket = web_socket_of(recorded);
+  for (const Json& message : messages_of_web_socket(recorded)) {
+    scenario.frames.push_back(frame_of(message, scenario, blobs));
+  }
+  Connection& connection = scenario.connections.emplace_back();
+  for (const Frame& frame : scenario.frames) {
+    const std::uint32_t endpoint = frame.header().value("sender_endpoint", std::uint32_t{0});
+    if (endpoint == 0) continue;
+    (frame.from_client ? connection.client_endpoint : connection.service_endpoint) = endpoint;
+  }
+  connection.closed_after_frame = static_cast<int>(scenario.frames.size()) - 1;
+  json["plan"] = "plans/" + scenario.name + ".json";
+  json["step_frames"] = step_frames_of(read_json(folder / json["plan"]), scenario.frames);
+  scenario.hand_made = false;
+  scenario.steps = steps_of(json, folder);
+}
+
 Scenario scenario_of(const Json& json, const fs::path& folder, const Blobs& blobs) {
   Scenario scenario;
   scenario.name = json.at("scenario");
@@ -141,8 +190,10 @@ Scenario scenario_of(const Json& json, const fs::path& folder, const Blobs& blob
   scenario.client = node_of(json.at("nodes").at("client"));
   scenario.node_options = json.value("node_options", Json());
   scenario.heartbeat_ms = json.value("heartbeat_ms", Json());
-  scenario.web_socket = json.contains("web_socket_frames");
-  if (scenario.web_socket) return scenario;
+  if (json.contains("web_socket_frames")) {
+    add_web_socket(scenario, json, folder, blobs);
+    return scenario;
+  }
   scenario.connections = connections_of(json.at("connections"));
   scenario.steps = steps_of(json, folder);
   for (const Json& frame : json.at("frames")) {

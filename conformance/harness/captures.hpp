@@ -9,6 +9,7 @@
 
 #include "conformance/harness/hex.hpp"
 #include "conformance/harness/json.hpp"
+#include "conformance/harness/web_socket_recording.hpp"
 
 /// A folder in the format of the captures (captures/README.md), read and checked.
 namespace rr::conformance {
@@ -53,7 +54,7 @@ struct Scenario {
   std::string about;
   int message_version = 2;
   bool string_table = false;
-  bool web_socket = false;  ///< has no frames, but frames of a web socket
+  WebSocketRecording web_socket;  ///< what lay around the messages; mostly empty
   bool hand_made = false;
   Node service;
   Node client;

@@ -19,13 +19,13 @@ constexpr Milliseconds close_limit{2000};
 
 }  // namespace
 
-Json told(const Step& step, const Scenario& scenario, int port) {
+Json told(const Step& step, const Scenario& scenario, const std::string& place) {
   Json plan = step.plan;
   const Json result = plan.value("result", Json());
   for (const char* outcome : {"result", "raised", "result_as_set", "i"}) plan.erase(outcome);
   if (plan.at("op") == "wait" && result.is_array()) plan["count"] = result.size();
   if (plan.at("op") != "connect") return plan;
-  std::string url = "rr+tcp://127.0.0.1:" + std::to_string(port) + "/?";
+  std::string url = place;
   for (const char* part : {"nodeid", "nodename"}) {
     if (plan.contains(part)) url += part + ("=" + plan[part].get<std::string>()) + "&";
   }
@@ -44,11 +44,11 @@ class ClientReplay::Play {
  public:
   Play(ClientReplay& replay, const Scenario& scenario)
       : replay_(replay), scenario_(scenario), lines_(scenario.connections.size()) {
-    result_.run = {scenario.name, scenario.version, Role::client};
+    result_.run = {scenario.name, scenario.version, Role::client, replay.entrance_.channel()};
   }
 
   Result whole(bool until_fault) {
-    replay_.client_.begin(scenario_, replay_.listener_.port());
+    replay_.client_.begin(scenario_, replay_.entrance_.port(), replay_.entrance_.settings());
     for (const Step& step : scenario_.steps) {
       play(step);
       ++result_.checked;
@@ -68,7 +68,7 @@ class ClientReplay::Play {
     const bool told_to_wait = step.plan.at("op") == "sleep";
     const Milliseconds pause{told_to_wait ? step.plan.value("ms", 0) : 0};
     const auto begun = Clock::now();
-    if (!told_to_wait) replay_.client_.start(told(step, scenario_, replay_.listener_.port()));
+    if (!told_to_wait) replay_.client_.start(told(step, scenario_, replay_.entrance_.place()));
     if (told_to_wait && holds_farewell(step)) replay_.client_.start(nullptr);
     const bool awaits_outcome = !told_to_wait || holds_farewell(step);
     const ListEntry* const refused = listed_refusal(step);
@@ -124,7 +124,7 @@ class ClientReplay::Play {
   bool accept(Line& line) {
     const auto begun = Clock::now();
     while (!line.stream) {
-      line.stream = replay_.listener_.accept(slice);
+      line.stream = replay_.entrance_.accept(slice);
       look_for_outcome();
       if (!line.stream && Clock::now() > begun + limit()) return false;
     }
@@ -141,7 +141,8 @@ class ClientReplay::Play {
     }
   }
 
-  void expect(const Frame& recorded) {
+  void expect(const Frame& as_recorded) {
+    const Frame recorded = replay_.entrance_.as_sent(as_recorded);
     const Frame frame = as_listed(recorded);
     Line& line = line_of(frame);
     const std::string number = "frame " + std::to_string(frame.number);
@@ -274,8 +275,8 @@ class ClientReplay::Play {
 };
 
 ClientReplay::ClientReplay(const Comparison& comparison, const Deviations& deviations,
-                           Listener& listener, TestedClient& client)
-    : comparison_(comparison), deviations_(deviations), listener_(listener), client_(client) {}
+                           Entrance& entrance, TestedClient& client)
+    : comparison_(comparison), deviations_(deviations), entrance_(entrance), client_(client) {}
 
 Result ClientReplay::play(const Scenario& scenario, bool until_fault) {
   return Play(*this, scenario).whole(until_fault);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 
+#include "conformance/harness/channels.hpp"
 #include "conformance/harness/comparison.hpp"
 #include "conformance/harness/result.hpp"
 #include "conformance/harness/stream.hpp"
@@ -14,8 +15,9 @@ namespace rr::conformance {
 class TestedClient {
  public:
   virtual ~TestedClient() = default;
-  /// Begins a scenario, whose service listens at this port.
-  virtual void begin(const Scenario& scenario, int port) = 0;
+  /// Begins a scenario, whose service listens at this port. `channel` is what the client's node
+  /// needs to come there, null for TCP.
+  virtual void begin(const Scenario& scenario, int port, const Json& channel) = 0;
   /// Begins a step, or with null takes its node down.
   virtual void start(const Json& step) = 0;
   /// What the step gave: {result} or {raised} or {unsupported}; nothing when it is not done in
@@ -30,7 +32,7 @@ class TestedClient {
 /// Plays the service of a recording, byte for byte, and compares what the client sends and got.
 class ClientReplay {
  public:
-  ClientReplay(const Comparison& comparison, const Deviations& deviations, Listener& listener,
+  ClientReplay(const Comparison& comparison, const Deviations& deviations, Entrance& entrance,
                TestedClient& client);
 
   /// With `until_fault`, nothing more is played once something went otherwise than recorded.
@@ -42,13 +44,13 @@ class ClientReplay {
 
   const Comparison& comparison_;
   const Deviations& deviations_;
-  Listener& listener_;
+  Entrance& entrance_;
   TestedClient& client_;
 };
 
 /// What a client is told of a step: the plan without what the recorded client got, and with the URL
-/// of a service at this port.
-Json told(const Step& step, const Scenario& scenario, int port);
+/// of a service at this place (Entrance::place).
+Json told(const Step& step, const Scenario& scenario, const std::string& place);
 
 /// What is wrong with the outcome of a step; nothing when it is the recorded one. `steps` are all
 /// of the scenario: a step may refer to an earlier one.

@@ -31,8 +31,8 @@ bool counts_messages(const rr::MessageTree& message) {
 
 void align_message_id(const rr::MessageTree& recorded, rr::MessageTree& live,
                       PlayedConnection& connection) {
-  if (connection.take_next_message_id && counts_messages(live) && counts_messages(recorded) &&
-      recorded.message_id != 0) {
+  // The first message of a connection that has been made anew counts from 0 again.
+  if (connection.take_next_message_id && counts_messages(recorded) && recorded.message_id != 0) {
     connection.message_id_lead = recorded.message_id - live.message_id;
     connection.take_next_message_id = false;
   }
@@ -54,6 +54,28 @@ void put_aside_table_order(const rr::MessageTree& recorded, rr::MessageTree& liv
     return table;
   };
   if (sorted(recorded.strings) == sorted(live.strings)) live.strings = recorded.strings;
+}
+
+std::string_view query_of(const rr::ElementTree& url) {
+  const std::string_view text = string_of(url);
+  return text.substr(std::min(text.find('?'), text.size()));
+}
+
+// The list of URLs of a service in the service index (05, section 6), wherever it is.
+void put_aside_places(const std::vector<rr::ElementTree>& recorded,
+                      std::vector<rr::ElementTree>& live) {
+  for (std::size_t i = 0; i < std::min(recorded.size(), live.size()); ++i) {
+    const rr::ElementTree& before = recorded[i];
+    rr::ElementTree& now = live[i];
+    if (before.name != "ConnectionURL" || before.name != now.name || before.elements.empty()) {
+      put_aside_places(before.elements, now.elements);
+      continue;
+    }
+    const auto names_the_same = [&](const rr::ElementTree& url) {
+      return is_text(url) && query_of(url) == query_of(before.elements.front());
+    };
+    if (!now.elements.empty() && std::ranges::all_of(now.elements, names_the_same)) now = before;
+  }
 }
 
 bool has_text(const Json& json, const std::string& text) {
@@ -142,6 +164,7 @@ std::optional<std::string> Comparison::difference(const Frame& frame,
     }
     replay::put_aside_client_version(before, now);
     replay::put_aside_ports(before, now);
+    if (has_other_urls_) put_aside_places(before.elements, now.elements);
     replay::put_aside_packet_time(before, now);
     replay::put_aside_generator_index(before, now, connection.live_generators);
   }

@@ -35,6 +35,10 @@ class Comparison {
  public:
   explicit Comparison(const Captures& captures);
 
+  /// Over another channel than the recorded one a service is at other URLs; what they name must
+  /// be the same.
+  void expect_other_urls(bool other) { has_other_urls_ = other; }
+
   /// What is different; nothing when the frames agree. `request` is the last frame that was sent
   /// before, null without one: a text that it carried and that comes back in an error is compared,
   /// too.
@@ -50,6 +54,7 @@ class Comparison {
 
   std::set<std::string> scripted_texts_;
   bool echoes_texts_ = false;
+  bool has_other_urls_ = false;
 };
 
 /// True for a name that a host language gave to its own exception.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/harness/lists.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -90,13 +91,19 @@ ListEntry::ListEntry(std::vector<std::string> fields, std::string where_listed)
       instead_(fields.at(4)),
       reason_(fields.at(5)),
       where_listed_(std::move(where_listed)) {
+  static constexpr std::string_view over = " over ";
+  const std::size_t end = scenario_.find(over);
+  channels_ = end == std::string::npos ? "*" : scenario_.substr(end + over.size());
+  scenario_.resize(std::min(end, scenario_.size()));
   if (reason_.empty()) throw std::runtime_error(where_listed_ + ": an entry without a reason");
 }
 
 bool ListEntry::covers(const Run& run) const {
   return lists(scenario_, run.scenario) && lists(versions_, run.version) &&
-         lists(role_, name_of(run.role));
+         lists(role_, name_of(run.role)) && is_of_channel(run.channel);
 }
+
+bool ListEntry::is_of_channel(std::string_view channel) const { return lists(channels_, channel); }
 
 Deviations::Deviations(const std::filesystem::path& file, bool borrowed) : are_borrowed_(borrowed) {
   for (Line& line : read_lines(file)) {

@@ -7,7 +7,8 @@
 #include <vector>
 
 /// The two lists beside the suite: where ours departs from a recording on purpose, and what it
-/// cannot do yet. A line has fields separated by `|`; `#` begins a comment.
+/// cannot do yet. A line has fields separated by `|`; `#` begins a comment. The scenario may be
+/// followed by the channels that are meant, all without them: `connect over tls rrs+ws`.
 namespace rr::conformance {
 
 enum class Role { decode, encode, service, client };
@@ -18,6 +19,7 @@ struct Run {
   std::string scenario;
   std::string version;  ///< v2, v4, v4st
   Role role = Role::decode;
+  std::string channel = "tcp";
 };
 
 /// One line of either list. `*` in a field stands for everything.
@@ -26,6 +28,8 @@ class ListEntry {
   ListEntry(std::vector<std::string> fields, std::string where_listed);
 
   [[nodiscard]] bool covers(const Run& run) const;
+  /// Whether runs over this channel are meant.
+  [[nodiscard]] bool is_of_channel(std::string_view channel) const;
   /// `step 31`, `case NAME`, `*`, or a kind of frame.
   [[nodiscard]] const std::string& place() const { return place_; }
   /// deviations: what ours does instead; empty in expected failures.
@@ -38,6 +42,7 @@ class ListEntry {
 
  private:
   std::string scenario_;
+  std::string channels_;
   std::string versions_;
   std::string role_;
   std::string place_;

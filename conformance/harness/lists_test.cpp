@@ -43,6 +43,16 @@ TEST_F(Lists, AStarIsEverything) {
   EXPECT_NE(list.find({"b", "v4st", Role::client}, frame_place(4)), nullptr);
 }
 
+TEST_F(Lists, AnEntryMayBeAboutSomeChannelsOnly) {
+  const Deviations list(write("a over tls ws | * | service | step 3 | closed | why\n"));
+  const Run by_tcp{"a", "v4", Role::service};
+  EXPECT_EQ(list.find(by_tcp, step_place(3)), nullptr);
+  for (const char* channel : {"tls", "ws"}) {
+    const Run run{"a", "v4", Role::service, channel};
+    EXPECT_NE(list.find(run, step_place(3)), nullptr) << channel;
+  }
+}
+
 TEST_F(Lists, OnlyTheEntriesOfTheLanguageCount) {
   const ExpectedFailures list(write("cpp | a | * | * | * | why\nmatlab | b | * | * | * | why\n"),
                               "cpp");

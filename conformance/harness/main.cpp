@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <charconv>
 #include <functional>
 #include <iostream>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "conformance/harness/captures.hpp"
+#include "conformance/harness/channels.hpp"
 #include "conformance/harness/recorder.hpp"
 #include "conformance/harness/suite.hpp"
 
@@ -18,7 +20,7 @@ namespace {
 constexpr std::string_view usage =
     R"(usage: conformance_harness play --captures DIR (--runner PROGRAM | --connect HOST:PORT | --listen PORT)
                            [--language NAME] [--roles ROLES] [--only REGEX] [--before COMMAND]
-                           [--expected FILE] [--deviations FILE | --borrowed-deviations FILE]
+                           [--channels NAMES] [--expected FILE] [--deviations FILE | --borrowed-deviations FILE]
                            [--json FILE]
        conformance_harness definitions --captures DIR --output DIR
        conformance_harness record --captures DIR --runner PROGRAM --plan NAME --version v2|v4|v4st
@@ -27,6 +29,7 @@ play: plays a folder of captures. With --runner, a language's runner is the serv
   decodes and encodes; with --connect, a service that runs elsewhere is tested, and COMMAND (a shell
   command) brings it to its first state before each scenario; with --listen, a client. Deviations are
   borrowed when the list was written for other captures: not each of them must occur.
+  --channels are those that a runner is played over, tcp without it: tcp local ws tls rrs+ws wss intra.
   --roles leaves out what a language does not have: it plays these of decode, encode, service, client.
 definitions: writes the service definitions of the folder, for a compiler.
 record: plays a plan of the folder with a runner on both ends and writes it down as a scenario.
@@ -50,6 +53,17 @@ rr::conformance::Address address_of(std::string_view text) {
   const std::size_t colon = text.rfind(':');
   if (colon == std::string_view::npos) throw UsageError("no HOST:PORT: " + std::string(text));
   return {std::string(text.substr(0, colon)), port_of(text.substr(colon + 1))};
+}
+
+std::vector<std::string> channels_of(const std::string& text) {
+  const std::vector<std::string>& known = rr::conformance::channel_names();
+  std::vector<std::string> channels;
+  std::istringstream words(text);
+  for (std::string word; words >> word; channels.push_back(word)) {
+    if (std::ranges::find(known, word) == known.end()) throw UsageError("no channel: " + word);
+  }
+  if (channels.empty()) throw UsageError("--channels names none");
+  return channels;
 }
 
 // `client`, or several with blanks between them.
@@ -83,6 +97,7 @@ void take_option(CommandLine& line, const std::string& name, const std::string& 
       {"--version", [&] { line.version = value; }},
       {"--runner", [&] { options.runner = {value}; }},
       {"--roles", [&] { options.roles = roles_of(value); }},
+      {"--channels", [&] { options.channels = channels_of(value); }},
       {"--language", [&] { options.language = value; }},
       {"--connect", [&] { options.connect = address_of(value); }},
       {"--before", [&] { options.before = value; }},

@@ -43,8 +43,8 @@ std::uint32_t connect(Stream& stream, const Scenario& scenario) {
   return tree.sender_endpoint;
 }
 
-bool is_served(const Address& address, const Scenario& scenario) {
-  Stream stream = Stream::connect(address.host, address.port);
+bool is_served(const Connect& connect_new, const Scenario& scenario) {
+  Stream stream = connect_new();
   return connect(stream, scenario) != 0;
 }
 
@@ -206,8 +206,8 @@ std::string reaction_to_test(Stream& stream) {
 }
 
 std::string play(const Captures& captures, const MalformedCase& broken, const Scenario& scenario,
-                 const Address& address) {
-  Stream stream = Stream::connect(address.host, address.port);
+                 const Connect& connect_new) {
+  Stream stream = connect_new();
   std::uint32_t endpoint = 0;
   if (broken.connected) {
     endpoint = connect(stream, scenario);
@@ -220,7 +220,7 @@ std::string play(const Captures& captures, const MalformedCase& broken, const Sc
   if (broken.connected) bytes = readdressed_all(bytes, endpoint);
   send_in_pieces(stream, bytes, broken.pieces);
   std::string text = reaction(stream, broken.result, broken.answers.size());
-  if (!is_served(address, scenario)) return text + ", and serves nobody else";
+  if (!is_served(connect_new, scenario)) return text + ", and serves nobody else";
   const std::string& after = broken.connection_test_after;
   if (text.ends_with("closed") || after.empty()) return text;
   if (const std::string test = reaction_to_test(stream); test != after) {
@@ -232,9 +232,10 @@ std::string play(const Captures& captures, const MalformedCase& broken, const Sc
 }  // namespace
 
 Result check_malformed(const Captures& captures, int message_version, const Deviations& deviations,
-                       const Address& address) {
+                       const Connect& connect_new) {
   Result result;
-  result.run = {"malformed", "v" + std::to_string(message_version), Role::service};
+  result.run = {"malformed", "v" + std::to_string(message_version), Role::service,
+                connect_new.channel};
   const Scenario* scenario = captures.find("connect", result.run.version);
   if (scenario == nullptr) {
     result.fail(std::string(whole_run), "", "there is no scenario connect to connect with");
@@ -247,7 +248,7 @@ Result check_malformed(const Captures& captures, int message_version, const Devi
     const std::string recorded = recorded_reaction(broken);
     std::string got;
     try {
-      got = play(captures, broken, *scenario, address);
+      got = play(captures, broken, *scenario, connect_new);
     } catch (const std::exception& error) {
       got = error.what();
     }

@@ -10,6 +10,6 @@ namespace rr::conformance {
 /// The answer must be of the recorded class; after each, and beside those that get no answer,
 /// another connection must be served.
 Result check_malformed(const Captures& captures, int message_version, const Deviations& deviations,
-                       const Address& address);
+                       const Connect& connect_new);
 
 }  // namespace rr::conformance

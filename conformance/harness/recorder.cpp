@@ -176,7 +176,7 @@ void play_step(Json& planned, const Scenario& scenario, const replay::Proxy& pro
     std::this_thread::sleep_for(Milliseconds(planned.at("ms").get<int>()));
     outcome = Json::object();
   } else {
-    client.start(told(step, scenario, proxy.port()));
+    client.start(told(step, scenario, "rr+tcp://127.0.0.1:" + std::to_string(proxy.port()) + "/?"));
   }
   const auto end = Clock::now() + step_limit;
   std::size_t seen = 0;
@@ -232,7 +232,7 @@ void record(const fs::path& folder, const std::string& plan_name, const std::str
   const auto frames = std::make_shared<Frames>(scenario, captures.blobs);
   replay::Proxy proxy(frames, {"127.0.0.1", served.at("port").get<std::uint16_t>()});
   RunnerClient client(command);
-  client.begin(scenario, proxy.port());
+  client.begin(scenario, proxy.port(), nullptr);
   Json step_frames = Json::array();
   for (Json& step : plan.at("steps")) {
     const std::size_t first = frames->frame_count();

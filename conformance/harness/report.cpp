@@ -63,7 +63,10 @@ std::vector<std::string> Report::stale_entries() const {
   if (!complete_) return stale;
   const auto add_unmet = [&](const std::vector<ListEntry>& entries) {
     for (const ListEntry& entry : entries) {
-      if (!entry.met) stale.push_back(entry.where_listed() + ": nothing that was played is meant");
+      const bool was_played = std::ranges::any_of(
+          cells_, [&](const Cell& cell) { return entry.is_of_channel(cell.result.run.channel); });
+      if (!entry.met && was_played)
+        stale.push_back(entry.where_listed() + ": nothing that was played is meant");
     }
   };
   add_unmet(expected_.entries());
@@ -87,11 +90,15 @@ std::string Report::outcome(const Cell& cell) {
 }
 
 void Report::print_matrix(std::ostream& out) const {
-  std::map<std::pair<std::string, std::string>, std::map<Role, std::string>> rows;
+  // Channel, scenario, version; the channels as they were played.
+  std::vector<std::string> channels;
+  std::map<std::string, std::map<std::pair<std::string, std::string>, std::map<Role, std::string>>>
+      tables;
   std::size_t width = 8;
   for (const Cell& cell : cells_) {
     const Run& run = cell.result.run;
-    rows[{run.scenario, run.version}][run.role] = outcome(cell);
+    if (!tables.contains(run.channel)) channels.push_back(run.channel);
+    tables[run.channel][{run.scenario, run.version}][run.role] = outcome(cell);
     width = std::max(width, run.scenario.size());
   }
   const auto column = [&](const std::string& text, std::size_t size) {
@@ -99,16 +106,20 @@ void Report::print_matrix(std::ostream& out) const {
   };
   column(language_, width);
   column("", 4);
+  column("channel", 7);
   for (const Role role : roles) column(std::string(name_of(role)), 8);
   out << "\n";
-  for (const auto& [row, outcomes] : rows) {
-    column(row.first, width);
-    column(row.second, 4);
-    for (const Role role : roles) {
-      const auto found = outcomes.find(role);
-      column(found == outcomes.end() ? "." : found->second, 8);
+  for (const std::string& channel : channels) {
+    for (const auto& [row, outcomes] : tables[channel]) {
+      column(row.first, width);
+      column(row.second, 4);
+      column(channel, 7);
+      for (const Role role : roles) {
+        const auto found = outcomes.find(role);
+        column(found == outcomes.end() ? "." : found->second, 8);
+      }
+      out << "\n";
     }
-    out << "\n";
   }
   out << "\n`.` is not played in this role; `-n`: n steps are expected to fail.\n";
 }
@@ -136,9 +147,9 @@ void Report::print(std::ostream& out) const {
     const Run& run = cell.result.run;
     for (const Fault& fault : cell.faults) {
       if (std::exchange(first, false)) out << "\nFaults:\n";
-      out << "  " << run.scenario << " " << run.version << " " << name_of(run.role) << ", "
-          << fault.place << (fault.label.empty() ? "" : " (" + fault.label + ")") << ": "
-          << fault.text << "\n";
+      out << "  " << run.scenario << " " << run.version << " " << name_of(run.role)
+          << (run.channel == "tcp" ? "" : " over " + run.channel) << ", " << fault.place
+          << (fault.label.empty() ? "" : " (" + fault.label + ")") << ": " << fault.text << "\n";
     }
   }
   for (const std::string& stale : stale_entries()) out << "  " << stale << "\n";
@@ -190,10 +201,10 @@ Json Report::json() const {
   Json cells = Json::array();
   for (const Cell& cell : cells_) {
     const Run& run = cell.result.run;
-    Json json = {{"scenario", run.scenario},       {"version", run.version},
-                 {"role", name_of(run.role)},      {"outcome", outcome(cell)},
-                 {"checked", cell.result.checked}, {"faults", Json::array()},
-                 {"expected", Json::array()}};
+    Json json = {{"scenario", run.scenario}, {"version", run.version},
+                 {"channel", run.channel},   {"role", name_of(run.role)},
+                 {"outcome", outcome(cell)}, {"checked", cell.result.checked},
+                 {"faults", Json::array()},  {"expected", Json::array()}};
     for (const Fault& fault : cell.faults) {
       json["faults"].push_back(
           {{"place", fault.place}, {"label", fault.label}, {"text", fault.text}});

@@ -47,6 +47,21 @@ TEST_F(ReportTest, AllPassedHolds) {
   EXPECT_THAT(text.str(), HasSubstr("all holds"));
 }
 
+TEST_F(ReportTest, EachChannelHasItsRows) {
+  Report report("cpp", expect("cpp | a over ws | * | * | * | why\n"), deviations_, true);
+  report.add(result("a"));
+  EXPECT_TRUE(report.holds());  // the entry is of a channel that was not played
+  Result by_web_socket = result("a");
+  by_web_socket.run.channel = "ws";
+  report.add(by_web_socket);
+  EXPECT_FALSE(report.holds());
+  std::ostringstream text;
+  report.print(text);
+  EXPECT_THAT(text.str(), HasSubstr("tcp      .         .         pass"));
+  EXPECT_THAT(text.str(), HasSubstr("ws       .         .         FAIL"));
+  EXPECT_THAT(text.str(), HasSubstr("a v2 service over ws, *: "));
+}
+
 TEST_F(ReportTest, NothingPlayedDoesNotHold) {
   const Report report("cpp", expected_, deviations_, true);
   EXPECT_FALSE(report.holds());

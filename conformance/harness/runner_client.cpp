@@ -3,8 +3,7 @@
 
 namespace rr::conformance {
 
-void RunnerClient::begin(const Scenario& scenario, int port) {
-  runner_ = std::make_unique<Runner>(command_, "call");
+Json call_request(const Scenario& scenario, int port, const Json& channel) {
   Json request = {{"do", "start"},
                   {"node", {{"id", scenario.client.id}, {"name", scenario.client.name}}},
                   {"message_version", scenario.message_version},
@@ -15,7 +14,13 @@ void RunnerClient::begin(const Scenario& scenario, int port) {
   if (scenario.heartbeat_ms.is_object()) {
     request["heartbeat_ms"] = scenario.heartbeat_ms.at("client");
   }
-  runner_->order(request);
+  if (!channel.is_null()) request["channel"] = channel;
+  return request;
+}
+
+void RunnerClient::begin(const Scenario& scenario, int port, const Json& channel) {
+  runner_ = std::make_unique<Runner>(command_, "call");
+  runner_->order(call_request(scenario, port, channel));
 }
 
 void RunnerClient::start(const Json& step) {

@@ -41,7 +41,8 @@ Json withheld_capabilities(const Scenario& scenario) {
   return withheld;
 }
 
-// The name that the host language of the recorded library gave to the exception in an answer.
+}  // namespace
+
 std::string host_error_of(const Frame& frame) {
   if (frame.from_client || frame.entries().empty()) return {};
   const Json& entry = frame.entries().front();
@@ -54,7 +55,6 @@ std::string host_error_of(const Frame& frame) {
   return {};
 }
 
-// The service that a connection is with, as its first requests say.
 std::string service_of(const Scenario& scenario, int connection) {
   for (const Frame& frame : scenario.frames) {
     const bool asks =
@@ -66,9 +66,7 @@ std::string service_of(const Scenario& scenario, int connection) {
   return {};
 }
 
-}  // namespace
-
-Json serve_request(const Captures& captures, const Scenario& scenario) {
+Json serve_request(const Captures& captures, const Scenario& scenario, const Json& channel) {
   Json request = {{"do", "start"},
                   {"node", {{"id", scenario.service.id}, {"name", scenario.service.name}}},
                   {"message_version", scenario.message_version},
@@ -80,6 +78,7 @@ Json serve_request(const Captures& captures, const Scenario& scenario) {
   if (scenario.heartbeat_ms.is_object()) {
     request["heartbeat_ms"] = scenario.heartbeat_ms.at("service");
   }
+  if (!channel.is_null()) request["channel"] = channel;
   return request;
 }
 
@@ -96,7 +95,7 @@ class ServiceReplay::Play {
  public:
   Play(ServiceReplay& replay, const Scenario& scenario)
       : replay_(replay), scenario_(scenario), lines_(scenario.connections.size()) {
-    result_.run = {scenario.name, scenario.version, Role::service};
+    result_.run = {scenario.name, scenario.version, Role::service, replay.connect_.channel};
   }
 
   Result whole(bool until_fault) {
@@ -198,7 +197,7 @@ class ServiceReplay::Play {
   }
 
   void open(Line& line) {
-    line.stream = Stream::connect(replay_.address_.host, replay_.address_.port);
+    line.stream = replay_.connect_();
     line.was_opened = true;
   }
 
@@ -351,7 +350,8 @@ class ServiceReplay::Play {
     const std::string listed = " (" + entry.where_listed() + " says: " + entry.instead() + ")";
     if (entry.instead() == "closed") {
       if (arrival != Arrival::closed) fault("did not close the connection" + listed);
-      line.is_gone = arrival == Arrival::closed;
+      // Where the recorded one went on, a new connection takes its place.
+      line.is_gone = arrival == Arrival::closed && recorded == nullptr;
       return;
     }
     if (is_silent) {
@@ -385,10 +385,10 @@ class ServiceReplay::Play {
 };
 
 ServiceReplay::ServiceReplay(const Comparison& comparison, const Deviations& deviations,
-                             Address address, std::function<void(const std::string&)> close_service)
+                             Connect connect, std::function<void(const std::string&)> close_service)
     : comparison_(comparison),
       deviations_(deviations),
-      address_(std::move(address)),
+      connect_(std::move(connect)),
       close_service_(std::move(close_service)) {}
 
 Result ServiceReplay::play(const Scenario& scenario, bool until_fault) {

@@ -7,23 +7,33 @@
 #include "conformance/harness/comparison.hpp"
 #include "conformance/harness/result.hpp"
 #include "conformance/harness/runner.hpp"
+#include "conformance/harness/stream.hpp"
 
 namespace rr::conformance {
 
-/// Where the service that is tested listens.
-struct Address {
-  std::string host;
-  int port = 0;
+/// How to come to the service that is tested.
+struct Connect {
+  std::string channel;
+  std::function<Stream()> make;
+  /// A new connection. Throws std::runtime_error.
+  Stream operator()() const { return make(); }
 };
 
-/// What a runner's `serve` is told so that it is the service of a recording, but for its services.
-Json serve_request(const Captures& captures, const Scenario& scenario);
+/// What a runner's `serve` is told so that it is the service of a recording. `channel` is what its
+/// node needs for it, null for TCP.
+Json serve_request(const Captures& captures, const Scenario& scenario, const Json& channel = {});
+
+/// The service that a connection is with, as its first requests say.
+std::string service_of(const Scenario& scenario, int connection);
+
+/// The name that the host language of the recorded library gave to the exception in an answer.
+std::string host_error_of(const Frame& frame);
 
 /// Plays the client of a recording, byte for byte, and compares what the service answers.
 class ServiceReplay {
  public:
   /// `close_service` is called in a step that holds a ServiceClosed, with the name of the service.
-  ServiceReplay(const Comparison& comparison, const Deviations& deviations, Address address,
+  ServiceReplay(const Comparison& comparison, const Deviations& deviations, Connect connect,
                 std::function<void(const std::string&)> close_service);
 
   /// With `until_fault`, nothing more is played once something went otherwise than recorded.
@@ -35,7 +45,7 @@ class ServiceReplay {
 
   const Comparison& comparison_;
   const Deviations& deviations_;
-  Address address_;
+  Connect connect_;
   std::function<void(const std::string&)> close_service_;
 };
 

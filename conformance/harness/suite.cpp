@@ -11,8 +11,10 @@
 #include <regex>
 #include <set>
 
+#include "conformance/harness/channels.hpp"
 #include "conformance/harness/client_replay.hpp"
 #include "conformance/harness/codec_check.hpp"
+#include "conformance/harness/in_process_replay.hpp"
 #include "conformance/harness/malformed.hpp"
 #include "conformance/harness/runner_client.hpp"
 
@@ -22,7 +24,7 @@ namespace {
 // A client that somebody else starts and drives: it is told on the terminal what is expected.
 class ForeignClient final : public TestedClient {
  public:
-  void begin(const Scenario& scenario, int port) override {
+  void begin(const Scenario& scenario, int port, const Json& /*channel*/) override {
     std::cout << "\n== " << scenario.name << " " << scenario.version << ": " << scenario.about
               << "\n   client node " << scenario.client.id << " " << scenario.client.name
               << ", message version " << scenario.message_version
@@ -48,9 +50,9 @@ class Suite {
         deviations_(options.deviations
                         ? Deviations(*options.deviations, options.deviations_are_borrowed)
                         : Deviations()),
-        report_(
-            options.language, expected_, deviations_,
-            options.only.empty() && options.roles.empty() && !options.connect && !options.listen) {}
+        report_(options.language, expected_, deviations_,
+                options.only.empty() && options.roles.empty() && !options.connect &&
+                    !options.listen && options.channels.front() == "tcp") {}
 
   bool run() {
     if (captures_.scenarios.empty()) {
@@ -99,7 +101,8 @@ class Suite {
       result.fail(std::string(whole_run), "", error.what());
     }
     const auto spent = std::chrono::steady_clock::now() - begun;
-    std::clog << name_of(run.role) << " " << run.scenario << " " << run.version << ": "
+    std::clog << name_of(run.role) << " " << run.channel << " " << run.scenario << " "
+              << run.version << ": "
               << (result.faults.empty() ? "as recorded"
                                         : std::to_string(result.faults.size()) + " faults")
               << ", " << std::chrono::duration_cast<Milliseconds>(spent).count() << " ms\n";
@@ -118,24 +121,53 @@ class Suite {
   }
 
   void play_runner() {
-    if (has(Role::decode) && has(Role::encode)) check_codec();
+    for (const std::string& name : options_.channels) {
+      channel_ = std::make_unique<Channel>(name);
+      comparison_.expect_other_urls(!channel_->plays_as_recorded());
+      if (channel_->is_in_process()) {
+        play_in_process();
+      } else {
+        play_over_channel();
+      }
+    }
+  }
+
+  void play_over_channel() {
+    // What messages and values mean is the same over all channels.
+    if (channel_->name() == "tcp" && has(Role::decode) && has(Role::encode)) check_codec();
     if (has(Role::service)) {
       for_each_scenario([&](const Scenario& scenario) {
-        add({scenario.name, scenario.version, Role::service}, [&] { return serve(scenario); });
+        add(run_of(scenario, Role::service), [&] { return serve(scenario); });
       });
     }
     if (has(Role::client)) {
       for_each_scenario([&](const Scenario& scenario) {
         if (scenario.hand_made) return;
-        add({scenario.name, scenario.version, Role::client}, [&] { return call(scenario); });
+        add(run_of(scenario, Role::client), [&] { return call(scenario); });
       });
     }
     if (!has(Role::service)) return;
     for (const int version : versions_of_malformed()) {
       if (!is_wanted("malformed")) continue;
-      add({"malformed", "v" + std::to_string(version), Role::service},
+      add({"malformed", "v" + std::to_string(version), Role::service, channel_->name()},
           [&] { return serve_malformed(version); });
     }
+  }
+
+  // The runner's client and its service in one process, where there are no bytes to look at.
+  void play_in_process() {
+    if (!has(Role::service) || !has(Role::client)) return;
+    for_each_scenario([&](const Scenario& scenario) {
+      if (scenario.hand_made) return;
+      add(run_of(scenario, Role::client), [&] {
+        return InProcessReplay(captures_, comparison_, deviations_, *channel_)
+            .play(scenario, options_.runner);
+      });
+    });
+  }
+
+  [[nodiscard]] Run run_of(const Scenario& scenario, Role role) const {
+    return {scenario.name, scenario.version, role, channel_->name()};
   }
 
   void check_codec() {
@@ -158,42 +190,45 @@ class Suite {
   }
 
   Result serve(const Scenario& scenario) {
-    if (scenario.web_socket) return not_playable(scenario, Role::service);
+    channel_->renew();
     Runner runner(options_.runner, "serve");
-    const Json started = runner.order(serve_request(captures_, scenario));
-    ServiceReplay replay(comparison_, deviations_, {"127.0.0.1", started.at("port")},
+    const Json started =
+        runner.order(serve_request(captures_, scenario, channel_->settings(scenario.service)));
+    ServiceReplay replay(comparison_, deviations_, connect_to(scenario, started),
                          [&](const std::string& service) {
                            runner.order({{"do", "close_service"}, {"service", service}});
                          });
     return replay.play(scenario, is_expected_to_fail(scenario, Role::service));
   }
 
+  Connect connect_to(const Scenario& scenario, const Json& started) {
+    const int port = started.value("port", 0);
+    return {channel_->name(),
+            [this, &scenario, port] { return channel_->connect(scenario, "127.0.0.1", port); }};
+  }
+
   Result call(const Scenario& scenario) {
-    if (scenario.web_socket) return not_playable(scenario, Role::client);
+    channel_->renew();
     RunnerClient client(options_.runner);
-    Listener listener(0);
-    return ClientReplay(comparison_, deviations_, listener, client)
+    Listener listener = channel_->listen();
+    Entrance entrance(*channel_, scenario, listener);
+    return ClientReplay(comparison_, deviations_, entrance, client)
         .play(scenario, is_expected_to_fail(scenario, Role::client));
   }
 
   // One fault is enough to know that it still does.
   [[nodiscard]] bool is_expected_to_fail(const Scenario& scenario, Role role) const {
-    return expected_.find({scenario.name, scenario.version, role}, whole_run) != nullptr;
+    return expected_.find(run_of(scenario, role), whole_run) != nullptr;
   }
 
   Result serve_malformed(int version) {
     const Scenario* scenario = captures_.find("connect", "v" + std::to_string(version));
     if (scenario == nullptr) throw std::runtime_error("no scenario connect to connect with");
+    channel_->renew();
     Runner runner(options_.runner, "serve");
-    const Json started = runner.order(serve_request(captures_, *scenario));
-    return check_malformed(captures_, version, deviations_, {"127.0.0.1", started.at("port")});
-  }
-
-  static Result not_playable(const Scenario& scenario, Role role) {
-    Result result;
-    result.run = {scenario.name, scenario.version, role};
-    result.fail(std::string(whole_run), "", "the frames are those of a web socket");
-    return result;
+    const Json started =
+        runner.order(serve_request(captures_, *scenario, channel_->settings(scenario->service)));
+    return check_malformed(captures_, version, deviations_, connect_to(*scenario, started));
   }
 
   void reset_foreign_service(const std::string& scenario, const std::string& version) {
@@ -206,11 +241,16 @@ class Suite {
   }
 
   void play_foreign_service() {
+    channel_ = std::make_unique<Channel>("tcp");
+    const Address& address = *options_.connect;
+    const auto connect_as = [&](const Scenario& scenario) -> Connect {
+      return {channel_->name(),
+              [&] { return channel_->connect(scenario, address.host, address.port); }};
+    };
     for_each_scenario([&](const Scenario& scenario) {
-      if (scenario.web_socket) return;
-      add({scenario.name, scenario.version, Role::service}, [&] {
+      add(run_of(scenario, Role::service), [&] {
         reset_foreign_service(scenario.name, scenario.version);
-        ServiceReplay replay(comparison_, deviations_, *options_.connect,
+        ServiceReplay replay(comparison_, deviations_, connect_as(scenario),
                              [](const std::string& service) {
                                std::cout << "close the service " << service << " now" << std::endl;
                              });
@@ -220,20 +260,24 @@ class Suite {
     for (const int version : versions_of_malformed()) {
       const std::string name = "v" + std::to_string(version);
       if (!is_wanted("malformed")) continue;
-      add({"malformed", name, Role::service}, [&] {
+      add({"malformed", name, Role::service, channel_->name()}, [&] {
+        const Scenario* const scenario = captures_.find("connect", name);
+        if (scenario == nullptr) throw std::runtime_error("no scenario connect to connect with");
         reset_foreign_service("malformed", name);
-        return check_malformed(captures_, version, deviations_, *options_.connect);
+        return check_malformed(captures_, version, deviations_, connect_as(*scenario));
       });
     }
   }
 
   void play_foreign_client() {
+    channel_ = std::make_unique<Channel>("tcp");
     Listener listener(*options_.listen, true);
     for_each_scenario([&](const Scenario& scenario) {
-      if (scenario.web_socket || scenario.hand_made) return;
-      add({scenario.name, scenario.version, Role::client}, [&] {
+      if (scenario.hand_made) return;
+      add(run_of(scenario, Role::client), [&] {
         ForeignClient client;
-        return ClientReplay(comparison_, deviations_, listener, client).play(scenario);
+        Entrance entrance(*channel_, scenario, listener);
+        return ClientReplay(comparison_, deviations_, entrance, client).play(scenario);
       });
     });
   }
@@ -244,6 +288,7 @@ class Suite {
   ExpectedFailures expected_;
   Deviations deviations_;
   Report report_;
+  std::unique_ptr<Channel> channel_;  // over which is played now
 };
 
 }  // namespace

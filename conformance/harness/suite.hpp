@@ -11,15 +11,22 @@
 
 namespace rr::conformance {
 
+/// Where a service listens.
+struct Address {
+  std::string host;
+  int port = 0;
+};
+
 struct Options {
   std::filesystem::path captures;
   std::string language = "cpp";
   std::vector<std::string> runner;  ///< command of the language's runner
   std::optional<Address> connect;   ///< a foreign service
-  std::vector<Role> roles;          ///< those the language has; empty for all
-  std::string before;               ///< shell command that resets it before a scenario
-  std::optional<int> listen;        ///< port for a foreign client
-  std::string only;                 ///< regular expression of scenario names; empty for all
+  std::vector<std::string> channels{"tcp"};
+  std::vector<Role> roles;    ///< those the language has; empty for all
+  std::string before;         ///< shell command that resets it before a scenario
+  std::optional<int> listen;  ///< port for a foreign client
+  std::string only;           ///< regular expression of scenario names; empty for all
   std::optional<std::filesystem::path> expected;
   std::optional<std::filesystem::path> deviations;
   bool deviations_are_borrowed = false;       ///< from other captures

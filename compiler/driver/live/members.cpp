@@ -33,7 +33,7 @@ std::string subject_of(const MemberDescription& member) { return "member " + mem
 
 [[noreturn]] void refuse(const MemberDescription& member, const std::string& expected) {
   throw rr::Error(rr::ErrorCode::member_format_mismatch,
-                  subject_of(member) + ": expected a " + expected + ", it is a " + kind_of(member));
+                  subject_of(member) + ": expected " + expected + ", got " + kind_of(member));
 }
 
 // What a user has written for a value.

@@ -98,11 +98,10 @@ TEST_F(Members, ErrorsNameTheMemberAndTheType) {
               HasSubstr("member label: expected string as JSON, got `text`; a string has quotes"));
   EXPECT_THAT(err({"get", "nothing"}), HasSubstr("has no member `nothing`"));
   EXPECT_THAT(err({"get", "ticked"}),
-              HasSubstr("member ticked: expected a property, wire or memory, it is a event"));
+              HasSubstr("member ticked: expected property, wire or memory, got event"));
   EXPECT_THAT(err({"set", "add", "1"}),
-              HasSubstr("member add: expected a property, wire or memory, it is a function"));
-  EXPECT_THAT(err({"call", "gain"}),
-              HasSubstr("member gain: expected a function, it is a property"));
+              HasSubstr("member add: expected property, wire or memory, got function"));
+  EXPECT_THAT(err({"call", "gain"}), HasSubstr("member gain: expected function, got property"));
   EXPECT_THAT(err({"call", "add", "1"}), HasSubstr("member add: expected 2 arguments"));
   EXPECT_THAT(err({"call", "add", "1", "true"}),
               HasSubstr("member add, parameter b: expected double, got bool"));
@@ -150,7 +149,7 @@ TEST_F(Members, PathsGoThroughObjrefs) {
               HasSubstr("member lamps: expected an index of type int32, got `x`"));
   EXPECT_THAT(err({"get", "lamps.brightness"}),
               HasSubstr("member lamps: expected an index of type int32, got none"));
-  EXPECT_THAT(err({"get", "gain.brightness"}), HasSubstr("member gain: expected a objref"));
+  EXPECT_THAT(err({"get", "gain.brightness"}), HasSubstr("member gain: expected objref"));
   EXPECT_THAT(err({"get", "lamps[7].brightness"}), HasSubstr("ObjectNotFound"));
   EXPECT_THAT(err({"get", "lamp..x"}), HasSubstr("`lamp..x` is no path"));
   EXPECT_THAT(err({"get", "lamps[1]"}), HasSubstr("name one of its members: lamps[1].NAME"));

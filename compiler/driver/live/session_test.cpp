@@ -89,8 +89,7 @@ TEST_F(Sessions, WhatCannotBeWatchedIsTold) {
     EXPECT_EQ(ended.status, 1);
     return ended.err;
   };
-  EXPECT_THAT(err("gain"),
-              HasSubstr("member gain: expected a wire, pipe or event, it is a property"));
+  EXPECT_THAT(err("gain"), HasSubstr("member gain: expected wire, pipe or event, got property"));
   EXPECT_THAT(err("nothing"), HasSubstr("has no member `nothing`"));
   server_.stop();
   EXPECT_THAT(err("level"), HasSubstr("ConnectionError"));

@@ -119,7 +119,7 @@ void Watch::attach(const dynamic::Object& object, const MemberPath& path, const 
   } else {
     throw rr::Error(
         rr::ErrorCode::member_format_mismatch,
-        "member " + member.name + ": expected a wire, pipe or event, it is a " + kind_of(member));
+        "member " + member.name + ": expected wire, pipe or event, got " + kind_of(member));
   }
 }
 

@@ -26,6 +26,15 @@ void answer_lines(const std::function<Json(const Json&)>& answer) {
   }
 }
 
+Json answer_both(rr::conformance::ServedNode& served, rr::conformance::CallingNode& calling,
+                 const Json& request) {
+  const std::string what = request.at("do");
+  if (what == "close_service") return served.answer(request);
+  if (what != "start") return calling.answer(request);
+  served.answer(request.at("service"));
+  return calling.answer(request.at("client"));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -44,8 +53,14 @@ int main(int argc, char** argv) {
     rr::conformance::GeneratedBinding binding(adapters);
     rr::conformance::CallingNode node(binding);
     answer_lines([&](const Json& request) { return node.answer(request); });
+  } else if (verb == "both") {
+    // The client's node goes first, as it would in a process of its own.
+    rr::conformance::ServedNode served(adapters);
+    rr::conformance::GeneratedBinding binding(adapters);
+    rr::conformance::CallingNode calling(binding);
+    answer_lines([&](const Json& request) { return answer_both(served, calling, request); });
   } else {
-    std::cerr << "usage: conformance_runner decode|encode|serve|call\n";
+    std::cerr << "usage: conformance_runner decode|encode|serve|call|both\n";
     return 2;
   }
   return 0;

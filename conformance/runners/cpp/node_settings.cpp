@@ -40,12 +40,32 @@ NodeOptions node_options(const Json& request) {
   }
   if (request.contains("heartbeat_ms")) {
     options.heartbeat_period = std::chrono::milliseconds(request["heartbeat_ms"].get<int>());
+    options.local.heartbeat_period = options.heartbeat_period;
   }
   const Json wishes = request.value("node_options", Json::object());
   if (wishes.contains("memory_max_transfer")) {
     options.memory_transfer_limit = wishes["memory_max_transfer"].get<std::uint32_t>();
   }
+  const Json channel = request.value("channel", Json::object());
+  if (channel.contains("certificate")) {
+    options.tls.certificate_file = channel["certificate"];
+    options.tls.authority_files = {channel.at("authority").get<std::string>()};
+  }
   return options;
+}
+
+int listen(Node& node, const Json& request) {
+  const Json channel = request.value("channel", Json::object());
+  const std::string name = channel.value("name", "tcp");
+  if (name == "local") {
+    node.listen("rr+local://" + channel.at("path").get<std::string>());
+    return 0;
+  }
+  if (name == "intra") {
+    node.listen("rr+intra://");
+    return 0;
+  }
+  return node.listen_tcp(static_cast<std::uint16_t>(request.value("port", 0)), "127.0.0.1");
 }
 
 }  // namespace rr::conformance

@@ -36,8 +36,7 @@ Json ServedNode::start(const Json& request) {
   node_ = std::make_unique<Node>(node_options(request));
   const Json& services = request.at("services");
   for (const Json& service : services) offer(service, services);
-  const auto port = static_cast<std::uint16_t>(request.value("port", 0));
-  return {{"port", node_->listen_tcp(port, "127.0.0.1")}};
+  return {{"port", listen(*node_, request)}};
 }
 
 void ServedNode::offer(const Json& service, const Json& all) {

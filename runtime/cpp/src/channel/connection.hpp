@@ -38,6 +38,9 @@ class Receiver {
                            const MemoryRef& /*owner*/, Laters& /*laters*/) {
     return false;
   }
+  /// A message that handle() gets in its turn, and that ends something for which answers may come
+  /// before that. On whichever thread reads, in the order of arrival, as take_answer().
+  virtual void foresee(const Message& /*message*/) {}
   /// Any other message, one at a time and in order, on a thread of the node; may run user code.
   /// `first` is its first entry. Callbacks come to a client out of turn, several at a time: whoever
   /// handles something else may be waiting for the call that they are a part of.

@@ -15,6 +15,7 @@
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/environment.hpp"
+#include "runtime/cpp/src/channel/texts.hpp"
 
 namespace rr::channel {
 namespace {
@@ -49,19 +50,6 @@ fs::path under_home(const char* variable, const fs::path& home, const char* belo
     throw Error(ErrorCode::system_resource_error, "there is no home folder to keep node ids in");
   }
   return home / below / "RobotRaconteur";
-}
-
-std::string trimmed(const std::string& text) {
-  constexpr const char* blanks = " \t\r\n\v\f";
-  const std::size_t begin = text.find_first_not_of(blanks);
-  if (begin == std::string::npos) return {};
-  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
-}
-
-bool is_key(const std::string& text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::strchr("_+.-", c) != nullptr;
-  });
 }
 
 flock whole_file(short type) {
@@ -138,12 +126,9 @@ std::map<std::string, std::string> read_info_file(const fs::path& file) {
   text.resize(static_cast<std::size_t>(size));
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string line = text.substr(begin, end - begin);
+    const auto [key, value] = split_line(std::string_view(text).substr(begin, end - begin));
     begin = end + 1;
-    const std::size_t colon = line.find(':');
-    if (colon == std::string::npos) continue;
-    const std::string key = trimmed(line.substr(0, colon));
-    if (is_key(key)) result.emplace(key, trimmed(line.substr(colon + 1)));
+    if (!key.empty()) result.emplace(key, value);
   }
   return result;
 }

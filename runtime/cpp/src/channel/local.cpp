@@ -9,7 +9,6 @@
 #include <cerrno>
 #include <cstring>
 #include <mutex>
-#include <random>
 #include <utility>
 
 #include "rr/error.hpp"
@@ -18,22 +17,13 @@
 #include "runtime/cpp/src/channel/listening_socket.hpp"
 #include "runtime/cpp/src/channel/node_files.hpp"
 #include "runtime/cpp/src/channel/tcp_connect.hpp"
+#include "runtime/cpp/src/channel/texts.hpp"
 
 namespace rr::channel {
 namespace {
 
 constexpr int backlog = 1024;
 constexpr int attempts = 4;
-
-std::string random_letters() {
-  constexpr std::string_view letters =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
-  std::random_device random;
-  std::uniform_int_distribution<std::size_t> any(0, letters.size() - 1);
-  std::string text(16, '\0');
-  for (char& letter : text) letter = letters[any(random)];
-  return text;
-}
 
 Address address_of(const std::string& path) {
   Address address;

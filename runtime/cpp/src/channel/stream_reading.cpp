@@ -31,6 +31,12 @@ bool may_overtake(const Message& message, const Entry& first) {
          (first.type == EntryType::wire_packet || first.type == EntryType::wire_closed);
 }
 
+// Something of a client that it may connect anew before this is handled.
+bool may_end(const Message& message, const Entry& first) {
+  return message.entry_count != 1 || first.type == EntryType::pipe_closed ||
+         first.type == EntryType::service_path_released_req;
+}
+
 bool has_only_answers(const Message& message, const Entry& first) {
   if (!is_answer(first.type)) return false;
   if (message.entry_count == 1) return true;
@@ -183,6 +189,7 @@ bool StreamConnection::take(Scratch& scratch, const Frame& frame) {
              first.type == EntryType::callback_call_req && begin_absence()) {
     handle_aside(frame);
   } else if (!take_packet(scratch, frame)) {
+    if (role_ == Role::client && may_end(message, first)) receiver_->foresee(message);
     scratch.waiting.push_back(frame);
     scratch.parsed = scratch.waiting.size();
   }

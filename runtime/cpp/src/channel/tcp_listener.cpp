@@ -40,6 +40,7 @@ Descriptor open_listening(const Address& address) {
 // One socket for each address, all on one port. Throws rr::Error.
 std::vector<Descriptor> open_all(std::vector<Address> addresses, std::uint16_t wanted_port) {
   constexpr int attempts = 10;
+  Descriptor shared;  // kept, so that it is not given again
   for (int attempt = 1;; ++attempt) {
     std::vector<Descriptor> sockets;
     std::uint16_t port = wanted_port;
@@ -49,6 +50,11 @@ std::vector<Descriptor> open_all(std::vector<Address> addresses, std::uint16_t w
       Descriptor socket = open_listening(address);
       if (socket) {
         port = local_address(socket.get()).port();
+        if (port == shared_port) {
+          shared = std::move(socket);
+          error = EADDRINUSE;
+          break;
+        }
         sockets.push_back(std::move(socket));
         continue;
       }
@@ -62,6 +68,9 @@ std::vector<Descriptor> open_all(std::vector<Address> addresses, std::uint16_t w
                   "cannot listen at " + address.text() + ": " + std::strerror(error));
     }
     if (error == 0) return sockets;
+    if (attempt == attempts) {
+      throw Error(ErrorCode::connection_error, "there is no free port to listen at");
+    }
   }
 }
 

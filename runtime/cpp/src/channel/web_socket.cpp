@@ -137,7 +137,7 @@ class WebSocketClient final : public WebSocketLayer {
         target_((url.path.empty() ? "/" : url.path) + (url.query.empty() ? "" : "?" + url.query)) {
     stream().set_option(websocket::stream_base::decorator([](websocket::request_type& request) {
       request.set(http::field::sec_websocket_protocol, protocol_name);
-      request.set(http::field::user_agent, "robdef");
+      request.set(http::field::connection, "Upgrade");  // as the reference library spells it
     }));
   }
 

@@ -166,22 +166,40 @@ Pipes::End Pipes::open(const Wish& wish, Decoder& decoder, const Entry& entry) {
 
 // Under the lock, as the next. Returns the end whose index the new one has been given; null: none.
 Pipes::End Pipes::add(const End& end) {
+  if (notices_read_ != notices_handled_) notices_before_[end.get()] = notices_read_;
   if (ends_.add(end)) return nullptr;
   const PipeEnd::State::Identity& what = end->identity;
   End predecessor = ends_.find(what.path, what.member->name, what.index);
   ends_.remove(*predecessor);
+  notices_before_.erase(predecessor.get());
   ends_.add(end);
-  const auto earlier = successors_.extract(predecessor.get());
-  successors_[end.get()] = earlier.empty() ? 1 : earlier.mapped() + 1;
   return predecessor;
 }
 
-// Whether what the service says of an end that is there has been overtaken by its connecting.
-bool Pipes::is_about_predecessor(const End& end) {
-  const auto found = successors_.find(end.get());
-  if (found == successors_.end()) return false;
-  if (--found->second == 0) successors_.erase(found);
-  return true;
+void Pipes::foresee(const Message& message) {
+  std::uint64_t count = 0;
+  EntryReader entries(message);
+  for (Entry entry; entries.next(entry);) {
+    count +=
+        entry.type == EntryType::pipe_closed || entry.type == EntryType::service_path_released_req;
+  }
+  const std::lock_guard lock(mutex_);
+  notices_read_ += count;
+}
+
+// Whether the end has been connected after the service has sent a notice. Under the lock, as the
+// next.
+bool Pipes::is_overtaken(const End& end, std::uint64_t notice) const {
+  const auto before = notices_before_.find(end.get());
+  return before != notices_before_.end() && before->second >= notice;
+}
+
+// Returns the number of the notice that is handled now.
+std::uint64_t Pipes::next_notice() {
+  const std::uint64_t notice = ++notices_handled_;
+  // Those that were read before these ends have all been handled with the one before.
+  std::erase_if(notices_before_, [&](const auto& item) { return item.second < notice; });
+  return notice;
 }
 
 // Under the lock.
@@ -236,6 +254,11 @@ void Pipes::take_acknowledgements(const Message& message, const Entry& entry) {
 }
 
 void Pipes::take_closed(const Message& message, const Entry& entry) {
+  std::uint64_t notice = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    notice = next_notice();  // also when it cannot be read
+  }
   Decoder decoder(message.version, &message.strings);
   std::int32_t index = 0;
   endpoint::read_value(decoder, entry, "index", type_of<std::int32_t>, &index);
@@ -243,7 +266,7 @@ void Pipes::take_closed(const Message& message, const Entry& entry) {
   {
     const std::lock_guard lock(mutex_);
     end = ends_.find(entry.service_path, entry.member, index);
-    if (!end || is_about_predecessor(end)) return;
+    if (!end || is_overtaken(end, notice)) return;
     ends_.remove(*end);
   }
   end->finish();
@@ -253,9 +276,10 @@ void Pipes::release(std::string_view path) {
   std::vector<End> ended;
   {
     const std::lock_guard lock(mutex_);
+    const std::uint64_t notice = next_notice();
     ended = ends_.take_below(path);
     std::erase_if(ended,
-                  [&](const End& end) { return is_about_predecessor(end) && ends_.add(end); });
+                  [&](const End& end) { return is_overtaken(end, notice) && ends_.add(end); });
   }
   for (const End& end : ended) end->finish();
 }
@@ -265,7 +289,7 @@ void Pipes::end() {
   {
     const std::lock_guard lock(mutex_);
     ended = ends_.take_all();
-    successors_.clear();
+    notices_before_.clear();
   }
   for (const End& end : ended) end->finish();
 }
@@ -280,7 +304,7 @@ void Pipes::close(PipeEnd::State& end, bool may_wait) {
   {
     const std::lock_guard lock(mutex_);
     if (!ends_.remove(end)) return;
-    successors_.erase(&end);
+    notices_before_.erase(&end);
   }
   const auto keep = session_.shared_from_this();
   end.finish();

@@ -157,6 +157,7 @@ class Session final : public channel::Receiver,
                    channel::Laters& laters) override;
   bool take_packet(const Message& message, const Entry& entry, const MemoryRef& owner,
                    channel::Laters& laters) override;
+  void foresee(const Message& message) override { pipes_.foresee(message); }
   void handle(const Message& message, const Entry& first, const MemoryRef& owner) override;
   void lost(const Error& why, channel::Laters& laters) override;
   void closed() override;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "runtime/cpp/src/channel/texts.hpp"
 #include "runtime/cpp/src/discovery/packets.hpp"
 #include "runtime/cpp/src/discovery/voice.hpp"
 #include "runtime/cpp/src/endpoint/service_index_types.hpp"
@@ -23,7 +24,7 @@ Announcer::Announcer(std::shared_ptr<channel::Reactor> reactor, NodeId id, std::
       id_(id),
       name_(std::move(name)),
       listening_(std::move(listening)),
-      nonce_(new_nonce()) {}
+      nonce_(channel::random_letters()) {}
 
 void Announcer::start(AnnounceOptions options) {
   options.period = std::max(channel::saturated(options.period), shortest_period);
@@ -59,7 +60,7 @@ void Announcer::announce_soon() {
 void Announcer::services_changed() {
   {
     const std::lock_guard lock(mutex_);
-    nonce_ = new_nonce();
+    nonce_ = channel::random_letters();
   }
   announce_soon();
 }

@@ -4,15 +4,17 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 
-#include <algorithm>
-#include <random>
 #include <utility>
 
 #include "rr/error.hpp"
 #include "rr/url.hpp"
+#include "runtime/cpp/src/channel/texts.hpp"
 
 namespace rr::discovery {
 namespace {
+
+using channel::split_line;
+using channel::trimmed;
 
 constexpr std::string_view announcement_title = "Robot Raconteur Node Discovery Packet";
 constexpr std::string_view request_title = "Robot Raconteur Discovery Request Packet";
@@ -22,32 +24,11 @@ constexpr std::size_t longest_written = 2048;
 constexpr std::size_t longest_name = 128;
 constexpr std::size_t nonce_end = 32;
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blanks = " \t\r\v\f";
-  const std::size_t begin = text.find_first_not_of(blanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
-}
-
 std::string_view take_line(std::string_view& rest) {
   const std::size_t end = rest.find('\n');
   const std::string_view line = rest.substr(0, end);
   rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
   return trimmed(line);
-}
-
-constexpr bool is_key_character(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-         c == '+' || c == '.' || c == '-';
-}
-
-// `key: value`; an empty key for a line that is none.
-std::pair<std::string_view, std::string_view> split_line(std::string_view line) {
-  const std::size_t colon = line.find(':');
-  if (colon == std::string_view::npos) return {};
-  const std::string_view key = trimmed(line.substr(0, colon));
-  if (!std::all_of(key.begin(), key.end(), is_key_character)) return {};
-  return {key, trimmed(line.substr(colon + 1))};
 }
 
 bool is_site_local(const in6_addr& address) {
@@ -123,17 +104,6 @@ std::optional<NodeId> read_request(std::string_view packet) {
   std::string_view rest = packet;
   take_line(rest);
   return NodeId::parse(take_line(rest));
-}
-
-std::string new_nonce() {
-  constexpr std::string_view characters =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
-  constexpr std::size_t length = 16;
-  std::random_device random;
-  std::uniform_int_distribution<std::size_t> pick(0, characters.size() - 1);
-  std::string nonce;
-  for (std::size_t i = 0; i < length; ++i) nonce.push_back(characters[pick(random)]);
-  return nonce;
 }
 
 }  // namespace rr::discovery

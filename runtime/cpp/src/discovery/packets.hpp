@@ -38,7 +38,4 @@ std::string write_request(const NodeId& asker);
 /// Who asks. Nothing when it is no such packet, or says it without a valid id.
 std::optional<NodeId> read_request(std::string_view packet);
 
-/// 16 random letters and digits.
-std::string new_nonce();
-
 }  // namespace rr::discovery

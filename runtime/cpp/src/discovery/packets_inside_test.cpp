@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/cpp/src/channel/texts.hpp"
 #include "runtime/cpp/src/discovery/interfaces.hpp"
 #include "runtime/cpp/src/discovery/node_table.hpp"
 #include "runtime/cpp/src/discovery/packets.hpp"
@@ -116,11 +117,11 @@ TEST(DiscoveryPackets, ARequestNeedsAnId) {
 }
 
 TEST(DiscoveryPackets, ANonceHasSixteenLettersAndDigits) {
-  const std::string nonce = new_nonce();
+  const std::string nonce = channel::random_letters();
   EXPECT_EQ(nonce.size(), 16U);
   EXPECT_TRUE(std::all_of(nonce.begin(), nonce.end(),
                           [](unsigned char c) { return std::isalnum(c) != 0; }));
-  EXPECT_NE(nonce, new_nonce());
+  EXPECT_NE(nonce, channel::random_letters());
 }
 
 TEST(DiscoveryUrls, TheServiceOfAUrlCanBeExchanged) {

@@ -100,7 +100,7 @@ TEST(DynamicClient, NamesMemberAndTypeInErrors) {
   EXPECT_EQ(error_text([&] { (void)board->member("gian"); }),
             "9: `experimental.properties.Board` has no member `gian`");
   EXPECT_EQ(error_text([&] { (void)board->call("gain"); }),
-            "10: member gain: expected a function, it is a property");
+            "10: member gain: expected function, got property");
   EXPECT_EQ(error_text([&] { (void)board->get("password"); }).substr(0, 4), "103:");
   EXPECT_EQ(error_text([&] { board->set("serial_number", 1); }).substr(0, 4), "102:");
 }
@@ -145,7 +145,7 @@ TEST(DynamicClient, NamesFunctionAndParameterInErrors) {
             }),
             "11: member inspect, parameter previous, field count: expected int32, got string");
   EXPECT_EQ(error_text([&] { (void)machine->generate("stop"); }),
-            "10: member stop: expected a generator function, it is a plain function");
+            "10: member stop: expected generator function, got plain function");
   EXPECT_EQ(error_text([&] { machine->call("inspect", {Value(), List{}}); }), "20: no report");
 }
 

@@ -15,9 +15,9 @@ std::string_view name_of(MemberKind kind) {
 
 [[noreturn]] void refuse_member(const MemberTable& member, std::string_view expected,
                                 std::string_view is) {
-  throw Error(ErrorCode::member_format_mismatch, subject_of(member.name) + ": expected a " +
-                                                     std::string(expected) + ", it is a " +
-                                                     std::string(is));
+  throw Error(
+      ErrorCode::member_format_mismatch,
+      subject_of(member.name) + ": expected " + std::string(expected) + ", got " + std::string(is));
 }
 
 void check_index(const MemberTable& table, const Member& member, IndexForm given) {

@@ -78,7 +78,7 @@ TEST(DynamicGenerators, GiveAndTake) {
   EXPECT_EQ(error_text([&] { (void)sum.next("x"); }),
             "11: member running_sum: expected double, got string");
   EXPECT_EQ(error_text([&] { (void)generators->call("count", {1}); }),
-            "10: member count: expected a plain function, it is a generator function");
+            "10: member count: expected plain function, got generator function");
 }
 
 TEST(DynamicGenerators, AreUsedAsynchronously) {

@@ -60,15 +60,16 @@ void WireEnd::State::open() {
 }
 
 void WireEnd::State::take(const Message& message, const Entry& entry, const MemoryRef& owner,
-                          const TypeRegistry& types, channel::Laters& /*laters*/) {
+                          const TypeRegistry& types, channel::Laters& laters) {
   if (!may_receive_ || member_.holding == nullptr) return;
   std::shared_ptr<void> made;
   TimeSpec time;
   try {
     made = member_.holding->make();
     endpoint::read_wire(message, entry, owner, types, *member_.type, time, made.get());
-  } catch (const std::exception&) {
-    return;  // as if it had not been sent (07, section 13)
+  } catch (const std::exception& error) {
+    refuse(error, laters);  // as if it had not been sent (07, section 13)
+    return;
   }
   const std::shared_ptr<const void> value = std::move(made);
   std::shared_ptr<const void> before;
@@ -84,6 +85,28 @@ void WireEnd::State::take(const Message& message, const Entry& entry, const Memo
     if (waiting_ != 0) arrived_.notify_all();
   }
   if (must_start) start_telling();
+}
+
+void WireEnd::State::refuse(const std::exception& why, channel::Laters& laters) {
+  const Error error(ErrorCode::data_type_mismatch,
+                    "`" + path_ + "." + std::string(member_.name) +
+                        "` has values of another type: " + why.what());
+  const std::lock_guard lock(mutex_);
+  refusal_ = error;
+  if (!on_refused_ || is_ending()) return;
+  laters.emplace_back([function = on_refused_, error] { (*function)(error); });
+}
+
+void WireEnd::State::on_refused(std::function<void(const Error&)> function) {
+  auto shared = std::make_shared<const std::function<void(const Error&)>>(std::move(function));
+  std::optional<Error> refusal;
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_ending()) return;
+    on_refused_ = shared;
+    refusal = refusal_;
+  }
+  if (refusal) (*shared)(*refusal);
 }
 
 std::shared_ptr<const void> WireEnd::State::received(TimeSpec& time) const {

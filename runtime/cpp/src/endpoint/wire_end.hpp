@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,9 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   bool wait_received(std::chrono::milliseconds limit);
   void set_lifespan(std::chrono::milliseconds lifespan);
   Subscription on_received(Function<void(const void*, const TimeSpec&)> function);
+  /// Calls `function` with what is wrong when a value came that has another type than the member,
+  /// on a thread of the node; at once when one has come already. One function, while it is open.
+  void on_refused(std::function<void(const Error&)> function);
   void send(const void* value);
   std::shared_ptr<const void> sent(TimeSpec& time) const;
 
@@ -69,6 +73,8 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   bool begin_close();
   /// finish() for a thread of the program.
   void finish_now();
+  /// A value that cannot be read.
+  void refuse(const std::exception& why, channel::Laters& laters);
   /// Keeps what is being sent as what was sent last.
   void keep_sent(std::shared_ptr<const void> value, endpoint::SenderTime time);
 
@@ -128,6 +134,8 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
 
   std::vector<std::shared_ptr<Listener>> listeners_;
   std::vector<Function<void()>> on_closed_;
+  std::shared_ptr<const std::function<void(const Error&)>> on_refused_;
+  std::optional<Error> refusal_;
   std::uint64_t told_side_ = 0;                  // the value that tell() was called for
   bool is_telling_ = false;                      // or will be, by posted work
   bool is_over_ = false;                         // all has been told

@@ -2,8 +2,10 @@
 // What holds for every channel, and how clients that are slow are kept from others.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <chrono>
+#include <fstream>
 #include <thread>
 #include <vector>
 
@@ -84,6 +86,29 @@ TEST_P(EachChannel, FindsNoNodeThatIsNotThere) {
       << error.message();
 }
 
+// In a network of its own, whose system gives out these ports only. Needs root.
+TEST(Ports, ThatAreAnyAreNeverTheSharedOne) {
+  bool is_alone = false;
+  std::uint16_t port = 0;
+  Error none(ErrorCode::none, "");
+  std::thread([&] {
+    const auto give_out = [](const char* ports) {
+      std::ofstream range("/proc/sys/net/ipv4/ip_local_port_range");
+      return static_cast<bool>(range << ports << std::flush);
+    };
+    is_alone = unshare(CLONE_NEWNET) == 0 && give_out("48653 48654");
+    if (!is_alone) return;
+    {
+      Node node;
+      port = node.listen_tcp(0);
+      none = error_of([&] { node.listen_tcp(0); });
+    }
+  }).join();
+  if (!is_alone) GTEST_SKIP() << "may not make a network";
+  EXPECT_EQ(port, 48654);
+  EXPECT_EQ(none.code(), ErrorCode::connection_error);
+}
+
 TEST(Intra, FindsNodesByNameInTheirSpaceOnly) {
   const auto space = std::make_shared<IntraSpace>();
   Node server({.name = "intra.node", .intra = space});
@@ -124,13 +149,22 @@ TEST(Handshakes, AThousandSlowOnesDoNotHoldUpAClient) {
   Pair pair({.first_message_timeout = std::chrono::seconds(30)});
   std::vector<RawSocket> slow;
   for (int i = 0; i < 1000; ++i) slow.emplace_back(pair.port);
-  constexpr std::string_view begins[] = {"RRAC", "GET ", "\x16\x03\x01\x02"};
+  // Messages, web sockets in their request and behind it, TLS.
+  const std::string request =
+      "GET / HTTP/1.1\r\nHost: here\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+      "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n";
+  for (std::size_t i = 1; i < slow.size(); i += 4) slow[i].send(request);
+  const std::string_view begins[] = {"RRAC", "\x82\xfe\x01\x01", "GET ", "\x16\x03\x01\x02"};
+  Node client;
+  const std::string place = "://127.0.0.1:" + std::to_string(pair.port) + "/?service=counter";
   for (std::size_t byte = 0; byte < 4; ++byte) {
-    for (std::size_t i = 0; i < slow.size(); ++i) slow[i].send(begins[i % 3].substr(byte, 1));
-    const auto begin = Clock::now();
-    const auto counter = pair.connect();
-    EXPECT_EQ(counter->add(1, 2), 3);
-    EXPECT_LT(Clock::now() - begin, std::chrono::seconds(1));
+    for (std::size_t i = 0; i < slow.size(); ++i) slow[i].send(begins[i % 4].substr(byte, 1));
+    for (const char* scheme : {"rr+tcp", "rr+ws"}) {
+      const auto begin = Clock::now();
+      const auto counter = client.connect<CounterStub>(scheme + place);
+      EXPECT_EQ(counter->add(1, 2), 3);
+      EXPECT_LT(Clock::now() - begin, std::chrono::seconds(1)) << scheme;
+    }
   }
 }
 

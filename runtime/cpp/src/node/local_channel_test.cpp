@@ -45,6 +45,24 @@ class LocalSocket : public ::testing::Test {
   std::string run;
 };
 
+TEST_F(LocalSocket, ItsFilesSayWhenServicesComeAndGo) {
+  Node node(options("watched.node"));
+  node.listen("rr+local://");
+  const fs::path by_name = folder() / "by-nodename/watched.node.info";
+  const auto nonce = [&] { return value_of(content(by_name), "ServiceStateNonce"); };
+  const std::string before = nonce();
+  Service service = node.register_service("counter", std::make_shared<Counter>());
+  const std::string with_service = nonce();
+  EXPECT_EQ(with_service.size(), 16U);
+  EXPECT_NE(with_service, before);
+  service->set_attributes({{"color", VarValue(std::string("red"))}});
+  const std::string with_attribute = nonce();
+  EXPECT_NE(with_attribute, with_service);
+  service->close();
+  EXPECT_NE(nonce(), with_attribute);
+  EXPECT_EQ(content(folder() / "by-nodeid" / (node.id().text() + ".info")), content(by_name));
+}
+
 TEST_F(LocalSocket, ANodeLeavesFilesThatOthersFindItBy) {
   Node node(options("local.node"));
   node.listen("rr+local://");

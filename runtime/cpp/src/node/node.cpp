@@ -21,6 +21,54 @@
 
 namespace rr {
 
+namespace {
+
+// The places where a node listens.
+class Places {
+ public:
+  void add(std::unique_ptr<channel::Listener> listener) {
+    const std::lock_guard lock(mutex_);
+    if (has_ended_) throw Error(ErrorCode::invalid_operation, "the node is shut down");
+    listeners_.push_back(std::move(listener));
+  }
+  void end() {
+    std::vector<std::unique_ptr<channel::Listener>> old;
+    const std::lock_guard lock(mutex_);
+    has_ended_ = true;
+    old.swap(listeners_);  // they end when the lock has gone
+  }
+  // As the listeners say.
+  std::vector<std::string> urls() {
+    std::vector<std::string> result;
+    const std::lock_guard lock(mutex_);
+    for (const auto& listener : listeners_) {
+      for (std::string& url : listener->urls()) result.push_back(std::move(url));
+    }
+    return result;
+  }
+  // All of them say the newest nonce, whoever comes last. Returns what went wrong.
+  std::string tell_nonce(const discovery::Announcer& announcer) {
+    std::string failure;
+    const std::lock_guard lock(mutex_);
+    const std::string nonce = announcer.nonce();
+    for (const auto& listener : listeners_) {
+      try {
+        listener->services_changed(nonce);
+      } catch (const Error& error) {
+        failure = error.message();
+      }
+    }
+    return failure;
+  }
+
+ private:
+  std::mutex mutex_;
+  bool has_ended_ = false;
+  std::vector<std::unique_ptr<channel::Listener>> listeners_;
+};
+
+}  // namespace
+
 struct Node::State {
   std::shared_ptr<endpoint::Core> core;
   std::shared_ptr<service::Directory> directory;
@@ -34,7 +82,7 @@ struct Node::State {
 
   std::mutex mutex;
   bool is_shut_down = false;
-  std::vector<std::unique_ptr<channel::Listener>> listeners;
+  const std::shared_ptr<Places> places = std::make_shared<Places>();
   std::vector<std::weak_ptr<channel::Connection>> accepted;
   std::vector<std::weak_ptr<Session>> sessions;
   std::vector<Worker> workers;
@@ -91,16 +139,6 @@ struct Node::State {
     workers.push_back({std::move(thread), std::move(is_done)});
   }
 
-  // Where this listens, as the listeners say.
-  std::vector<std::string> listening() {
-    std::vector<std::string> result;
-    const std::lock_guard lock(mutex);
-    for (const auto& listener : listeners) {
-      for (std::string& url : listener->urls()) result.push_back(std::move(url));
-    }
-    return result;
-  }
-
   [[nodiscard]] bool is_own_thread() const {
     return served_aside == this || core->reactor().is_own_thread();
   }
@@ -112,17 +150,15 @@ thread_local const Node::State* Node::State::served_aside = nullptr;
 
 // Ends what the node has to do with others. Waits for nobody.
 void Node::State::begin_end() {
-  std::vector<std::unique_ptr<channel::Listener>> old_listeners;
   std::vector<std::weak_ptr<channel::Connection>> old_accepted;
   std::vector<std::weak_ptr<Session>> old_sessions;
   {
     const std::lock_guard lock(mutex);
     if (std::exchange(is_shut_down, true)) return;
-    old_listeners.swap(listeners);
     old_accepted.swap(accepted);
     old_sessions.swap(sessions);
   }
-  old_listeners.clear();
+  places->end();
   discovery->end();
   subscriptions->end();
   for (const auto& session : old_sessions) {
@@ -149,6 +185,16 @@ void Node::State::finish_end() {
   core->stop();
 }
 
+namespace {
+
+void tell_nonce(Places& places, discovery::NodeDiscovery& discovery, const endpoint::Core& core) {
+  const std::string failure = places.tell_nonce(discovery.announcer());
+  const auto& log = core.options().log;
+  if (!failure.empty() && log) log(LogLevel::warning, failure);
+}
+
+}  // namespace
+
 Node::Node(NodeOptions options) : state_(std::make_unique<State>()) {
   state_->core = std::make_shared<endpoint::Core>(std::move(options));
   state_->directory = std::make_shared<service::Directory>(state_->core);
@@ -157,16 +203,18 @@ Node::Node(NodeOptions options) : state_(std::make_unique<State>()) {
       [state = state_.get()](std::function<void()> work) { state->run_aside(std::move(work)); },
       [state = state_.get()](const std::shared_ptr<Session>& session) { state->keep(session); }};
   state_->discovery = std::make_shared<discovery::NodeDiscovery>(
-      host, [state = state_.get()] { return state->listening(); });
+      host, [state = state_.get()] { return state->places->urls(); });
   const std::weak_ptr<discovery::NodeDiscovery> known = state_->discovery;
   state_->directory->set_discovery({[known] {
                                       const auto discovery = known.lock();
                                       return discovery ? discovery->detected_nodes()
                                                        : std::vector<DetectedNode>();
                                     },
-                                    [known] {
-                                      if (const auto discovery = known.lock())
-                                        discovery->announcer().services_changed();
+                                    [known, places = state_->places, core = state_->core] {
+                                      const auto discovery = known.lock();
+                                      if (!discovery) return;
+                                      discovery->announcer().services_changed();
+                                      tell_nonce(*places, *discovery, *core);
                                     }});
   state_->directory->start();
   state_->subscriptions = std::make_shared<subscription::Owner>(host);
@@ -190,11 +238,8 @@ std::uint16_t Node::listen(std::string_view url) {
   state_->core->start();
   auto listener = state_->core->channel(parsed.scheme).listen(parsed, state_->accept_handler());
   const std::uint16_t port = Url::parse(listener->urls().front()).port;
-  {
-    const std::lock_guard lock(state_->mutex);
-    if (state_->is_shut_down) throw Error(ErrorCode::invalid_operation, "the node is shut down");
-    state_->listeners.push_back(std::move(listener));
-  }
+  state_->places->add(std::move(listener));
+  tell_nonce(*state_->places, *state_->discovery, *state_->core);
   state_->discovery->announcer().announce_soon();
   return port;
 }
@@ -216,7 +261,7 @@ bool Node::has_channel(std::string_view scheme) const {
 
 std::vector<std::string> Node::urls(std::string_view service) const {
   std::vector<std::string> result;
-  for (const std::string& url : state_->listening()) {
+  for (const std::string& url : state_->places->urls()) {
     result.push_back(url + "/?nodeid=" + id().text() + "&service=" + std::string(service));
   }
   return result;
@@ -225,7 +270,7 @@ std::vector<std::string> Node::urls(std::string_view service) const {
 std::vector<std::string> Node::candidate_urls(std::string_view service) const {
   std::vector<std::string> result;
   const auto addresses = discovery::local_addresses();
-  for (const std::string& base : state_->listening()) {
+  for (const std::string& base : state_->places->urls()) {
     for (const std::string& url : discovery::reachable_urls(base, addresses)) {
       result.push_back(service_index::service_url(url, id(), service));
     }

@@ -163,6 +163,34 @@ TEST(Pipes, TheReleaseOfAnObjectEndsItsEndpoints) {
   EXPECT_EQ(child->numbers().connect().index(), 1);
 }
 
+// The answer to connecting is read by who waits for it; the notice, which was sent before, waits
+// for a function of the program.
+TEST(Pipes, AnEndpointIsNotEndedByANoticeThatWasSentBefore) {
+  Gate gate;
+  PipeBoards boards;
+  boards.board->child = std::make_shared<PipeBoard>();
+  auto board = boards.connect();
+  auto child = board->get_child();
+  auto held = board->numbers().connect();
+  const auto holding = held.on_packet([&](double) { gate.pass(); });
+  boards.board->numbers().send(1);
+  ASSERT_TRUE(gate.has_entered());
+  boards.service->release_path("board.child");
+  auto fresh = child->numbers().connect();
+  ASSERT_EQ(boards.board->child->numbers().endpoint_count(), 1U);
+  gate.open();
+  std::atomic<bool> is_behind{false};
+  const auto behind = held.on_packet([&](double number) { is_behind = number == 2; });
+  boards.board->numbers().send(2);
+  ASSERT_TRUE(eventually([&] { return is_behind.load(); }));
+  EXPECT_TRUE(fresh.is_open());
+  boards.board->child->numbers().send(7.5);
+  EXPECT_EQ(fresh.receive_for(20s), 7.5);
+  // A notice that comes later ends it as ever.
+  boards.service->release_path("board.child");
+  EXPECT_TRUE(eventually([&] { return !fresh.is_open(); }));
+}
+
 TEST(Pipes, EndpointsComeAndGoWhileOthersSend) {
   std::atomic<bool> is_over{false};
   PipeBoards boards;

@@ -150,6 +150,50 @@ TEST(WireSubscriptions, SayWhatIsWrong) {
   EXPECT_EQ(reading.last_error(), std::nullopt);
 }
 
+// What a Wired is to a service that is newer, or older, than its clients.
+constexpr std::string_view other_text =
+    "service test.wired\nstdver 0.10\nobject Wired\n  wire string level\nend\n";
+extern const ObjectType rr_OtherWired;
+constexpr Member other_members[] = {wire<std::string>("level")};
+constexpr const ObjectType* other_objects[] = {&rr_OtherWired};
+constinit const Definition other_definition{"test.wired", other_text, {0, 10, 0, 0}, {},
+                                            {},           {},         other_objects};
+constinit const ObjectType rr_OtherWired{
+    "test.wired.Wired", other_definition, {}, other_members, nullptr};
+
+class OtherWired final : public Skeleton {
+ public:
+  [[nodiscard]] const ObjectType& rr_object_type() const override { return rr_OtherWired; }
+  void rr_dispatch(std::size_t, Request&) override {}
+  std::shared_ptr<Skeleton> rr_child(std::size_t, const ObjectIndex&) override { return nullptr; }
+  [[nodiscard]] WireServer<std::string> level() const { return {*this, other_members[0]}; }
+};
+
+TEST(WireSubscriptions, ReportAServiceWhoseValuesHaveAnotherType) {
+  Node node;
+  Node offering;
+  const auto other = std::make_shared<OtherWired>();
+  offering.register_service("one", other);
+  const std::uint16_t port = offering.listen_tcp(0, "127.0.0.1");
+  auto subscription =
+      node.subscribe("rr+tcp://127.0.0.1:" + std::to_string(port) + "/?service=one");
+  subscription.use_types<WiredStub>();
+  auto level = subscription.subscribe_wire<double>("level");
+  std::atomic<int> told{0};
+  const auto failures = level.on_failed(
+      [&](const SubscriptionClientId& client, const Error&) { told += client.service == "one"; });
+  EXPECT_TRUE(TwoWired::is_at(level, 1));
+  EXPECT_EQ(level.last_error(), std::nullopt);
+  other->level().set_in("high");
+  EXPECT_TRUE(eventually([&] { return level.last_error().has_value(); }));
+  EXPECT_EQ(level.last_error()->code(), ErrorCode::data_type_mismatch);
+  EXPECT_THAT(level.last_error()->message(), HasSubstr("`one.level` has values of another type"));
+  EXPECT_FALSE(level.try_in());
+  EXPECT_TRUE(eventually([&] { return told == 1; }));
+  other->level().set_in("higher");  // the same again is not told again
+  EXPECT_TRUE(TwoWired::is_at(level, 1));
+}
+
 TEST(WireSubscriptions, AreConnectedOnceTheProgramKnowsTheType) {
   Server server("one", std::make_shared<Wired>());
   Node node;

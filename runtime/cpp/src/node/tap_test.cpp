@@ -83,6 +83,14 @@ TEST_F(Tapping, BothSidesKeepTheSameMessagesOfAllKindsOfMembers) {
   }
 }
 
+// A client waits half a second for the answer to its last request, and no longer: on a busy machine
+// the service may give one that nobody hears.
+bool is_last_answer(const std::vector<std::byte>& bytes) {
+  MessageTree message;
+  return read_tree(bytes, message) && !message.entries.empty() &&
+         message.entries[0].type == EntryType::disconnect_client_ret;
+}
+
 TEST_F(Tapping, OneRecorderServesManyConnectionsAndNodesAtOnce) {
   const auto tap = std::make_shared<Recorder>(folder_ / "both");
   constexpr int clients = 8;
@@ -107,7 +115,9 @@ TEST_F(Tapping, OneRecorderServesManyConnectionsAndNodesAtOnce) {
   std::multiset<std::vector<std::byte>> of_server;
   for (const auto& [key, messages] : recorded.messages) {
     const bool is_client = recorded.opened.at(key.first).side == TapSide::client;
-    (is_client ? of_clients : of_server).insert(messages.begin(), messages.end());
+    for (const std::vector<std::byte>& message : messages) {
+      if (!is_last_answer(message)) (is_client ? of_clients : of_server).insert(message);
+    }
   }
   EXPECT_GE(of_clients.size(), std::size_t{2} * clients * calls);
   EXPECT_EQ(of_clients, of_server);

@@ -159,7 +159,7 @@ TEST_F(TlsRefuses, AnotherCertificateThanThePinnedOne) {
   EXPECT_THAT(refusal(client, url(port)), HasSubstr("is not the one that is pinned"));
 }
 
-TEST_F(TlsRefuses, BytesInClearBehindTheRequestForTls) {
+TEST_F(TlsRefuses, ARecordOfTlsThatIsNone) {
   std::uint16_t port = 0;
   const auto server = serve(server_options(*authority), port);
   const RawSocket peer(port);

@@ -7,12 +7,15 @@
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
+
+#include "rr/error.hpp"
 
 namespace rr::replay {
 namespace {
@@ -32,6 +35,17 @@ std::uint32_t announced_size(const Bytes& bytes) {
 }
 
 constexpr std::size_t smallest_message = 16;
+
+sockaddr_un local_address(const std::filesystem::path& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string name = path.string();
+  if (name.size() >= sizeof address.sun_path) {
+    throw std::runtime_error("no local socket can have the path " + name);
+  }
+  std::memcpy(address.sun_path, name.data(), name.size());
+  return address;
+}
 
 }  // namespace
 
@@ -73,7 +87,51 @@ Stream Stream::connect(const std::string& host, int port) {
   throw std::runtime_error("nobody listens at " + host + ":" + std::to_string(port));
 }
 
+Stream Stream::connect(const std::filesystem::path& local) {
+  const sockaddr_un address = local_address(local);
+  Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  if (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+    throw std::runtime_error("nobody listens at " + local.string());
+  }
+  return Stream(std::move(socket));
+}
+
+void Stream::put(std::unique_ptr<channel::Layer> layer, Milliseconds limit) {
+  const auto end = Clock::now() + limit;
+  layers_.push_back(std::move(layer));
+  const std::size_t place = layers_.size() - 1;
+  Bytes first;
+  layers_[place]->begin(first);
+  send_through(place, std::move(first));
+  take(std::exchange(received_, {}), place);
+  while (!layers_[place]->is_open()) {
+    if (!failure_.empty()) throw std::runtime_error(failure_);
+    const auto left = std::chrono::ceil<Milliseconds>(end - Clock::now());
+    if (!is_open() || has_ended_) throw std::runtime_error("the other side ended the handshake");
+    if (!wait_readable(socket_.get(), left)) throw std::runtime_error("no end of the handshake");
+    read();
+  }
+}
+
 void Stream::send(std::span<const std::byte> bytes) {
+  if (layers_.empty()) {
+    write(bytes);
+  } else {
+    send_through(layers_.size(), {bytes.begin(), bytes.end()});
+  }
+}
+
+void Stream::send_through(std::size_t count, Bytes bytes) {
+  if (bytes.empty()) return;
+  while (count-- != 0) {
+    Bytes wire;
+    layers_[count]->send(bytes, wire);
+    bytes = std::move(wire);
+  }
+  write(bytes);
+}
+
+void Stream::write(std::span<const std::byte> bytes) {
   while (is_open() && !bytes.empty()) {
     const ssize_t sent = ::send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
     if (sent < 0 && errno == EINTR) continue;
@@ -99,17 +157,49 @@ Arrival Stream::receive(Bytes& message, Milliseconds limit) {
   while (!take_message(message)) {
     if (!is_open()) return Arrival::closed;
     const auto left = std::chrono::ceil<Milliseconds>(end - Clock::now());
-    if (!wait_readable(socket_.get(), left)) return Arrival::nothing;
-    std::byte buffer[65536];
+    if (!has_ended_ && !wait_readable(socket_.get(), left)) return Arrival::nothing;
+    if (has_ended_ || !read()) {
+      close();
+      return Arrival::closed;
+    }
+  }
+  return Arrival::message;
+}
+
+bool Stream::read() {
+  std::byte buffer[65536];
+  while (true) {
     const ssize_t count = ::recv(socket_.get(), buffer, sizeof buffer, 0);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) {
       close();
-      return Arrival::closed;
+      return false;
     }
-    received_.insert(received_.end(), buffer, buffer + count);
+    if (layers_.empty()) {
+      received_.insert(received_.end(), buffer, buffer + count);
+    } else {
+      take({buffer, buffer + count}, 0);
+    }
+    return true;
   }
-  return Arrival::message;
+}
+
+// A layer that fails has said why to the other side; what came before is kept.
+void Stream::take(Bytes bytes, std::size_t first_layer) {
+  for (std::size_t i = first_layer; i < layers_.size() && !bytes.empty(); ++i) {
+    Bytes plain;
+    Bytes reply;
+    try {
+      layers_[i]->receive(bytes, plain, reply);
+    } catch (const Error& error) {
+      failure_ = error.message();
+      has_ended_ = true;
+    }
+    send_through(i, std::move(reply));
+    has_ended_ = has_ended_ || layers_[i]->has_ended();
+    bytes = std::move(plain);
+  }
+  received_.insert(received_.end(), bytes.begin(), bytes.end());
 }
 
 Listener::Listener(int port, bool any_interface) {
@@ -128,6 +218,15 @@ Listener::Listener(int port, bool any_interface) {
                              std::strerror(errno));
   }
   port_ = ntohs(address.sin_port);
+}
+
+Listener::Listener(const std::filesystem::path& local) {
+  const sockaddr_un address = local_address(local);
+  socket_ = Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  if (::bind(socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
+      ::listen(socket_.get(), 16) != 0) {
+    throw std::runtime_error("cannot listen at " + local.string() + ": " + std::strerror(errno));
+  }
 }
 
 std::optional<Stream> Listener::accept(Milliseconds limit) {

@@ -4,13 +4,17 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-/// Plain TCP that carries messages; nothing here knows what they say.
+#include "runtime/cpp/src/channel/layer.hpp"
+
+/// Sockets that carry messages, and what may lie around these; nothing here knows what they say.
 namespace rr::replay {
 
 using Bytes = std::vector<std::byte>;
@@ -46,6 +50,12 @@ class Stream {
 
   /// Throws std::runtime_error when nobody answers there.
   static Stream connect(const std::string& host, int port);
+  /// The same for a local socket.
+  static Stream connect(const std::filesystem::path& local);
+
+  /// From now on `layer` lies around what is sent and received, inside of those before. Begins, and
+  /// waits until both sides have agreed; throws std::runtime_error when they do not.
+  void put(std::unique_ptr<channel::Layer> layer, Milliseconds limit);
 
   /// Does nothing on a closed connection: what the peer did is found by receive().
   void send(std::span<const std::byte> bytes);
@@ -57,8 +67,17 @@ class Stream {
 
  private:
   bool take_message(Bytes& message);
+  // Through the layers, the first `count` of them.
+  void send_through(std::size_t count, Bytes bytes);
+  void write(std::span<const std::byte> bytes);
+  // What the system has, or what is there already, through the layers from this one on.
+  bool read();
+  void take(Bytes bytes, std::size_t first_layer);
 
   Descriptor socket_;
+  std::vector<std::unique_ptr<channel::Layer>> layers_;
+  std::string failure_;     // of a layer
+  bool has_ended_ = false;  // as a layer says
   Bytes received_;
 };
 
@@ -66,6 +85,8 @@ class Stream {
 class Listener {
  public:
   explicit Listener(int port, bool any_interface = false);
+  /// At a local socket, which is made there.
+  explicit Listener(const std::filesystem::path& local);
   [[nodiscard]] int port() const { return port_; }
   [[nodiscard]] int descriptor() const { return socket_.get(); }
   std::optional<Stream> accept(Milliseconds limit);

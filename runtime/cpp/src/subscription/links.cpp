@@ -266,6 +266,13 @@ void Links::failed(const LinkPointer& link, const Error& why) {
   changed();
 }
 
+void Links::complain(const LinkPointer& link, const Error& why) {
+  const std::lock_guard lock(mutex_);
+  if (link->phase != Link::Phase::open || link->error) return;  // told once
+  link->error = why;
+  on_failed_.tell(*teller_, link->client->id, why);
+}
+
 void Links::closed(const LinkPointer& link) {
   {
     const std::lock_guard lock(mutex_);

@@ -97,6 +97,8 @@ class Links : public std::enable_shared_from_this<Links> {
 
   void opened(const LinkPointer& link);
   void failed(const LinkPointer& link, const Error& why);
+  /// What has come cannot be used; the member stays connected.
+  void complain(const LinkPointer& link, const Error& why);
   /// The other side has closed it.
   void closed(const LinkPointer& link);
   /// The member of this name and kind, with values of a type. Throws rr::Error.

@@ -6,6 +6,7 @@
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
+#include "runtime/cpp/src/endpoint/wire_end.hpp"
 
 namespace rr::subscription {
 namespace {
@@ -24,6 +25,10 @@ bool is_of_connection(const Error& error) {
 }
 
 }  // namespace
+
+void WireLinks::End::on_refused(std::function<void(const Error&)> function) {
+  state_->on_refused(std::move(function));
+}
 
 // Connecting
 
@@ -47,6 +52,11 @@ void WireLinks::use(Link& link) {
     const auto self = weak_this.lock();
     const auto closed = weak_link.lock();
     if (self && closed) self->closed(closed);
+  });
+  end.on_refused([weak_this, weak_link](const Error& why) {
+    const auto self = weak_this.lock();
+    const auto from = weak_link.lock();
+    if (self && from) self->complain(from, why);
   });
   end.on_received([weak_this, weak_link](const void*, const TimeSpec&) {
        const auto self = weak_this.lock();
@@ -73,6 +83,7 @@ void WireLinks::take(WireLink& link) {
     const std::lock_guard lock(mutex_);
     // A later call may have come first.
     if (link.phase != Link::Phase::open || link.newest.value() == value) return;
+    link.error.reset();
     before = link.newest.put(value, time);
     newest_before = newest_.put(value, time);
     newest_client_ = link.client->id;

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -47,6 +48,7 @@ class WireLinks final : public Links {
     using WireEnd::received;
     using WireEnd::send;
     using WireEnd::WireEnd;
+    void on_refused(std::function<void(const Error&)> function);
   };
   struct WireLink final : Link {
     using Link::Link;
