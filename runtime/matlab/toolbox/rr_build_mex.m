@@ -26,6 +26,13 @@ if exist('OCTAVE_VERSION', 'builtin')
     error('RobotRaconteur:OperationFailed', 'mkoctfile has failed: %s', output);
   end
 else
+  % The library is built for Octave: MATLAB's own headers mean other types.
+  root = fullfile(prefix, 'share', 'robdef', 'matlab', 'source');
+  found = dir(fullfile(root, 'runtime', 'matlab', 'src', '*.cpp'));
+  found = found(~strcmp({found.name}, 'rrmex.cpp'));
+  files = [files, fullfile(root, 'runtime', 'matlab', 'src', {found.name})];
+  includes{end + 1} = ['-I', root];
+  libraries{2} = '-lrobdef_dynamic';
   mex('CXXFLAGS=$CXXFLAGS -std=c++20 -fvisibility=hidden', includes{:}, varargin{:}, ...
       '-outdir', folder, '-output', 'rrmex', files{:}, libraries{:});
 end
