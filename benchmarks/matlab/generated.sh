@@ -20,7 +20,7 @@ for _ in $(seq 100); do
 done
 url="rr+tcp://127.0.0.1:$(sed -n 's/^ready: //p' "$work/service")/?service=bench"
 
-# measure WHAT CONSTRUCTOR FOLDER...: the last folder comes first in the path.
+# measure WHAT CONSTRUCTOR FOLDER...: the first folder comes first in the path.
 measure() {
   local what=$1 constructor=$2 paths=()
   shift 2
@@ -30,5 +30,5 @@ measure() {
 
 printf '%-26s %9s %9s %9s %9s %9s\n' 'microseconds, median' get set add struct '10^5 dbl'
 measure 'dynamic object' RobotRaconteur.ConnectService "$toolbox"
-measure 'class, by name' experimental.bench.Bench "$classes" "$toolbox"
-measure 'class, stubs compiled in' experimental.bench.Bench "$toolbox" "$classes"
+measure 'class, by name' experimental.bench.Bench "$toolbox" "$classes"
+measure 'class, stubs compiled in' experimental.bench.Bench "$classes" "$toolbox"
