@@ -33,7 +33,8 @@ class Connection;
 /// goes through the queue.
 class Runtime {
  public:
-  Runtime();
+  /// `generation`: see Handles.
+  explicit Runtime(std::uint32_t generation);
   ~Runtime();
   Runtime(const Runtime&) = delete;
   Runtime& operator=(const Runtime&) = delete;
