@@ -14,8 +14,7 @@ FileSet CppBackend::generate(const model::Model& model, const GenerateOptions& o
                              Report& report) const {
   const ModelView view = make_view(model, report);
   if (report.has_errors()) return {};
-  return print_view<ModelView, DefinitionView>(view, embedded_templates(),
-                                                           options.template_folder);
+  return print_view<ModelView, DefinitionView>(view, embedded_templates(), options.template_folder);
 }
 
 std::string CppBackend::view(const model::Model& model, Report& report) const {

@@ -10,9 +10,10 @@ namespace rr::matlab {
 
 using Clock = std::chrono::steady_clock;
 
-Runtime::Runtime()
+Runtime::Runtime(std::uint32_t generation)
     : queue_(std::make_shared<Queue>()),
       log_(std::make_shared<Log>()),
+      handles_(generation),
       interrupts_(std::make_unique<Interrupts>([this] { interrupted(); })) {
   NodeOptions options;
   options.log = [log = log_](LogLevel level, std::string_view text) { log->write(level, text); };

@@ -43,7 +43,8 @@ struct RecordTypes {
 /// goes through the queue.
 class Runtime {
  public:
-  Runtime();
+  /// `generation`: see Handles.
+  explicit Runtime(std::uint32_t generation);
   ~Runtime();
   Runtime(const Runtime&) = delete;
   Runtime& operator=(const Runtime&) = delete;

@@ -20,9 +20,10 @@ export RR_TEST_PORT
 export RR_TEST_SERVICE=$1
 export RR_TEST_FOLDER=$work
 folder=$(dirname "$4")
-paths=(--path "$3" --path "$folder")
+paths=()
 for before in "${@:5}"; do
   paths+=(--path "$before")
   export RR_TEST_CLASSES=1
 done
+paths+=(--path "$3" --path "$folder")
 "$2" --norc "${paths[@]}" --eval "rr_run_suite('$4', '$work/log')"

@@ -48,5 +48,5 @@ sources = {'client/client.cpp'
            'client/mex/experimental/matlab_words.mex.cpp'
            'client/cpp/experimental/matlab_words.cpp'
            };
-RobotRaconteurStub.rr_build(fileparts(mfilename('fullpath')), sources, varargin{:});
+rr_build_mex(fileparts(mfilename('fullpath')), sources, varargin{:});
 end

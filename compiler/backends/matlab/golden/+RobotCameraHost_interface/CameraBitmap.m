@@ -1,9 +1,10 @@
 function value = CameraBitmap(varargin)
 %CAMERABITMAP A value for the struct RobotCameraHost_interface.CameraBitmap
 %
-%   value = RobotCameraHost_interface.CameraBitmap() has the first value of each field; with
-%   RobotCameraHost_interface.CameraBitmap(NAME, VALUE, ...) some are given. RobotCameraHost_interface.CameraBitmap(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = RobotCameraHost_interface.CameraBitmap() has nothing in its fields yet; with
+%   RobotCameraHost_interface.CameraBitmap(NAME, VALUE, ...) some fields are given.
+%   RobotCameraHost_interface.CameraBitmap(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field int32 width
 %   field int32 height

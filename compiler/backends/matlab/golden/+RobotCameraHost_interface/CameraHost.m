@@ -39,10 +39,18 @@ classdef CameraHost < RobotRaconteurStub
             rr_async(obj, 'async_get_robcamera', {index}, handler, varargin);
         end
         function value = get.RobotCameraCount(obj)
-            value = rrmex('member', obj.rr_typed, 2);
+            value = rrmex('member', obj.rr_h, 2);
         end
         function set.RobotCameraCount(obj, value)
-            rrmex('member', obj.rr_typed, 2, value);
+            rrmex('member', obj.rr_h, 2, value);
+        end
+        function value = get_RobotCameraCount(obj)
+            %get_RobotCameraCount The same as object.RobotCameraCount.
+            value = obj.RobotCameraCount;
+        end
+        function set_RobotCameraCount(obj, value)
+            %set_RobotCameraCount The same as object.RobotCameraCount = value.
+            obj.RobotCameraCount = value;
         end
         function async_get_RobotCameraCount(obj, handler, varargin)
             %async_get_RobotCameraCount Reads RobotCameraCount; calls handler(param, value, err) in a later Poll.
@@ -53,10 +61,18 @@ classdef CameraHost < RobotRaconteurStub
             rr_async(obj, 'async_set_RobotCameraCount', {value}, handler, varargin);
         end
         function value = get.RobotDeviceCount(obj)
-            value = rrmex('member', obj.rr_typed, 3);
+            value = rrmex('member', obj.rr_h, 3);
         end
         function set.RobotDeviceCount(obj, value)
-            rrmex('member', obj.rr_typed, 3, value);
+            rrmex('member', obj.rr_h, 3, value);
+        end
+        function value = get_RobotDeviceCount(obj)
+            %get_RobotDeviceCount The same as object.RobotDeviceCount.
+            value = obj.RobotDeviceCount;
+        end
+        function set_RobotDeviceCount(obj, value)
+            %set_RobotDeviceCount The same as object.RobotDeviceCount = value.
+            obj.RobotDeviceCount = value;
         end
         function async_get_RobotDeviceCount(obj, handler, varargin)
             %async_get_RobotDeviceCount Reads RobotDeviceCount; calls handler(param, value, err) in a later Poll.

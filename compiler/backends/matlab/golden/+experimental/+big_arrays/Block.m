@@ -1,9 +1,10 @@
 function value = Block(varargin)
 %BLOCK A value for the struct experimental.big_arrays.Block
 %
-%   value = experimental.big_arrays.Block() has the first value of each field; with
-%   experimental.big_arrays.Block(NAME, VALUE, ...) some are given. experimental.big_arrays.Block(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = experimental.big_arrays.Block() has nothing in its fields yet; with
+%   experimental.big_arrays.Block(NAME, VALUE, ...) some fields are given.
+%   experimental.big_arrays.Block(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field double[100000] exact
 %   field double[100000-] bounded

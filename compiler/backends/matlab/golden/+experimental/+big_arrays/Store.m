@@ -25,10 +25,18 @@ classdef Store < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.exact(obj)
-            value = rrmex('member', obj.rr_typed, 0);
+            value = rrmex('member', obj.rr_h, 0);
         end
         function set.exact(obj, value)
-            rrmex('member', obj.rr_typed, 0, value);
+            rrmex('member', obj.rr_h, 0, value);
+        end
+        function value = get_exact(obj)
+            %get_exact The same as object.exact.
+            value = obj.exact;
+        end
+        function set_exact(obj, value)
+            %set_exact The same as object.exact = value.
+            obj.exact = value;
         end
         function async_get_exact(obj, handler, varargin)
             %async_get_exact Reads exact; calls handler(param, value, err) in a later Poll.
@@ -39,10 +47,18 @@ classdef Store < RobotRaconteurStub
             rr_async(obj, 'async_set_exact', {value}, handler, varargin);
         end
         function value = get.at_the_edge(obj)
-            value = rrmex('member', obj.rr_typed, 1);
+            value = rrmex('member', obj.rr_h, 1);
         end
         function set.at_the_edge(obj, value)
-            rrmex('member', obj.rr_typed, 1, value);
+            rrmex('member', obj.rr_h, 1, value);
+        end
+        function value = get_at_the_edge(obj)
+            %get_at_the_edge The same as object.at_the_edge.
+            value = obj.at_the_edge;
+        end
+        function set_at_the_edge(obj, value)
+            %set_at_the_edge The same as object.at_the_edge = value.
+            obj.at_the_edge = value;
         end
         function async_get_at_the_edge(obj, handler, varargin)
             %async_get_at_the_edge Reads at_the_edge; calls handler(param, value, err) in a later Poll.
@@ -53,10 +69,18 @@ classdef Store < RobotRaconteurStub
             rr_async(obj, 'async_set_at_the_edge', {value}, handler, varargin);
         end
         function value = get.beyond_it(obj)
-            value = rrmex('member', obj.rr_typed, 2);
+            value = rrmex('member', obj.rr_h, 2);
         end
         function set.beyond_it(obj, value)
-            rrmex('member', obj.rr_typed, 2, value);
+            rrmex('member', obj.rr_h, 2, value);
+        end
+        function value = get_beyond_it(obj)
+            %get_beyond_it The same as object.beyond_it.
+            value = obj.beyond_it;
+        end
+        function set_beyond_it(obj, value)
+            %set_beyond_it The same as object.beyond_it = value.
+            obj.beyond_it = value;
         end
         function async_get_beyond_it(obj, handler, varargin)
             %async_get_beyond_it Reads beyond_it; calls handler(param, value, err) in a later Poll.
@@ -68,7 +92,7 @@ classdef Store < RobotRaconteurStub
         end
         function result = depth(obj, raw)
             %DEPTH function single[640,480] depth(uint16[70000-] raw)
-            result = rrmex('member', obj.rr_typed, 3, raw);
+            result = rrmex('member', obj.rr_h, 3, raw);
         end
         function async_depth(obj, raw, handler, varargin)
             %async_depth As depth, but calls handler(param, value, err) in a later Poll.

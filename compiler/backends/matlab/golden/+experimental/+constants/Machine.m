@@ -22,10 +22,18 @@ classdef Machine < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.setting(obj)
-            value = rrmex('member', obj.rr_typed, 0);
+            value = rrmex('member', obj.rr_h, 0);
         end
         function set.setting(obj, value)
-            rrmex('member', obj.rr_typed, 0, value);
+            rrmex('member', obj.rr_h, 0, value);
+        end
+        function value = get_setting(obj)
+            %get_setting The same as object.setting.
+            value = obj.setting;
+        end
+        function set_setting(obj, value)
+            %set_setting The same as object.setting = value.
+            obj.setting = value;
         end
         function async_get_setting(obj, handler, varargin)
             %async_get_setting Reads setting; calls handler(param, value, err) in a later Poll.

@@ -1,9 +1,10 @@
 function value = Setting(varargin)
 %SETTING A value for the struct experimental.constants.Setting
 %
-%   value = experimental.constants.Setting() has the first value of each field; with
-%   experimental.constants.Setting(NAME, VALUE, ...) some are given. experimental.constants.Setting(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = experimental.constants.Setting() has nothing in its fields yet; with
+%   experimental.constants.Setting(NAME, VALUE, ...) some fields are given.
+%   experimental.constants.Setting(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field double value
 

@@ -1,9 +1,10 @@
 function value = Place(varargin)
 %PLACE Where a shutter is.
 %
-%   value = experimental.docs.Place() has the first value of each field; with
-%   experimental.docs.Place(NAME, VALUE, ...) some are given. experimental.docs.Place(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = experimental.docs.Place() has nothing in its fields yet; with
+%   experimental.docs.Place(NAME, VALUE, ...) some fields are given.
+%   experimental.docs.Place(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field double position
 %       0 is open, 1 is closed.

@@ -25,10 +25,18 @@ classdef Machine < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.state(obj)
-            value = rrmex('member', obj.rr_typed, 0);
+            value = rrmex('member', obj.rr_h, 0);
         end
         function set.state(obj, value)
-            rrmex('member', obj.rr_typed, 0, value);
+            rrmex('member', obj.rr_h, 0, value);
+        end
+        function value = get_state(obj)
+            %get_state The same as object.state.
+            value = obj.state;
+        end
+        function set_state(obj, value)
+            %set_state The same as object.state = value.
+            obj.state = value;
         end
         function async_get_state(obj, handler, varargin)
             %async_get_state Reads state; calls handler(param, value, err) in a later Poll.
@@ -39,10 +47,18 @@ classdef Machine < RobotRaconteurStub
             rr_async(obj, 'async_set_state', {value}, handler, varargin);
         end
         function value = get.history(obj)
-            value = rrmex('member', obj.rr_typed, 1);
+            value = rrmex('member', obj.rr_h, 1);
         end
         function set.history(obj, value)
-            rrmex('member', obj.rr_typed, 1, value);
+            rrmex('member', obj.rr_h, 1, value);
+        end
+        function value = get_history(obj)
+            %get_history The same as object.history.
+            value = obj.history;
+        end
+        function set_history(obj, value)
+            %set_history The same as object.history = value.
+            obj.history = value;
         end
         function async_get_history(obj, handler, varargin)
             %async_get_history Reads history; calls handler(param, value, err) in a later Poll.
@@ -53,10 +69,18 @@ classdef Machine < RobotRaconteurStub
             rr_async(obj, 'async_set_history', {value}, handler, varargin);
         end
         function value = get.parts(obj)
-            value = rrmex('member', obj.rr_typed, 2);
+            value = rrmex('member', obj.rr_h, 2);
         end
         function set.parts(obj, value)
-            rrmex('member', obj.rr_typed, 2, value);
+            rrmex('member', obj.rr_h, 2, value);
+        end
+        function value = get_parts(obj)
+            %get_parts The same as object.parts.
+            value = obj.parts;
+        end
+        function set_parts(obj, value)
+            %set_parts The same as object.parts = value.
+            obj.parts = value;
         end
         function async_get_parts(obj, handler, varargin)
             %async_get_parts Reads parts; calls handler(param, value, err) in a later Poll.
@@ -68,7 +92,7 @@ classdef Machine < RobotRaconteurStub
         end
         function result = limit(obj, state)
             %LIMIT function Limits limit(State state)
-            result = rrmex('member', obj.rr_typed, 3, state);
+            result = rrmex('member', obj.rr_h, 3, state);
         end
         function async_limit(obj, state, handler, varargin)
             %async_limit As limit, but calls handler(param, value, err) in a later Poll.

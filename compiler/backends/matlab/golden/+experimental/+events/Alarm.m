@@ -1,9 +1,10 @@
 function value = Alarm(varargin)
 %ALARM A value for the struct experimental.events.Alarm
 %
-%   value = experimental.events.Alarm() has the first value of each field; with
-%   experimental.events.Alarm(NAME, VALUE, ...) some are given. experimental.events.Alarm(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = experimental.events.Alarm() has nothing in its fields yet; with
+%   experimental.events.Alarm(NAME, VALUE, ...) some fields are given.
+%   experimental.events.Alarm(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field string text
 

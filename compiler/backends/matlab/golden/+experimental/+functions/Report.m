@@ -1,9 +1,10 @@
 function value = Report(varargin)
 %REPORT A value for the struct experimental.functions.Report
 %
-%   value = experimental.functions.Report() has the first value of each field; with
-%   experimental.functions.Report(NAME, VALUE, ...) some are given. experimental.functions.Report(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = experimental.functions.Report() has nothing in its fields yet; with
+%   experimental.functions.Report(NAME, VALUE, ...) some fields are given.
+%   experimental.functions.Report(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field int32 count
 %   field string text

@@ -23,10 +23,14 @@ classdef Device < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.name(obj)
-            value = rrmex('member', obj.rr_typed, 0);
+            value = rrmex('member', obj.rr_h, 0);
         end
         function set.name(obj, value)
-            rrmex('member', obj.rr_typed, 0, value);
+            rrmex('member', obj.rr_h, 0, value);
+        end
+        function value = get_name(obj)
+            %get_name The same as object.name.
+            value = obj.name;
         end
         function async_get_name(obj, handler, varargin)
             %async_get_name Reads name; calls handler(param, value, err) in a later Poll.
@@ -38,7 +42,7 @@ classdef Device < RobotRaconteurStub
         end
         function reset(obj)
             %RESET function void reset()
-            rrmex('member', obj.rr_typed, 2);
+            rrmex('member', obj.rr_h, 2);
         end
         function async_reset(obj, handler, varargin)
             %async_reset As reset, but calls handler(param, value, err) in a later Poll.

@@ -33,10 +33,14 @@ classdef Drive < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.name(obj)
-            value = rrmex('member', obj.rr_typed, 0);
+            value = rrmex('member', obj.rr_h, 0);
         end
         function set.name(obj, value)
-            rrmex('member', obj.rr_typed, 0, value);
+            rrmex('member', obj.rr_h, 0, value);
+        end
+        function value = get_name(obj)
+            %get_name The same as object.name.
+            value = obj.name;
         end
         function async_get_name(obj, handler, varargin)
             %async_get_name Reads name; calls handler(param, value, err) in a later Poll.
@@ -48,17 +52,25 @@ classdef Drive < RobotRaconteurStub
         end
         function reset(obj)
             %RESET function void reset()
-            rrmex('member', obj.rr_typed, 2);
+            rrmex('member', obj.rr_h, 2);
         end
         function async_reset(obj, handler, varargin)
             %async_reset As reset, but calls handler(param, value, err) in a later Poll.
             rr_async(obj, 'async_reset', {}, handler, varargin);
         end
         function value = get.on(obj)
-            value = rrmex('member', obj.rr_typed, 3);
+            value = rrmex('member', obj.rr_h, 3);
         end
         function set.on(obj, value)
-            rrmex('member', obj.rr_typed, 3, value);
+            rrmex('member', obj.rr_h, 3, value);
+        end
+        function value = get_on(obj)
+            %get_on The same as object.on.
+            value = obj.on;
+        end
+        function set_on(obj, value)
+            %set_on The same as object.on = value.
+            obj.on = value;
         end
         function async_get_on(obj, handler, varargin)
             %async_get_on Reads on; calls handler(param, value, err) in a later Poll.
@@ -69,10 +81,18 @@ classdef Drive < RobotRaconteurStub
             rr_async(obj, 'async_set_on', {value}, handler, varargin);
         end
         function value = get.angle(obj)
-            value = rrmex('member', obj.rr_typed, 4);
+            value = rrmex('member', obj.rr_h, 4);
         end
         function set.angle(obj, value)
-            rrmex('member', obj.rr_typed, 4, value);
+            rrmex('member', obj.rr_h, 4, value);
+        end
+        function value = get_angle(obj)
+            %get_angle The same as object.angle.
+            value = obj.angle;
+        end
+        function set_angle(obj, value)
+            %set_angle The same as object.angle = value.
+            obj.angle = value;
         end
         function async_get_angle(obj, handler, varargin)
             %async_get_angle Reads angle; calls handler(param, value, err) in a later Poll.
@@ -83,10 +103,18 @@ classdef Drive < RobotRaconteurStub
             rr_async(obj, 'async_set_angle', {value}, handler, varargin);
         end
         function value = get.torque(obj)
-            value = rrmex('member', obj.rr_typed, 5);
+            value = rrmex('member', obj.rr_h, 5);
         end
         function set.torque(obj, value)
-            rrmex('member', obj.rr_typed, 5, value);
+            rrmex('member', obj.rr_h, 5, value);
+        end
+        function value = get_torque(obj)
+            %get_torque The same as object.torque.
+            value = obj.torque;
+        end
+        function set_torque(obj, value)
+            %set_torque The same as object.torque = value.
+            obj.torque = value;
         end
         function async_get_torque(obj, handler, varargin)
             %async_get_torque Reads torque; calls handler(param, value, err) in a later Poll.

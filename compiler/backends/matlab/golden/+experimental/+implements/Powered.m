@@ -25,10 +25,14 @@ classdef Powered < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.name(obj)
-            value = rrmex('member', obj.rr_typed, 0);
+            value = rrmex('member', obj.rr_h, 0);
         end
         function set.name(obj, value)
-            rrmex('member', obj.rr_typed, 0, value);
+            rrmex('member', obj.rr_h, 0, value);
+        end
+        function value = get_name(obj)
+            %get_name The same as object.name.
+            value = obj.name;
         end
         function async_get_name(obj, handler, varargin)
             %async_get_name Reads name; calls handler(param, value, err) in a later Poll.
@@ -39,10 +43,18 @@ classdef Powered < RobotRaconteurStub
             rr_async(obj, 'async_set_name', {value}, handler, varargin);
         end
         function value = get.on(obj)
-            value = rrmex('member', obj.rr_typed, 2);
+            value = rrmex('member', obj.rr_h, 2);
         end
         function set.on(obj, value)
-            rrmex('member', obj.rr_typed, 2, value);
+            rrmex('member', obj.rr_h, 2, value);
+        end
+        function value = get_on(obj)
+            %get_on The same as object.on.
+            value = obj.on;
+        end
+        function set_on(obj, value)
+            %set_on The same as object.on = value.
+            obj.on = value;
         end
         function async_get_on(obj, handler, varargin)
             %async_get_on Reads on; calls handler(param, value, err) in a later Poll.

@@ -1,9 +1,10 @@
 function value = Plan(varargin)
 %PLAN A value for the struct experimental.imports.Plan
 %
-%   value = experimental.imports.Plan() has the first value of each field; with
-%   experimental.imports.Plan(NAME, VALUE, ...) some are given. experimental.imports.Plan(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = experimental.imports.Plan() has nothing in its fields yet; with
+%   experimental.imports.Plan(NAME, VALUE, ...) some fields are given.
+%   experimental.imports.Plan(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field Pose goal
 %   field Direction approach

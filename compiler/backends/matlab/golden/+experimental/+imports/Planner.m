@@ -22,10 +22,18 @@ classdef Planner < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.plan(obj)
-            value = rrmex('member', obj.rr_typed, 0);
+            value = rrmex('member', obj.rr_h, 0);
         end
         function set.plan(obj, value)
-            rrmex('member', obj.rr_typed, 0, value);
+            rrmex('member', obj.rr_h, 0, value);
+        end
+        function value = get_plan(obj)
+            %get_plan The same as object.plan.
+            value = obj.plan;
+        end
+        function set_plan(obj, value)
+            %set_plan The same as object.plan = value.
+            obj.plan = value;
         end
         function async_get_plan(obj, handler, varargin)
             %async_get_plan Reads plan; calls handler(param, value, err) in a later Poll.
@@ -36,10 +44,18 @@ classdef Planner < RobotRaconteurStub
             rr_async(obj, 'async_set_plan', {value}, handler, varargin);
         end
         function value = get.picture(obj)
-            value = rrmex('member', obj.rr_typed, 1);
+            value = rrmex('member', obj.rr_h, 1);
         end
         function set.picture(obj, value)
-            rrmex('member', obj.rr_typed, 1, value);
+            rrmex('member', obj.rr_h, 1, value);
+        end
+        function value = get_picture(obj)
+            %get_picture The same as object.picture.
+            value = obj.picture;
+        end
+        function set_picture(obj, value)
+            %set_picture The same as object.picture = value.
+            obj.picture = value;
         end
         function async_get_picture(obj, handler, varargin)
             %async_get_picture Reads picture; calls handler(param, value, err) in a later Poll.
@@ -51,7 +67,7 @@ classdef Planner < RobotRaconteurStub
         end
         function result = solve(obj, start, approach, state)
             %SOLVE function Pose[] solve(Pose start, Direction approach, State state)
-            result = rrmex('member', obj.rr_typed, 2, start, approach, state);
+            result = rrmex('member', obj.rr_h, 2, start, approach, state);
         end
         function async_solve(obj, start, approach, state, handler, varargin)
             %async_solve As solve, but calls handler(param, value, err) in a later Poll.

@@ -1,9 +1,10 @@
 function value = Mark(varargin)
 %MARK A value for the struct experimental.line_ends.Mark
 %
-%   value = experimental.line_ends.Mark() has the first value of each field; with
-%   experimental.line_ends.Mark(NAME, VALUE, ...) some are given. experimental.line_ends.Mark(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = experimental.line_ends.Mark() has nothing in its fields yet; with
+%   experimental.line_ends.Mark(NAME, VALUE, ...) some fields are given.
+%   experimental.line_ends.Mark(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field int32 number
 %   field string text

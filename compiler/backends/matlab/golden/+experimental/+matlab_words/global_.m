@@ -1,9 +1,10 @@
 function value = global_(varargin)
 %GLOBAL_ A value for the struct experimental.matlab_words.global
 %
-%   value = experimental.matlab_words.global_() has the first value of each field; with
-%   experimental.matlab_words.global_(NAME, VALUE, ...) some are given. experimental.matlab_words.global_(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = experimental.matlab_words.global_() has nothing in its fields yet; with
+%   experimental.matlab_words.global_(NAME, VALUE, ...) some fields are given.
+%   experimental.matlab_words.global_(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field double for
 %   field string return

@@ -40,10 +40,18 @@ classdef spmd_ < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.spmd_(obj)
-            value = rrmex('member', obj.rr_typed, 0);
+            value = rrmex('member', obj.rr_h, 0);
         end
         function set.spmd_(obj, value)
-            rrmex('member', obj.rr_typed, 0, value);
+            rrmex('member', obj.rr_h, 0, value);
+        end
+        function value = get_spmd(obj)
+            %get_spmd The same as object.spmd_.
+            value = obj.spmd_;
+        end
+        function set_spmd(obj, value)
+            %set_spmd The same as object.spmd_ = value.
+            obj.spmd_ = value;
         end
         function async_get_spmd(obj, handler, varargin)
             %async_get_spmd Reads spmd; calls handler(param, value, err) in a later Poll.
@@ -54,10 +62,18 @@ classdef spmd_ < RobotRaconteurStub
             rr_async(obj, 'async_set_spmd', {value}, handler, varargin);
         end
         function value = get.if_(obj)
-            value = rrmex('member', obj.rr_typed, 1);
+            value = rrmex('member', obj.rr_h, 1);
         end
         function set.if_(obj, value)
-            rrmex('member', obj.rr_typed, 1, value);
+            rrmex('member', obj.rr_h, 1, value);
+        end
+        function value = get_if(obj)
+            %get_if The same as object.if_.
+            value = obj.if_;
+        end
+        function set_if(obj, value)
+            %set_if The same as object.if_ = value.
+            obj.if_ = value;
         end
         function async_get_if(obj, handler, varargin)
             %async_get_if Reads if; calls handler(param, value, err) in a later Poll.
@@ -68,10 +84,18 @@ classdef spmd_ < RobotRaconteurStub
             rr_async(obj, 'async_set_if', {value}, handler, varargin);
         end
         function value = get.numel_(obj)
-            value = rrmex('member', obj.rr_typed, 2);
+            value = rrmex('member', obj.rr_h, 2);
         end
         function set.numel_(obj, value)
-            rrmex('member', obj.rr_typed, 2, value);
+            rrmex('member', obj.rr_h, 2, value);
+        end
+        function value = get_numel(obj)
+            %get_numel The same as object.numel_.
+            value = obj.numel_;
+        end
+        function set_numel(obj, value)
+            %set_numel The same as object.numel_ = value.
+            obj.numel_ = value;
         end
         function async_get_numel(obj, handler, varargin)
             %async_get_numel Reads numel; calls handler(param, value, err) in a later Poll.
@@ -83,7 +107,7 @@ classdef spmd_ < RobotRaconteurStub
         end
         function result = until_(obj, obj_, while_, result_, varargin_)
             %UNTIL_ function double until(double obj, double while, string result, double varargin)
-            result = rrmex('member', obj.rr_typed, 3, obj_, while_, result_, varargin_);
+            result = rrmex('member', obj.rr_h, 3, obj_, while_, result_, varargin_);
         end
         function async_until(obj, obj_, while_, result_, varargin_, handler, varargin)
             %async_until As until_, but calls handler(param, value, err) in a later Poll.
@@ -91,7 +115,7 @@ classdef spmd_ < RobotRaconteurStub
         end
         function delete_(obj)
             %DELETE_ function void delete()
-            rrmex('member', obj.rr_typed, 4);
+            rrmex('member', obj.rr_h, 4);
         end
         function async_delete(obj, handler, varargin)
             %async_delete As delete_, but calls handler(param, value, err) in a later Poll.

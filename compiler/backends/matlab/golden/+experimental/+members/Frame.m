@@ -1,9 +1,10 @@
 function value = Frame(varargin)
 %FRAME A value for the struct experimental.members.Frame
 %
-%   value = experimental.members.Frame() has the first value of each field; with
-%   experimental.members.Frame(NAME, VALUE, ...) some are given. experimental.members.Frame(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = experimental.members.Frame() has nothing in its fields yet; with
+%   experimental.members.Frame(NAME, VALUE, ...) some fields are given.
+%   experimental.members.Frame(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field double[] values
 

@@ -39,10 +39,18 @@ classdef Memories < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.label(obj)
-            value = rrmex('member', obj.rr_typed, 0);
+            value = rrmex('member', obj.rr_h, 0);
         end
         function set.label(obj, value)
-            rrmex('member', obj.rr_typed, 0, value);
+            rrmex('member', obj.rr_h, 0, value);
+        end
+        function value = get_label(obj)
+            %get_label The same as object.label.
+            value = obj.label;
+        end
+        function set_label(obj, value)
+            %set_label The same as object.label = value.
+            obj.label = value;
         end
         function async_get_label(obj, handler, varargin)
             %async_get_label Reads label; calls handler(param, value, err) in a later Poll.

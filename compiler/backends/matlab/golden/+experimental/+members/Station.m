@@ -87,10 +87,18 @@ classdef Station < RobotRaconteurStub
             rr_async(obj, 'async_count', {limit}, handler, varargin);
         end
         function value = get.label(obj)
-            value = rrmex('member', obj.rr_typed, 5);
+            value = rrmex('member', obj.rr_h, 5);
         end
         function set.label(obj, value)
-            rrmex('member', obj.rr_typed, 5, value);
+            rrmex('member', obj.rr_h, 5, value);
+        end
+        function value = get_label(obj)
+            %get_label The same as object.label.
+            value = obj.label;
+        end
+        function set_label(obj, value)
+            %set_label The same as object.label = value.
+            obj.label = value;
         end
         function async_get_label(obj, handler, varargin)
             %async_get_label Reads label; calls handler(param, value, err) in a later Poll.

@@ -37,10 +37,18 @@ classdef Arm < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.pose(obj)
-            value = rrmex('member', obj.rr_typed, 0);
+            value = rrmex('member', obj.rr_h, 0);
         end
         function set.pose(obj, value)
-            rrmex('member', obj.rr_typed, 0, value);
+            rrmex('member', obj.rr_h, 0, value);
+        end
+        function value = get_pose(obj)
+            %get_pose The same as object.pose.
+            value = obj.pose;
+        end
+        function set_pose(obj, value)
+            %set_pose The same as object.pose = value.
+            obj.pose = value;
         end
         function async_get_pose(obj, handler, varargin)
             %async_get_pose Reads pose; calls handler(param, value, err) in a later Poll.
@@ -51,10 +59,18 @@ classdef Arm < RobotRaconteurStub
             rr_async(obj, 'async_set_pose', {value}, handler, varargin);
         end
         function value = get.path(obj)
-            value = rrmex('member', obj.rr_typed, 1);
+            value = rrmex('member', obj.rr_h, 1);
         end
         function set.path(obj, value)
-            rrmex('member', obj.rr_typed, 1, value);
+            rrmex('member', obj.rr_h, 1, value);
+        end
+        function value = get_path(obj)
+            %get_path The same as object.path.
+            value = obj.path;
+        end
+        function set_path(obj, value)
+            %set_path The same as object.path = value.
+            obj.path = value;
         end
         function async_get_path(obj, handler, varargin)
             %async_get_path Reads path; calls handler(param, value, err) in a later Poll.
@@ -65,10 +81,18 @@ classdef Arm < RobotRaconteurStub
             rr_async(obj, 'async_set_path', {value}, handler, varargin);
         end
         function value = get.corners(obj)
-            value = rrmex('member', obj.rr_typed, 2);
+            value = rrmex('member', obj.rr_h, 2);
         end
         function set.corners(obj, value)
-            rrmex('member', obj.rr_typed, 2, value);
+            rrmex('member', obj.rr_h, 2, value);
+        end
+        function value = get_corners(obj)
+            %get_corners The same as object.corners.
+            value = obj.corners;
+        end
+        function set_corners(obj, value)
+            %set_corners The same as object.corners = value.
+            obj.corners = value;
         end
         function async_get_corners(obj, handler, varargin)
             %async_get_corners Reads corners; calls handler(param, value, err) in a later Poll.
@@ -79,10 +103,18 @@ classdef Arm < RobotRaconteurStub
             rr_async(obj, 'async_set_corners', {value}, handler, varargin);
         end
         function value = get.contacts(obj)
-            value = rrmex('member', obj.rr_typed, 3);
+            value = rrmex('member', obj.rr_h, 3);
         end
         function set.contacts(obj, value)
-            rrmex('member', obj.rr_typed, 3, value);
+            rrmex('member', obj.rr_h, 3, value);
+        end
+        function value = get_contacts(obj)
+            %get_contacts The same as object.contacts.
+            value = obj.contacts;
+        end
+        function set_contacts(obj, value)
+            %set_contacts The same as object.contacts = value.
+            obj.contacts = value;
         end
         function async_get_contacts(obj, handler, varargin)
             %async_get_contacts Reads contacts; calls handler(param, value, err) in a later Poll.
@@ -93,10 +125,18 @@ classdef Arm < RobotRaconteurStub
             rr_async(obj, 'async_set_contacts', {value}, handler, varargin);
         end
         function value = get.picture(obj)
-            value = rrmex('member', obj.rr_typed, 4);
+            value = rrmex('member', obj.rr_h, 4);
         end
         function set.picture(obj, value)
-            rrmex('member', obj.rr_typed, 4, value);
+            rrmex('member', obj.rr_h, 4, value);
+        end
+        function value = get_picture(obj)
+            %get_picture The same as object.picture.
+            value = obj.picture;
+        end
+        function set_picture(obj, value)
+            %set_picture The same as object.picture = value.
+            obj.picture = value;
         end
         function async_get_picture(obj, handler, varargin)
             %async_get_picture Reads picture; calls handler(param, value, err) in a later Poll.
@@ -107,10 +147,18 @@ classdef Arm < RobotRaconteurStub
             rr_async(obj, 'async_set_picture', {value}, handler, varargin);
         end
         function value = get.thumbnail(obj)
-            value = rrmex('member', obj.rr_typed, 5);
+            value = rrmex('member', obj.rr_h, 5);
         end
         function set.thumbnail(obj, value)
-            rrmex('member', obj.rr_typed, 5, value);
+            rrmex('member', obj.rr_h, 5, value);
+        end
+        function value = get_thumbnail(obj)
+            %get_thumbnail The same as object.thumbnail.
+            value = obj.thumbnail;
+        end
+        function set_thumbnail(obj, value)
+            %set_thumbnail The same as object.thumbnail = value.
+            obj.thumbnail = value;
         end
         function async_get_thumbnail(obj, handler, varargin)
             %async_get_thumbnail Reads thumbnail; calls handler(param, value, err) in a later Poll.
@@ -121,10 +169,18 @@ classdef Arm < RobotRaconteurStub
             rr_async(obj, 'async_set_thumbnail', {value}, handler, varargin);
         end
         function value = get.places(obj)
-            value = rrmex('member', obj.rr_typed, 6);
+            value = rrmex('member', obj.rr_h, 6);
         end
         function set.places(obj, value)
-            rrmex('member', obj.rr_typed, 6, value);
+            rrmex('member', obj.rr_h, 6, value);
+        end
+        function value = get_places(obj)
+            %get_places The same as object.places.
+            value = obj.places;
+        end
+        function set_places(obj, value)
+            %set_places The same as object.places = value.
+            obj.places = value;
         end
         function async_get_places(obj, handler, varargin)
             %async_get_places Reads places; calls handler(param, value, err) in a later Poll.
@@ -136,7 +192,7 @@ classdef Arm < RobotRaconteurStub
         end
         function result = cross(obj, a, b)
             %CROSS function Vector3 cross(Vector3 a, Vector3 b)
-            result = rrmex('member', obj.rr_typed, 7, a, b);
+            result = rrmex('member', obj.rr_h, 7, a, b);
         end
         function async_cross(obj, a, b, handler, varargin)
             %async_cross As cross, but calls handler(param, value, err) in a later Poll.

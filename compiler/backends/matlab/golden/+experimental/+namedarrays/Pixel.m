@@ -1,9 +1,10 @@
 function value = Pixel(varargin)
 %PIXEL A value for the namedarray experimental.namedarrays.Pixel
 %
-%   value = experimental.namedarrays.Pixel() has the first value of each field; with
-%   experimental.namedarrays.Pixel(NAME, VALUE, ...) some are given. experimental.namedarrays.Pixel(value)
-%   takes what fits into the namedarray, and gives it as one is received.
+%   value = experimental.namedarrays.Pixel() has a zero for each number; with
+%   experimental.namedarrays.Pixel(NAME, VALUE, ...) all fields are given.
+%   experimental.namedarrays.Pixel(value) takes what fits into the namedarray, and gives it as one is
+%   received: a column of its numbers. What does not fit is an error.
 %
 %   field uint8 red
 %   field uint8 green

@@ -1,9 +1,10 @@
 function value = Pose(varargin)
 %POSE A value for the namedarray experimental.namedarrays.Pose
 %
-%   value = experimental.namedarrays.Pose() has the first value of each field; with
-%   experimental.namedarrays.Pose(NAME, VALUE, ...) some are given. experimental.namedarrays.Pose(value)
-%   takes what fits into the namedarray, and gives it as one is received.
+%   value = experimental.namedarrays.Pose() has a zero for each number; with
+%   experimental.namedarrays.Pose(NAME, VALUE, ...) all fields are given.
+%   experimental.namedarrays.Pose(value) takes what fits into the namedarray, and gives it as one is
+%   received: a column of its numbers. What does not fit is an error.
 %
 %   field Vector3 position
 %   field double[4] orientation

@@ -1,9 +1,10 @@
 function value = Vector3(varargin)
 %VECTOR3 A value for the namedarray experimental.namedarrays.Vector3
 %
-%   value = experimental.namedarrays.Vector3() has the first value of each field; with
-%   experimental.namedarrays.Vector3(NAME, VALUE, ...) some are given. experimental.namedarrays.Vector3(value)
-%   takes what fits into the namedarray, and gives it as one is received.
+%   value = experimental.namedarrays.Vector3() has a zero for each number; with
+%   experimental.namedarrays.Vector3(NAME, VALUE, ...) all fields are given.
+%   experimental.namedarrays.Vector3(value) takes what fits into the namedarray, and gives it as one is
+%   received: a column of its numbers. What does not fit is an error.
 %
 %   field double x
 %   field double y

@@ -18,10 +18,18 @@ classdef Joint < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.angle(obj)
-            value = rrmex('member', obj.rr_typed, 0);
+            value = rrmex('member', obj.rr_h, 0);
         end
         function set.angle(obj, value)
-            rrmex('member', obj.rr_typed, 0, value);
+            rrmex('member', obj.rr_h, 0, value);
+        end
+        function value = get_angle(obj)
+            %get_angle The same as object.angle.
+            value = obj.angle;
+        end
+        function set_angle(obj, value)
+            %set_angle The same as object.angle = value.
+            obj.angle = value;
         end
         function async_get_angle(obj, handler, varargin)
             %async_get_angle Reads angle; calls handler(param, value, err) in a later Poll.

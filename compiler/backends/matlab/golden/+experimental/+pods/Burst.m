@@ -1,9 +1,10 @@
 function value = Burst(varargin)
 %BURST A value for the pod experimental.pods.Burst
 %
-%   value = experimental.pods.Burst() has the first value of each field; with
-%   experimental.pods.Burst(NAME, VALUE, ...) some are given. experimental.pods.Burst(value)
-%   takes what fits into the pod, and gives it as one is received.
+%   value = experimental.pods.Burst() has nothing in its fields yet; with
+%   experimental.pods.Burst(NAME, VALUE, ...) some fields are given.
+%   experimental.pods.Burst(value) takes what fits into the pod, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field uint8[16-] header
 %   field int16[2,3] grid

@@ -31,10 +31,18 @@ classdef Recorder < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.last(obj)
-            value = rrmex('member', obj.rr_typed, 0);
+            value = rrmex('member', obj.rr_h, 0);
         end
         function set.last(obj, value)
-            rrmex('member', obj.rr_typed, 0, value);
+            rrmex('member', obj.rr_h, 0, value);
+        end
+        function value = get_last(obj)
+            %get_last The same as object.last.
+            value = obj.last;
+        end
+        function set_last(obj, value)
+            %set_last The same as object.last = value.
+            obj.last = value;
         end
         function async_get_last(obj, handler, varargin)
             %async_get_last Reads last; calls handler(param, value, err) in a later Poll.
@@ -45,10 +53,18 @@ classdef Recorder < RobotRaconteurStub
             rr_async(obj, 'async_set_last', {value}, handler, varargin);
         end
         function value = get.history(obj)
-            value = rrmex('member', obj.rr_typed, 1);
+            value = rrmex('member', obj.rr_h, 1);
         end
         function set.history(obj, value)
-            rrmex('member', obj.rr_typed, 1, value);
+            rrmex('member', obj.rr_h, 1, value);
+        end
+        function value = get_history(obj)
+            %get_history The same as object.history.
+            value = obj.history;
+        end
+        function set_history(obj, value)
+            %set_history The same as object.history = value.
+            obj.history = value;
         end
         function async_get_history(obj, handler, varargin)
             %async_get_history Reads history; calls handler(param, value, err) in a later Poll.
@@ -59,10 +75,18 @@ classdef Recorder < RobotRaconteurStub
             rr_async(obj, 'async_set_history', {value}, handler, varargin);
         end
         function value = get.bursts(obj)
-            value = rrmex('member', obj.rr_typed, 2);
+            value = rrmex('member', obj.rr_h, 2);
         end
         function set.bursts(obj, value)
-            rrmex('member', obj.rr_typed, 2, value);
+            rrmex('member', obj.rr_h, 2, value);
+        end
+        function value = get_bursts(obj)
+            %get_bursts The same as object.bursts.
+            value = obj.bursts;
+        end
+        function set_bursts(obj, value)
+            %set_bursts The same as object.bursts = value.
+            obj.bursts = value;
         end
         function async_get_bursts(obj, handler, varargin)
             %async_get_bursts Reads bursts; calls handler(param, value, err) in a later Poll.
@@ -73,10 +97,18 @@ classdef Recorder < RobotRaconteurStub
             rr_async(obj, 'async_set_bursts', {value}, handler, varargin);
         end
         function value = get.matrix(obj)
-            value = rrmex('member', obj.rr_typed, 3);
+            value = rrmex('member', obj.rr_h, 3);
         end
         function set.matrix(obj, value)
-            rrmex('member', obj.rr_typed, 3, value);
+            rrmex('member', obj.rr_h, 3, value);
+        end
+        function value = get_matrix(obj)
+            %get_matrix The same as object.matrix.
+            value = obj.matrix;
+        end
+        function set_matrix(obj, value)
+            %set_matrix The same as object.matrix = value.
+            obj.matrix = value;
         end
         function async_get_matrix(obj, handler, varargin)
             %async_get_matrix Reads matrix; calls handler(param, value, err) in a later Poll.
@@ -87,10 +119,18 @@ classdef Recorder < RobotRaconteurStub
             rr_async(obj, 'async_set_matrix', {value}, handler, varargin);
         end
         function value = get.marked(obj)
-            value = rrmex('member', obj.rr_typed, 4);
+            value = rrmex('member', obj.rr_h, 4);
         end
         function set.marked(obj, value)
-            rrmex('member', obj.rr_typed, 4, value);
+            rrmex('member', obj.rr_h, 4, value);
+        end
+        function value = get_marked(obj)
+            %get_marked The same as object.marked.
+            value = obj.marked;
+        end
+        function set_marked(obj, value)
+            %set_marked The same as object.marked = value.
+            obj.marked = value;
         end
         function async_get_marked(obj, handler, varargin)
             %async_get_marked Reads marked; calls handler(param, value, err) in a later Poll.
@@ -102,7 +142,7 @@ classdef Recorder < RobotRaconteurStub
         end
         function result = record(obj, from, until_)
             %RECORD function Burst record(Sample from, Sample[] until)
-            result = rrmex('member', obj.rr_typed, 5, from, until_);
+            result = rrmex('member', obj.rr_h, 5, from, until_);
         end
         function async_record(obj, from, until_, handler, varargin)
             %async_record As record, but calls handler(param, value, err) in a later Poll.

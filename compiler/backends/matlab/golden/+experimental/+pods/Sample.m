@@ -1,9 +1,10 @@
 function value = Sample(varargin)
 %SAMPLE A value for the pod experimental.pods.Sample
 %
-%   value = experimental.pods.Sample() has the first value of each field; with
-%   experimental.pods.Sample(NAME, VALUE, ...) some are given. experimental.pods.Sample(value)
-%   takes what fits into the pod, and gives it as one is received.
+%   value = experimental.pods.Sample() has nothing in its fields yet; with
+%   experimental.pods.Sample(NAME, VALUE, ...) some fields are given.
+%   experimental.pods.Sample(value) takes what fits into the pod, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field uint32 sequence
 %   field double stamp

@@ -1,9 +1,10 @@
 function value = Vector(varargin)
 %VECTOR A value for the namedarray experimental.pods.Vector
 %
-%   value = experimental.pods.Vector() has the first value of each field; with
-%   experimental.pods.Vector(NAME, VALUE, ...) some are given. experimental.pods.Vector(value)
-%   takes what fits into the namedarray, and gives it as one is received.
+%   value = experimental.pods.Vector() has a zero for each number; with
+%   experimental.pods.Vector(NAME, VALUE, ...) all fields are given.
+%   experimental.pods.Vector(value) takes what fits into the namedarray, and gives it as one is
+%   received: a column of its numbers. What does not fit is an error.
 %
 %   field double x
 %   field double y

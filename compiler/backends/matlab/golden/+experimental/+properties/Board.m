@@ -78,10 +78,18 @@ classdef Board < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.gain(obj)
-            value = rrmex('member', obj.rr_typed, 0);
+            value = rrmex('member', obj.rr_h, 0);
         end
         function set.gain(obj, value)
-            rrmex('member', obj.rr_typed, 0, value);
+            rrmex('member', obj.rr_h, 0, value);
+        end
+        function value = get_gain(obj)
+            %get_gain The same as object.gain.
+            value = obj.gain;
+        end
+        function set_gain(obj, value)
+            %set_gain The same as object.gain = value.
+            obj.gain = value;
         end
         function async_get_gain(obj, handler, varargin)
             %async_get_gain Reads gain; calls handler(param, value, err) in a later Poll.
@@ -92,10 +100,18 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_gain', {value}, handler, varargin);
         end
         function value = get.enabled(obj)
-            value = rrmex('member', obj.rr_typed, 1);
+            value = rrmex('member', obj.rr_h, 1);
         end
         function set.enabled(obj, value)
-            rrmex('member', obj.rr_typed, 1, value);
+            rrmex('member', obj.rr_h, 1, value);
+        end
+        function value = get_enabled(obj)
+            %get_enabled The same as object.enabled.
+            value = obj.enabled;
+        end
+        function set_enabled(obj, value)
+            %set_enabled The same as object.enabled = value.
+            obj.enabled = value;
         end
         function async_get_enabled(obj, handler, varargin)
             %async_get_enabled Reads enabled; calls handler(param, value, err) in a later Poll.
@@ -106,10 +122,18 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_enabled', {value}, handler, varargin);
         end
         function value = get.label(obj)
-            value = rrmex('member', obj.rr_typed, 2);
+            value = rrmex('member', obj.rr_h, 2);
         end
         function set.label(obj, value)
-            rrmex('member', obj.rr_typed, 2, value);
+            rrmex('member', obj.rr_h, 2, value);
+        end
+        function value = get_label(obj)
+            %get_label The same as object.label.
+            value = obj.label;
+        end
+        function set_label(obj, value)
+            %set_label The same as object.label = value.
+            obj.label = value;
         end
         function async_get_label(obj, handler, varargin)
             %async_get_label Reads label; calls handler(param, value, err) in a later Poll.
@@ -120,10 +144,18 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_label', {value}, handler, varargin);
         end
         function value = get.response(obj)
-            value = rrmex('member', obj.rr_typed, 3);
+            value = rrmex('member', obj.rr_h, 3);
         end
         function set.response(obj, value)
-            rrmex('member', obj.rr_typed, 3, value);
+            rrmex('member', obj.rr_h, 3, value);
+        end
+        function value = get_response(obj)
+            %get_response The same as object.response.
+            value = obj.response;
+        end
+        function set_response(obj, value)
+            %set_response The same as object.response = value.
+            obj.response = value;
         end
         function async_get_response(obj, handler, varargin)
             %async_get_response Reads response; calls handler(param, value, err) in a later Poll.
@@ -134,10 +166,18 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_response', {value}, handler, varargin);
         end
         function value = get.mode(obj)
-            value = rrmex('member', obj.rr_typed, 4);
+            value = rrmex('member', obj.rr_h, 4);
         end
         function set.mode(obj, value)
-            rrmex('member', obj.rr_typed, 4, value);
+            rrmex('member', obj.rr_h, 4, value);
+        end
+        function value = get_mode(obj)
+            %get_mode The same as object.mode.
+            value = obj.mode;
+        end
+        function set_mode(obj, value)
+            %set_mode The same as object.mode = value.
+            obj.mode = value;
         end
         function async_get_mode(obj, handler, varargin)
             %async_get_mode Reads mode; calls handler(param, value, err) in a later Poll.
@@ -148,10 +188,18 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_mode', {value}, handler, varargin);
         end
         function value = get.samples(obj)
-            value = rrmex('member', obj.rr_typed, 5);
+            value = rrmex('member', obj.rr_h, 5);
         end
         function set.samples(obj, value)
-            rrmex('member', obj.rr_typed, 5, value);
+            rrmex('member', obj.rr_h, 5, value);
+        end
+        function value = get_samples(obj)
+            %get_samples The same as object.samples.
+            value = obj.samples;
+        end
+        function set_samples(obj, value)
+            %set_samples The same as object.samples = value.
+            obj.samples = value;
         end
         function async_get_samples(obj, handler, varargin)
             %async_get_samples Reads samples; calls handler(param, value, err) in a later Poll.
@@ -162,10 +210,18 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_samples', {value}, handler, varargin);
         end
         function value = get.address(obj)
-            value = rrmex('member', obj.rr_typed, 6);
+            value = rrmex('member', obj.rr_h, 6);
         end
         function set.address(obj, value)
-            rrmex('member', obj.rr_typed, 6, value);
+            rrmex('member', obj.rr_h, 6, value);
+        end
+        function value = get_address(obj)
+            %get_address The same as object.address.
+            value = obj.address;
+        end
+        function set_address(obj, value)
+            %set_address The same as object.address = value.
+            obj.address = value;
         end
         function async_get_address(obj, handler, varargin)
             %async_get_address Reads address; calls handler(param, value, err) in a later Poll.
@@ -176,10 +232,18 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_address', {value}, handler, varargin);
         end
         function value = get.steps(obj)
-            value = rrmex('member', obj.rr_typed, 7);
+            value = rrmex('member', obj.rr_h, 7);
         end
         function set.steps(obj, value)
-            rrmex('member', obj.rr_typed, 7, value);
+            rrmex('member', obj.rr_h, 7, value);
+        end
+        function value = get_steps(obj)
+            %get_steps The same as object.steps.
+            value = obj.steps;
+        end
+        function set_steps(obj, value)
+            %set_steps The same as object.steps = value.
+            obj.steps = value;
         end
         function async_get_steps(obj, handler, varargin)
             %async_get_steps Reads steps; calls handler(param, value, err) in a later Poll.
@@ -190,10 +254,18 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_steps', {value}, handler, varargin);
         end
         function value = get.image(obj)
-            value = rrmex('member', obj.rr_typed, 8);
+            value = rrmex('member', obj.rr_h, 8);
         end
         function set.image(obj, value)
-            rrmex('member', obj.rr_typed, 8, value);
+            rrmex('member', obj.rr_h, 8, value);
+        end
+        function value = get_image(obj)
+            %get_image The same as object.image.
+            value = obj.image;
+        end
+        function set_image(obj, value)
+            %set_image The same as object.image = value.
+            obj.image = value;
         end
         function async_get_image(obj, handler, varargin)
             %async_get_image Reads image; calls handler(param, value, err) in a later Poll.
@@ -204,10 +276,18 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_image', {value}, handler, varargin);
         end
         function value = get.rotation(obj)
-            value = rrmex('member', obj.rr_typed, 9);
+            value = rrmex('member', obj.rr_h, 9);
         end
         function set.rotation(obj, value)
-            rrmex('member', obj.rr_typed, 9, value);
+            rrmex('member', obj.rr_h, 9, value);
+        end
+        function value = get_rotation(obj)
+            %get_rotation The same as object.rotation.
+            value = obj.rotation;
+        end
+        function set_rotation(obj, value)
+            %set_rotation The same as object.rotation = value.
+            obj.rotation = value;
         end
         function async_get_rotation(obj, handler, varargin)
             %async_get_rotation Reads rotation; calls handler(param, value, err) in a later Poll.
@@ -218,10 +298,18 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_rotation', {value}, handler, varargin);
         end
         function value = get.names(obj)
-            value = rrmex('member', obj.rr_typed, 10);
+            value = rrmex('member', obj.rr_h, 10);
         end
         function set.names(obj, value)
-            rrmex('member', obj.rr_typed, 10, value);
+            rrmex('member', obj.rr_h, 10, value);
+        end
+        function value = get_names(obj)
+            %get_names The same as object.names.
+            value = obj.names;
+        end
+        function set_names(obj, value)
+            %set_names The same as object.names = value.
+            obj.names = value;
         end
         function async_get_names(obj, handler, varargin)
             %async_get_names Reads names; calls handler(param, value, err) in a later Poll.
@@ -232,10 +320,18 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_names', {value}, handler, varargin);
         end
         function value = get.by_number(obj)
-            value = rrmex('member', obj.rr_typed, 11);
+            value = rrmex('member', obj.rr_h, 11);
         end
         function set.by_number(obj, value)
-            rrmex('member', obj.rr_typed, 11, value);
+            rrmex('member', obj.rr_h, 11, value);
+        end
+        function value = get_by_number(obj)
+            %get_by_number The same as object.by_number.
+            value = obj.by_number;
+        end
+        function set_by_number(obj, value)
+            %set_by_number The same as object.by_number = value.
+            obj.by_number = value;
         end
         function async_get_by_number(obj, handler, varargin)
             %async_get_by_number Reads by_number; calls handler(param, value, err) in a later Poll.
@@ -246,10 +342,18 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_by_number', {value}, handler, varargin);
         end
         function value = get.by_name(obj)
-            value = rrmex('member', obj.rr_typed, 12);
+            value = rrmex('member', obj.rr_h, 12);
         end
         function set.by_name(obj, value)
-            rrmex('member', obj.rr_typed, 12, value);
+            rrmex('member', obj.rr_h, 12, value);
+        end
+        function value = get_by_name(obj)
+            %get_by_name The same as object.by_name.
+            value = obj.by_name;
+        end
+        function set_by_name(obj, value)
+            %set_by_name The same as object.by_name = value.
+            obj.by_name = value;
         end
         function async_get_by_name(obj, handler, varargin)
             %async_get_by_name Reads by_name; calls handler(param, value, err) in a later Poll.
@@ -260,10 +364,18 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_by_name', {value}, handler, varargin);
         end
         function value = get.anything(obj)
-            value = rrmex('member', obj.rr_typed, 13);
+            value = rrmex('member', obj.rr_h, 13);
         end
         function set.anything(obj, value)
-            rrmex('member', obj.rr_typed, 13, value);
+            rrmex('member', obj.rr_h, 13, value);
+        end
+        function value = get_anything(obj)
+            %get_anything The same as object.anything.
+            value = obj.anything;
+        end
+        function set_anything(obj, value)
+            %set_anything The same as object.anything = value.
+            obj.anything = value;
         end
         function async_get_anything(obj, handler, varargin)
             %async_get_anything Reads anything; calls handler(param, value, err) in a later Poll.
@@ -274,10 +386,18 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_anything', {value}, handler, varargin);
         end
         function value = get.settings(obj)
-            value = rrmex('member', obj.rr_typed, 14);
+            value = rrmex('member', obj.rr_h, 14);
         end
         function set.settings(obj, value)
-            rrmex('member', obj.rr_typed, 14, value);
+            rrmex('member', obj.rr_h, 14, value);
+        end
+        function value = get_settings(obj)
+            %get_settings The same as object.settings.
+            value = obj.settings;
+        end
+        function set_settings(obj, value)
+            %set_settings The same as object.settings = value.
+            obj.settings = value;
         end
         function async_get_settings(obj, handler, varargin)
             %async_get_settings Reads settings; calls handler(param, value, err) in a later Poll.
@@ -288,10 +408,14 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_settings', {value}, handler, varargin);
         end
         function value = get.serial_number(obj)
-            value = rrmex('member', obj.rr_typed, 15);
+            value = rrmex('member', obj.rr_h, 15);
         end
         function set.serial_number(obj, value)
-            rrmex('member', obj.rr_typed, 15, value);
+            rrmex('member', obj.rr_h, 15, value);
+        end
+        function value = get_serial_number(obj)
+            %get_serial_number The same as object.serial_number.
+            value = obj.serial_number;
         end
         function async_get_serial_number(obj, handler, varargin)
             %async_get_serial_number Reads serial_number; calls handler(param, value, err) in a later Poll.
@@ -302,10 +426,14 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_serial_number', {value}, handler, varargin);
         end
         function value = get.password(obj)
-            value = rrmex('member', obj.rr_typed, 16);
+            value = rrmex('member', obj.rr_h, 16);
         end
         function set.password(obj, value)
-            rrmex('member', obj.rr_typed, 16, value);
+            rrmex('member', obj.rr_h, 16, value);
+        end
+        function set_password(obj, value)
+            %set_password The same as object.password = value.
+            obj.password = value;
         end
         function async_get_password(obj, handler, varargin)
             %async_get_password Reads password; calls handler(param, value, err) in a later Poll.
@@ -316,10 +444,18 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_password', {value}, handler, varargin);
         end
         function value = get.shared(obj)
-            value = rrmex('member', obj.rr_typed, 17);
+            value = rrmex('member', obj.rr_h, 17);
         end
         function set.shared(obj, value)
-            rrmex('member', obj.rr_typed, 17, value);
+            rrmex('member', obj.rr_h, 17, value);
+        end
+        function value = get_shared(obj)
+            %get_shared The same as object.shared.
+            value = obj.shared;
+        end
+        function set_shared(obj, value)
+            %set_shared The same as object.shared = value.
+            obj.shared = value;
         end
         function async_get_shared(obj, handler, varargin)
             %async_get_shared Reads shared; calls handler(param, value, err) in a later Poll.
@@ -330,10 +466,18 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_shared', {value}, handler, varargin);
         end
         function value = get.page(obj)
-            value = rrmex('member', obj.rr_typed, 18);
+            value = rrmex('member', obj.rr_h, 18);
         end
         function set.page(obj, value)
-            rrmex('member', obj.rr_typed, 18, value);
+            rrmex('member', obj.rr_h, 18, value);
+        end
+        function value = get_page(obj)
+            %get_page The same as object.page.
+            value = obj.page;
+        end
+        function set_page(obj, value)
+            %set_page The same as object.page = value.
+            obj.page = value;
         end
         function async_get_page(obj, handler, varargin)
             %async_get_page Reads page; calls handler(param, value, err) in a later Poll.
@@ -344,10 +488,18 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_page', {value}, handler, varargin);
         end
         function value = get.notes(obj)
-            value = rrmex('member', obj.rr_typed, 19);
+            value = rrmex('member', obj.rr_h, 19);
         end
         function set.notes(obj, value)
-            rrmex('member', obj.rr_typed, 19, value);
+            rrmex('member', obj.rr_h, 19, value);
+        end
+        function value = get_notes(obj)
+            %get_notes The same as object.notes.
+            value = obj.notes;
+        end
+        function set_notes(obj, value)
+            %set_notes The same as object.notes = value.
+            obj.notes = value;
         end
         function async_get_notes(obj, handler, varargin)
             %async_get_notes Reads notes; calls handler(param, value, err) in a later Poll.
@@ -358,10 +510,14 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_notes', {value}, handler, varargin);
         end
         function value = get.view(obj)
-            value = rrmex('member', obj.rr_typed, 20);
+            value = rrmex('member', obj.rr_h, 20);
         end
         function set.view(obj, value)
-            rrmex('member', obj.rr_typed, 20, value);
+            rrmex('member', obj.rr_h, 20, value);
+        end
+        function value = get_view(obj)
+            %get_view The same as object.view.
+            value = obj.view;
         end
         function async_get_view(obj, handler, varargin)
             %async_get_view Reads view; calls handler(param, value, err) in a later Poll.

@@ -1,9 +1,10 @@
 function value = Even(varargin)
 %EVEN A value for the struct experimental.recursion.Even
 %
-%   value = experimental.recursion.Even() has the first value of each field; with
-%   experimental.recursion.Even(NAME, VALUE, ...) some are given. experimental.recursion.Even(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = experimental.recursion.Even() has nothing in its fields yet; with
+%   experimental.recursion.Even(NAME, VALUE, ...) some fields are given.
+%   experimental.recursion.Even(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field Odd next
 

@@ -1,9 +1,10 @@
 function value = Forest(varargin)
 %FOREST A value for the struct experimental.recursion.Forest
 %
-%   value = experimental.recursion.Forest() has the first value of each field; with
-%   experimental.recursion.Forest(NAME, VALUE, ...) some are given. experimental.recursion.Forest(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = experimental.recursion.Forest() has nothing in its fields yet; with
+%   experimental.recursion.Forest(NAME, VALUE, ...) some fields are given.
+%   experimental.recursion.Forest(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field Tree first
 %   field Tree{list} trees

@@ -1,9 +1,10 @@
 function value = Odd(varargin)
 %ODD A value for the struct experimental.recursion.Odd
 %
-%   value = experimental.recursion.Odd() has the first value of each field; with
-%   experimental.recursion.Odd(NAME, VALUE, ...) some are given. experimental.recursion.Odd(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = experimental.recursion.Odd() has nothing in its fields yet; with
+%   experimental.recursion.Odd(NAME, VALUE, ...) some fields are given.
+%   experimental.recursion.Odd(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field Even next
 %   field Even{string} all

@@ -1,9 +1,10 @@
 function value = Tree(varargin)
 %TREE A value for the struct experimental.recursion.Tree
 %
-%   value = experimental.recursion.Tree() has the first value of each field; with
-%   experimental.recursion.Tree(NAME, VALUE, ...) some are given. experimental.recursion.Tree(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = experimental.recursion.Tree() has nothing in its fields yet; with
+%   experimental.recursion.Tree(NAME, VALUE, ...) some fields are given.
+%   experimental.recursion.Tree(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field string name
 %   field Tree left

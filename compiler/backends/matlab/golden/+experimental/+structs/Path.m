@@ -1,9 +1,10 @@
 function value = Path(varargin)
 %PATH A value for the struct experimental.structs.Path
 %
-%   value = experimental.structs.Path() has the first value of each field; with
-%   experimental.structs.Path(NAME, VALUE, ...) some are given. experimental.structs.Path(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = experimental.structs.Path() has nothing in its fields yet; with
+%   experimental.structs.Path(NAME, VALUE, ...) some fields are given.
+%   experimental.structs.Path(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field string name
 %   field Point start

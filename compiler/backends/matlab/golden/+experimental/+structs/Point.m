@@ -1,9 +1,10 @@
 function value = Point(varargin)
 %POINT A value for the struct experimental.structs.Point
 %
-%   value = experimental.structs.Point() has the first value of each field; with
-%   experimental.structs.Point(NAME, VALUE, ...) some are given. experimental.structs.Point(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = experimental.structs.Point() has nothing in its fields yet; with
+%   experimental.structs.Point(NAME, VALUE, ...) some fields are given.
+%   experimental.structs.Point(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field double x
 %   field double y

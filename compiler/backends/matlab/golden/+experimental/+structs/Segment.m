@@ -1,9 +1,10 @@
 function value = Segment(varargin)
 %SEGMENT A value for the struct experimental.structs.Segment
 %
-%   value = experimental.structs.Segment() has the first value of each field; with
-%   experimental.structs.Segment(NAME, VALUE, ...) some are given. experimental.structs.Segment(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = experimental.structs.Segment() has nothing in its fields yet; with
+%   experimental.structs.Segment(NAME, VALUE, ...) some fields are given.
+%   experimental.structs.Segment(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field int32 number
 %   field Point{int32} points

@@ -1,9 +1,10 @@
 function value = optional(varargin)
 %OPTIONAL A value for the struct experimental.rr.std.optional
 %
-%   value = experimental.rr.std.optional() has the first value of each field; with
-%   experimental.rr.std.optional(NAME, VALUE, ...) some are given. experimental.rr.std.optional(value)
-%   takes what fits into the struct, and gives it as one is received.
+%   value = experimental.rr.std.optional() has nothing in its fields yet; with
+%   experimental.rr.std.optional(NAME, VALUE, ...) some fields are given.
+%   experimental.rr.std.optional(value) takes what fits into the struct, and gives it as one is
+%   received. What does not fit is an error.
 %
 %   field vector text
 %   field double std
