@@ -17,14 +17,6 @@ using dynamic::MemberDescription;
 using dynamic::Value;
 using dynamic::ValueType;
 
-Json parameters_json(const MemberDescription& member, const dynamic::List& values) {
-  Json list = Json::array();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    list.push_back(json_of_value(member.parameters.at(i).type, values[i]));
-  }
-  return list;
-}
-
 // Values of one member, both ways.
 class Typed {
  public:
@@ -159,14 +151,7 @@ class DynamicGenerator final : public PlannedGenerator {
 
 dynamic::List DynamicCaller::arguments_of(const MemberDescription& member,
                                           const Json& arguments) const {
-  if (arguments.size() != member.parameters.size()) {
-    throw std::runtime_error("another parameter count");
-  }
-  dynamic::List values;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    values.push_back(value_of_json(definitions_, member.parameters[i].type, arguments.at(i)));
-  }
-  return values;
+  return parameters_of_json(definitions_, member, arguments);
 }
 
 Json DynamicCaller::get(std::string_view property) {
@@ -200,7 +185,7 @@ Held DynamicCaller::objref(std::string_view member, const Json& index) {
 Subscription DynamicCaller::listen(std::string_view event, std::function<void(Json)> handler) {
   return object_.on_event(
       event, [member = object_.member(event), handler = std::move(handler)](
-                 const dynamic::List& values) { handler(parameters_json(member, values)); });
+                 const dynamic::List& values) { handler(json_of_parameters(member, values)); });
 }
 
 std::unique_ptr<PlannedPipe> DynamicCaller::pipe(std::string_view member, std::int32_t index,
@@ -233,7 +218,7 @@ std::unique_ptr<PlannedGenerator> DynamicCaller::generate(std::string_view funct
 void DynamicCaller::set_callback(std::string_view name, std::function<Json(Json)> answer) {
   object_.callback(name).set([member = object_.member(name), known = definitions_,
                               answer = std::move(answer)](const dynamic::List& values) {
-    return value_of_json(known, member.type, answer(parameters_json(member, values)));
+    return value_of_json(known, member.type, answer(json_of_parameters(member, values)));
   });
 }
 

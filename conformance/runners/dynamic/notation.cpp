@@ -177,4 +177,22 @@ Json json_of_value(const ValueType& type, const Value& value) {
   }
 }
 
+Json json_of_parameters(const dynamic::MemberDescription& member, const dynamic::List& values) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    list.push_back(json_of_value(member.parameters.at(i).type, values[i]));
+  }
+  return list;
+}
+
+dynamic::List parameters_of_json(const dynamic::Definitions& definitions,
+                                 const dynamic::MemberDescription& member, const Json& json) {
+  if (json.size() != member.parameters.size()) throw std::runtime_error("another parameter count");
+  dynamic::List values;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    values.push_back(value_of_json(definitions, member.parameters[i].type, json.at(i)));
+  }
+  return values;
+}
+
 }  // namespace rr::conformance

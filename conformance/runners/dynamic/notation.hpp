@@ -14,6 +14,10 @@ dynamic::Value value_of_json(const dynamic::Definitions& definitions,
                              const dynamic::ValueType& type, const Json& json);
 /// The type decides how a value is spelled, where that leaves a choice.
 Json json_of_value(const dynamic::ValueType& type, const dynamic::Value& value);
+/// The parameters of a function, event or callback. Throws std::runtime_error for another count.
+Json json_of_parameters(const dynamic::MemberDescription& member, const dynamic::List& values);
+dynamic::List parameters_of_json(const dynamic::Definitions& definitions,
+                                 const dynamic::MemberDescription& member, const Json& json);
 /// `{type, value}`, or null.
 Json json_of_any(const dynamic::Value& value);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Objects that services offer, as the program sees them; their streams and memories are in files of
 // their own.
+#include <set>
 #include <utility>
 
 #include "rr/error.hpp"
@@ -30,6 +31,11 @@ std::shared_ptr<DynamicSkeleton> make_skeleton(const Definitions& definitions,
     throw Error(ErrorCode::key_not_found, "no object `" + std::string(type) + "`");
   }
   return std::make_shared<DynamicSkeleton>(definitions.tables(), *table);
+}
+
+void add_with_imports(const Definition& definition, std::set<const Definition*>& all) {
+  if (!all.insert(&definition).second) return;
+  for (const Definition* const import : definition.imports) add_with_imports(*import, all);
 }
 
 const MemberTable& property_of(const DynamicSkeleton& object, std::string_view name) {
@@ -187,9 +193,11 @@ void ServedObject::set_monitor(Function<bool(std::chrono::milliseconds)> enter,
 Service register_service(Node& node, std::string name, const ServedObject& root,
                          ServiceOptions options) {
   const std::shared_ptr<const Tables> tables = root.types().tables();
+  std::set<const Definition*> imported;
+  add_with_imports(root.skeleton()->rr_object_type().definition, imported);
   for (const auto& [service, definition] : tables->definitions()) {
     node.add_definition(std::shared_ptr<const Definition>(tables, &definition.wire));
-    options.extra_imports.push_back(&definition.wire);
+    if (!imported.contains(&definition.wire)) options.extra_imports.push_back(&definition.wire);
   }
   return node.register_service(std::move(name), root.skeleton(), std::move(options));
 }

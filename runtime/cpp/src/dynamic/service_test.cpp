@@ -267,6 +267,21 @@ TEST_P(DynamicService, SendsItsDefinitions) {
   EXPECT_EQ(client->member("ask").declaration, "callback Note ask(string question, Vector3 at)");
 }
 
+TEST_P(DynamicService, SendsWhatIsNotImportedToo) {
+  constexpr const char* extra =
+      "service example.extra\n\nstdver 0.10\n\nstruct Late\n"
+      "    field int32 number\nend\n";
+  const Definitions definitions({testing::rig_text, testing::parts_text, extra});
+  const ServedObject other(definitions, "example.rig.Rig");
+  other.on_call("annotate", [](const List&) { return Value(); });
+  const Service offered = register_service(server, "other", other);
+  const Client second = connect(node, url.substr(0, url.rfind('=') + 1) + "other");
+  EXPECT_THAT(second.types().services(),
+              ElementsAre("example.extra", "example.parts", "example.rig"));
+  const Value late = second.types().type("example.extra.Late").convert(StringMap{{"number", 1}});
+  EXPECT_TRUE(second->call("annotate", {Value(), List{late}}).is_null());
+}
+
 TEST_P(DynamicService, MayBeOfferedAgainFromTheSameText) {
   service->close();
   for (int time = 0; time < 3; ++time) {

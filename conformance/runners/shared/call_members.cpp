@@ -2,8 +2,8 @@
 // The steps of a plan that use pipes, wires, callbacks, memories and generators.
 #include <atomic>
 
-#include "conformance/runners/cpp/call.hpp"
-#include "conformance/runners/cpp/outcomes.hpp"
+#include "conformance/runners/shared/call.hpp"
+#include "conformance/runners/shared/outcomes.hpp"
 
 namespace rr::conformance {
 namespace {

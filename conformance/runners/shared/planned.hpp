@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/runners/cpp/adapters.hpp"
+#include "conformance/runners/shared/adapters.hpp"
 
 /// What a plan does with members that live longer than a call, whatever their types are.
 namespace rr::conformance {

@@ -5,12 +5,13 @@
 #include <rr/node.hpp>
 #include <string>
 
-#include "conformance/runners/cpp/adapters.hpp"
-#include "conformance/runners/cpp/caller.hpp"
+#include "conformance/runners/shared/adapters.hpp"
+#include "conformance/runners/shared/caller.hpp"
 
 namespace rr::conformance {
 
-/// What plans are played with: a client made of generated code, or one that needs none.
+/// What plans and scripts are played with: clients and services made of generated code, or such as
+/// need none.
 class Binding {
  public:
   virtual ~Binding() = default;
@@ -24,6 +25,9 @@ class Binding {
   virtual std::unique_ptr<Caller> caller(const Held& held) = 0;
   virtual Json write(const VarValue& value) = 0;
   virtual VarValue read(const Json& json) = 0;
+  /// Offers an object of this type that does what a node of service.json says.
+  virtual Service offer(Node& node, const std::string& name, const std::string& type, Json script,
+                        ServiceOptions options) = 0;
 };
 
 /// With the generated classes that the adapters know.
@@ -35,6 +39,8 @@ class GeneratedBinding final : public Binding {
   std::unique_ptr<Caller> caller(const Held& held) override;
   Json write(const VarValue& value) override;
   VarValue read(const Json& json) override;
+  Service offer(Node& node, const std::string& name, const std::string& type, Json script,
+                ServiceOptions options) override;
 
  private:
   const Adapters& adapters_;

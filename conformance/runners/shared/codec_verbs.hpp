@@ -5,7 +5,7 @@
 #include <rr/writer.hpp>
 #include <string>
 
-#include "conformance/runners/cpp/adapters.hpp"
+#include "conformance/runners/shared/adapters.hpp"
 
 namespace rr::conformance {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/runners/cpp/node_settings.hpp"
+#include "conformance/runners/shared/node_settings.hpp"
 
 #include <cstdint>
 #include <stdexcept>

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "conformance/runners/cpp/values.hpp"
+#include "conformance/runners/shared/values.hpp"
 
 namespace rr::conformance {
 

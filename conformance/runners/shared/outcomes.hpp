@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "conformance/runners/cpp/adapters.hpp"
+#include "conformance/runners/shared/adapters.hpp"
 
 namespace rr::conformance {
 

@@ -11,8 +11,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "conformance/runners/cpp/adapters.hpp"
-#include "conformance/runners/cpp/planned.hpp"
+#include "conformance/runners/shared/adapters.hpp"
+#include "conformance/runners/shared/planned.hpp"
 
 namespace rr::conformance {
 

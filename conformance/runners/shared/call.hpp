@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "conformance/runners/cpp/binding.hpp"
-#include "conformance/runners/cpp/caller.hpp"
+#include "conformance/runners/shared/binding.hpp"
+#include "conformance/runners/shared/caller.hpp"
 
 namespace rr::conformance {
 

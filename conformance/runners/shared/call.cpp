@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/runners/cpp/call.hpp"
+#include "conformance/runners/shared/call.hpp"
 
 #include <chrono>
 #include <rr/locks.hpp>
 #include <stdexcept>
 #include <thread>
 
-#include "conformance/runners/cpp/node_settings.hpp"
+#include "conformance/runners/shared/node_settings.hpp"
 
 namespace rr::conformance {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/runners/cpp/outcomes.hpp"
+#include "conformance/runners/shared/outcomes.hpp"
 
 #include <algorithm>
 #include <stdexcept>

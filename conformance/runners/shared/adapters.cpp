@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/runners/cpp/adapters.hpp"
+#include "conformance/runners/shared/adapters.hpp"
 
 namespace rr::conformance {
 namespace {

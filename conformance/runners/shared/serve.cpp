@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/runners/cpp/serve.hpp"
+#include "conformance/runners/shared/serve.hpp"
 
 #include <stdexcept>
+#include <utility>
 
-#include "conformance/runners/cpp/node_settings.hpp"
-#include "conformance/runners/cpp/script.hpp"
+#include "conformance/runners/shared/node_settings.hpp"
 
 namespace rr::conformance {
 namespace {
@@ -44,18 +44,16 @@ void ServedNode::offer(const Json& service, const Json& all) {
   ServiceOptions options;
   const Json attributes = service.value("attributes", Json::object());
   for (const auto& [name, value] : attributes.items()) {
-    options.attributes[name] = made_from_json<VarValue>(adapters_, value);
+    options.attributes[name] = binding_.read(value);
   }
   if (service.contains("auth")) {
     const Json& access = service["auth"];
     options.users = std::make_shared<PasswordUsers>(access.at("password_file").get<std::string>());
     options.require_user = access.at("policies").value("requirevaliduser", "") == "true";
   }
-  const ObjectAdapter& root = adapters_.object(service.at("object").get_ref<const std::string&>());
   const std::string name = service.at("name");
-  auto script = std::make_shared<Script>(adapters_, script_of(service, all));
-  services_[name] =
-      node_->register_service(name, root.serve(std::move(script)), std::move(options));
+  services_[name] = binding_.offer(*node_, name, service.at("object"), script_of(service, all),
+                                   std::move(options));
 }
 
 }  // namespace rr::conformance

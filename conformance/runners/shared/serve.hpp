@@ -6,14 +6,14 @@
 #include <rr/node.hpp>
 #include <string>
 
-#include "conformance/runners/cpp/adapters.hpp"
+#include "conformance/runners/shared/binding.hpp"
 
 namespace rr::conformance {
 
 /// `serve`: a node whose services do what service.json says.
 class ServedNode {
  public:
-  explicit ServedNode(const Adapters& adapters) : adapters_(adapters) {}
+  explicit ServedNode(Binding& binding) : binding_(binding) {}
 
   /// {do: start, ...} gives {port}; {do: close_service, service} gives {done}.
   Json answer(const Json& request);
@@ -22,7 +22,7 @@ class ServedNode {
   Json start(const Json& request);
   void offer(const Json& service, const Json& all);
 
-  const Adapters& adapters_;
+  Binding& binding_;
   std::map<std::string, Service> services_;
   std::unique_ptr<Node> node_;
 };

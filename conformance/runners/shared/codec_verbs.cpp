@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/runners/cpp/codec_verbs.hpp"
+#include "conformance/runners/shared/codec_verbs.hpp"
 
 #include <rr/message_tree.hpp>
 #include <rr/reader.hpp>
