@@ -251,6 +251,13 @@ void async_connect(Node& node, std::string url, ConnectOptions options, Done<Cli
 /// Node::subscribe.
 ServiceSubscription subscribe(Node& node, std::string_view url, SubscriptionOptions options = {});
 
+/// The same with several ways to one service, tried in this order.
+ServiceSubscription subscribe(Node& node, std::vector<std::string> urls,
+                              SubscriptionOptions options = {});
+/// The same with all services of these types that are found; see Node::subscribe_types.
+ServiceSubscription subscribe_types(Node& node, std::vector<std::string> types,
+                                    SubscriptionOptions options = {});
+
 /// For credentials and parameters of errors. Throws rr::Error (data_type_error) for what no
 /// varvalue holds.
 VarValue to_varvalue(const Value& value);

@@ -38,6 +38,13 @@ struct MemberDescription {
   std::uint8_t access = plain;
 };
 
+/// What a service definition declares, each by its qualified name, in its order.
+struct DeclaredNames {
+  std::vector<std::string> enums;
+  std::vector<std::string> records;  ///< structs, pods and namedarrays
+  std::vector<std::string> objects;
+};
+
 /// Service definitions that were read at run time, and their types. A handle: types and values of
 /// them keep alive what they need.
 class Definitions {
@@ -59,6 +66,15 @@ class Definitions {
   [[nodiscard]] std::vector<MemberDescription> members(std::string_view object) const;
   /// The comments before an object. Throws as members().
   [[nodiscard]] std::string documentation(std::string_view object) const;
+
+  /// The text of one, as it was read. Throws rr::Error (key_not_found).
+  [[nodiscard]] std::string text(std::string_view service) const;
+  /// What a service's definition declares. Throws rr::Error (key_not_found).
+  [[nodiscard]] DeclaredNames declared(std::string_view service) const;
+  /// The constants of a service's definition, or of a record or object of it, in their order; each
+  /// of its declared type, those of a struct constant as `fields`. Throws rr::Error
+  /// (key_not_found).
+  [[nodiscard]] Fields constants(std::string_view scope) const;
 
   /// Where a Decoder finds the types of what is in varvalues. Lives as long as the definitions.
   [[nodiscard]] const TypeRegistry& registry() const;

@@ -114,9 +114,27 @@ void async_connect(Node& node, std::string url, ConnectOptions options, Done<Cli
       });
 }
 
-ServiceSubscription subscribe(Node& node, std::string_view url, SubscriptionOptions options) {
+namespace {
+
+SubscriptionOptions reading_definitions(SubscriptionOptions options) {
   options.make_definition_reader = [] { return std::make_shared<DefinitionStore>(); };
-  return node.subscribe(url, std::move(options));
+  return options;
+}
+
+}  // namespace
+
+ServiceSubscription subscribe(Node& node, std::string_view url, SubscriptionOptions options) {
+  return node.subscribe(url, reading_definitions(std::move(options)));
+}
+
+ServiceSubscription subscribe(Node& node, std::vector<std::string> urls,
+                              SubscriptionOptions options) {
+  return node.subscribe(std::move(urls), reading_definitions(std::move(options)));
+}
+
+ServiceSubscription subscribe_types(Node& node, std::vector<std::string> types,
+                                    SubscriptionOptions options) {
+  return node.subscribe_types(std::move(types), reading_definitions(std::move(options)));
 }
 
 }  // namespace rr::dynamic

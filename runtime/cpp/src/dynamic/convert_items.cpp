@@ -132,6 +132,29 @@ class NestedLists {
   std::size_t count_ = 0;
 };
 
+// Numbers with one dimension more, the first, which is that of the numbers of each namedarray.
+bool is_flat_of(const ArrayContent& content, const ArrayNode& node) {
+  if (content.record != nullptr || !content.has_dims || node.record() == nullptr) return false;
+  const auto& dims = content.data.dims;
+  return node.record()->kind == RecordKind::namedarray && !dims.empty() &&
+         dims[0] == node.record()->number_count && (node.has_dims() || dims.size() == 2);
+}
+
+// Their memory is that of the namedarrays.
+Value gather_records(const Value& numbers, const ArrayNode& node, const Place& place) {
+  const RecordTable& record = *node.record();
+  const Value exact = number_array_node(record.number, true).convert(numbers, place);
+  const auto& flat = content_of<ArrayContent>(exact).data;
+  auto content = std::make_shared<ArrayContent>();
+  content->number = node.number();
+  content->record = own(record);
+  content->has_dims = node.has_dims();
+  content->data.items.share(flat.items.items(), flat.items.count() / record.number_count,
+                            flat.items.owner());
+  if (node.has_dims()) content->data.dims.assign(flat.dims.begin() + 1, flat.dims.end());
+  return value_of(Kind::array, std::move(content));
+}
+
 }  // namespace
 
 Value ArrayNode::convert(const Value& value, const Place& place) const {
@@ -143,6 +166,7 @@ Value ArrayNode::convert(const Value& value, const Place& place) const {
 Value ArrayNode::convert_items(const Value& value, const Place& place) const {
   if (value.kind() == Kind::array) {
     const auto& content = content_of<ArrayContent>(value);
+    if (is_flat_of(content, *this)) return gather_records(value, *this, place);
     if (content.has_dims != has_dims()) refuse(value, place);
     if (has_items_of(content, *this)) return value;
     if (content.record != nullptr || record_ != nullptr) refuse(value, place);

@@ -141,10 +141,37 @@ std::vector<std::string> Definitions::services() const {
   return names;
 }
 
-std::string Definitions::outline(std::string_view service) const {
-  const auto found = tables_->definitions().find(service);
-  if (found != tables_->definitions().end()) return found->second.outline;
+namespace {
+
+const DefinitionTable& need_definition(const Tables& tables, std::string_view service) {
+  const auto found = tables.definitions().find(service);
+  if (found != tables.definitions().end()) return found->second;
   throw Error(ErrorCode::key_not_found, "no definition `" + std::string(service) + "`");
+}
+
+}  // namespace
+
+std::string Definitions::outline(std::string_view service) const {
+  return need_definition(*tables_, service).outline;
+}
+
+std::string Definitions::text(std::string_view service) const {
+  return need_definition(*tables_, service).text;
+}
+
+DeclaredNames Definitions::declared(std::string_view service) const {
+  return need_definition(*tables_, service).declared;
+}
+
+const Fields* Tables::find_constants(std::string_view scope) const {
+  const auto found = constants_.find(scope);
+  return found == constants_.end() ? nullptr : &found->second;
+}
+
+Fields Definitions::constants(std::string_view scope) const {
+  if (const Fields* const found = tables_->find_constants(scope)) return *found;
+  throw Error(ErrorCode::key_not_found, "no definition, struct or object `" + std::string(scope) +
+                                            "`");
 }
 
 namespace {

@@ -61,6 +61,7 @@ struct DefinitionTable {
   std::string name;
   std::string text;
   std::string outline;
+  DeclaredNames declared;
   std::vector<const RecordType*> records;
   std::vector<const ObjectType*> objects;
   std::vector<const Definition*> imports;
@@ -84,6 +85,8 @@ class Tables : public std::enable_shared_from_this<Tables> {
   [[nodiscard]] const std::map<std::string, DefinitionTable, std::less<>>& definitions() const {
     return definitions_;
   }
+  /// Null for what has none.
+  [[nodiscard]] const Fields* find_constants(std::string_view scope) const;
   [[nodiscard]] const TypeRegistry& registry() const { return registry_; }
   [[nodiscard]] TypeRegistry& registry() { return registry_; }
   [[nodiscard]] ValueType handle(const TypeNode* node) const {
@@ -108,6 +111,7 @@ class Tables : public std::enable_shared_from_this<Tables> {
   std::map<std::string, EnumTable, std::less<>> enums_;
   std::map<std::string, ObjectTable, std::less<>> objects_;
   std::map<std::string, DefinitionTable, std::less<>> definitions_;
+  std::map<std::string, Fields, std::less<>> constants_;  // by their scope
   TypeRegistry registry_;
   // Made when they are asked for; nodes never go.
   mutable std::mutex mutex_;

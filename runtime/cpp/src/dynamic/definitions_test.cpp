@@ -98,6 +98,40 @@ TEST(Types, AndValuesOutliveTheirDefinitions) {
   EXPECT_EQ(type.convert(StringMap{{"x", 5}})["x"].as<int>(), 5);
 }
 
+TEST(Definitions, TellTheirConstants) {
+  const Definitions definitions(texts_of({"constants"}));
+  const Fields constants = definitions.constants("experimental.constants");
+  ASSERT_EQ(constants.size(), 14U);
+  EXPECT_EQ(constants[0].first, "LOWEST");
+  EXPECT_EQ(constants[0].second.type_text(), "int8");
+  EXPECT_EQ(constants[0].second.as<int>(), -128);
+  EXPECT_EQ(constants[5].second.as<std::uint64_t>(), 18446744073709551615U);
+  EXPECT_THAT(constants[9].second.array<double>(), ElementsAre(0.25, -0.5, 1e-3));
+  EXPECT_EQ(constants[11].second.size(), 0U);
+  EXPECT_EQ(constants[13].first, "LIMITS");
+  EXPECT_EQ(constants[13].second["trim"].as<int>(), -100);
+  EXPECT_EQ(definitions.constants("experimental.constants.Machine").at(1).second.text(), "machine");
+  EXPECT_THAT(definitions.declared("experimental.constants").objects,
+              ElementsAre("experimental.constants.Machine"));
+  EXPECT_EQ(error_text([&] { (void)definitions.constants("experimental.none"); }).substr(0, 3),
+            "30:");
+}
+
+TEST(Definitions, MakeNamedarraysOfNumbersWithOneDimensionMore) {
+  const ValueType points = types().type("conformance.types.Vector3[]");
+  const Array<double> flat{1, 2, 3, 4, 5, 6};
+  const Value two = points.convert(MultiArray<double>{{3, 2}, flat});
+  EXPECT_EQ(two.size(), 2U);
+  EXPECT_EQ(two.at(1)["x"].as<double>(), 4);
+  EXPECT_EQ(two.array<double>().data(), flat.data());  // not copied
+  const Value grid = types().type("conformance.types.Vector3[*]").convert(
+      MultiArray<std::int32_t>{{3, 1, 2}, Array<std::int32_t>{1, 2, 3, 4, 5, 6}});
+  EXPECT_THAT(grid.dims(), ElementsAre(1, 2));
+  EXPECT_EQ(grid.at(1)["z"].as<double>(), 6);
+  EXPECT_EQ(refusal("conformance.types.Vector3[]", MultiArray<double>{{2, 3}, flat}),
+            "11: member pose: expected conformance.types.Vector3[], got double[*]");
+}
+
 TEST(Json, ThatDoesNotFitIsRefused) {
   EXPECT_EQ(
       error_text([] { (void)types().type("double").from_json("[1", "member pan"); }).substr(0, 12),

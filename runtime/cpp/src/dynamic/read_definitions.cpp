@@ -77,6 +77,23 @@ IndexForm form_of(model::IndexForm form) {
   return form == model::IndexForm::int32 ? IndexForm::int32 : IndexForm::string;
 }
 
+Value number_of_constant(const model::Number& number) {
+  return std::visit([](const auto& one) { return Value(one); }, number);
+}
+
+// As the definition spells it: its type is known to the caller.
+Value value_of_constant(const model::ConstantValue& value) {
+  if (const auto* const number = std::get_if<model::Number>(&value)) {
+    return number_of_constant(*number);
+  }
+  if (const auto* const text = std::get_if<std::string>(&value)) return *text;
+  List items;
+  for (const model::Number& number : std::get<std::vector<model::Number>>(value)) {
+    items.push_back(number_of_constant(number));
+  }
+  return items;
+}
+
 }  // namespace
 
 class TableBuilder {
@@ -93,6 +110,7 @@ class TableBuilder {
       for (const model::Object& object : definition->objects) add_object(object);
     }
     for (const auto& definition : model_.definitions()) finish(*definition);
+    for (const auto& definition : model_.definitions()) add_constants(*definition);
   }
 
  private:
@@ -195,6 +213,38 @@ class TableBuilder {
       wire.holding = &holding_of<Value>;
     }
     object.wire_members.push_back(wire);
+  }
+
+  Value typed_value(const model::Constant& constant) {
+    if (!constant.is_struct) {
+      return node(constant.type).convert(value_of_constant(constant.value), Place({}));
+    }
+    Fields fields;
+    for (const auto& field : std::get<std::vector<model::StructValueField>>(constant.value)) {
+      fields.emplace_back(field.field, typed_value(*field.constant));
+    }
+    return Value::record(std::move(fields));
+  }
+
+  void add_constants(const std::string& scope, const std::vector<model::Constant>& constants) {
+    Fields& added = tables_.constants_[scope];
+    for (const model::Constant& one : constants) added.emplace_back(one.name, typed_value(one));
+  }
+
+  void add_constants(const model::Definition& definition) {
+    DeclaredNames& declared = tables_.definitions_.find(definition.name)->second.declared;
+    add_constants(definition.name, definition.constants);
+    for (const model::Enum& one : definition.enums) {
+      declared.enums.push_back(definition.name + "." + one.name);
+    }
+    for (const model::Record& record : definition.records) {
+      declared.records.push_back(record.qualified_name());
+      add_constants(record.qualified_name(), record.constants);
+    }
+    for (const model::Object& object : definition.objects) {
+      declared.objects.push_back(object.qualified_name());
+      add_constants(object.qualified_name(), object.constants);
+    }
   }
 
   void finish(const model::Definition& definition) {

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Connecting, and what concerns a session as a whole.
+#include "rr/error.hpp"
+#include "runtime/matlab/src/credentials.hpp"
+#include "runtime/matlab/src/objects.hpp"
+
+namespace rr::matlab {
+namespace {
+
+// Waits for something that happens on another thread, so that Ctrl-C ends the waiting at least.
+dynamic::Client wait_connected(Runtime& runtime, const std::string& url, ConnectOptions options) {
+  struct Answer {
+    std::atomic<bool> has_come{false};
+    std::exception_ptr error;
+    dynamic::Client client;
+  };
+  auto answer = std::make_shared<Answer>();
+  dynamic::async_connect(
+      runtime.node(), url, std::move(options),
+      [answer, queue = runtime.queue()](std::exception_ptr error, dynamic::Client client) {
+        answer->error = std::move(error);
+        answer->client = std::move(client);
+        answer->has_come = true;
+        queue->wake();
+      });
+  runtime.wait_until([&] { return answer->has_come.load(); }, std::chrono::milliseconds::max());
+  if (answer->error) std::rethrow_exception(answer->error);
+  return std::move(answer->client);
+}
+
+// connect(urls [, username, credentials, object type]): number of the root object; of several URLs
+// the first that answers
+void connect(Runtime& runtime, Call& call) {
+  ConnectOptions options;
+  if (call.has(1)) options.username = call.text(1);
+  if (call.has(2)) options.credentials = read_credentials(call[2]);
+  if (call.has(3)) options.object_type = call.text(3);
+  const std::vector<std::string> urls = read_texts(call[0]);
+  if (urls.empty()) throw Error(ErrorCode::invalid_argument, "there is no URL");
+  for (std::size_t i = 0;; ++i) {
+    try {
+      auto client = wait_connected(runtime, urls[i], options);
+      const dynamic::Object root = client.root();
+      auto connection = std::make_shared<Connection>(runtime, std::move(client));
+      call.give(give_object(runtime, std::move(connection), root));
+      return;
+    } catch (const Error& error) {
+      if (i + 1 == urls.size() || error.code() == ErrorCode::operation_cancelled) throw;
+    }
+  }
+}
+
+// disconnect(object)
+void disconnect(Runtime& runtime, Call& call) {
+  const auto object = object_of(runtime, call);
+  runtime.current.reset();
+  object->connection()->close();
+}
+
+// close(number): gives an object, wire, ... back
+void close(Runtime& runtime, Call& call) {
+  runtime.current.reset();
+  runtime.handles().remove(call.handle(0));
+}
+
+// attributes(object): containers.Map
+void attributes(Runtime& runtime, Call& call) {
+  const auto object = object_of(runtime, call);
+  const auto found =
+      runtime.call_directly([&] { return object->connection()->client().fetch_attributes(); });
+  std::map<std::string, mxArray*> items;
+  for (const auto& [name, value] : found) items.emplace(name, plain_to_mex(value));
+  call.give(make_map(items));
+}
+
+// authenticate(object, username, credentials)
+void authenticate(Runtime& runtime, Call& call) {
+  const auto object = object_of(runtime, call);
+  const std::string username = call.text(1);
+  const auto credentials = read_credentials(call[2]);
+  runtime.call_directly(
+      [&] { object->connection()->client().authenticate(username, credentials); });
+}
+
+// logout(object)
+void logout(Runtime& runtime, Call& call) {
+  const auto object = object_of(runtime, call);
+  runtime.call_directly([&] { object->connection()->client().logout(); });
+}
+
+// service(object): struct with node_id, node_name, object_type
+void service(Runtime& runtime, Call& call) {
+  const auto object = object_of(runtime, call);
+  const auto& client = object->connection()->client();
+  if (!client.rr_session()) {
+    throw Error(ErrorCode::invalid_operation, "the client belongs to a subscription");
+  }
+  call.give(make_struct({{"node_id", make_text(client.remote_node().text())},
+                         {"node_name", make_text(client.remote_name())},
+                         {"object_type", make_text(client.object_type())}}));
+}
+
+}  // namespace
+
+std::map<std::string, VarValue> read_credentials(const mxArray* given) {
+  std::map<std::string, VarValue> credentials;
+  if (is_null(given)) return credentials;
+  const dynamic::Value value = as_subject("credentials", [&] { return plain_from_mex(given); });
+  if (value.kind() != dynamic::Kind::string_map) {
+    throw Error(ErrorCode::data_type_mismatch,
+                "credentials: expected a containers.Map or a struct, got " + described(given));
+  }
+  for (const auto& [name, item] : value.string_map()) {
+    credentials.emplace(name, dynamic::to_varvalue(item));
+  }
+  return credentials;
+}
+
+std::vector<std::string> read_texts(const mxArray* given) {
+  if (!mxIsCell(given)) return {read_text(given)};
+  std::vector<std::string> texts;
+  const auto cells = read_cells(given);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    texts.push_back(in_cell(i, [&] { return read_text(cells[i]); }));
+  }
+  return texts;
+}
+
+std::vector<Command> session_commands() {
+  return {{"connect", connect}, {"disconnect", disconnect}, {"close", close},
+          {"attributes", attributes}, {"authenticate", authenticate}, {"logout", logout},
+          {"service", service}};
+}
+
+}  // namespace rr::matlab

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/matlab/src/completions.hpp"
+
+#include "rr/error.hpp"
+
+namespace rr::matlab {
+namespace {
+
+mxArray* error_to_mex(const std::exception_ptr& error) {
+  const auto failure = run([&] { std::rethrow_exception(error); }, [](const Error&) {});
+  return make_struct({{"identifier", make_text(failure->identifier)},
+                      {"message", make_text(failure->message)}});
+}
+
+}  // namespace
+
+void Completions::end(std::exception_ptr error, Function<mxArray*()> make) const {
+  queue_->push([runtime = runtime_, number = function_, error = std::move(error),
+                make = std::move(make)] {
+    UserFunction* const found = runtime->functions().find(number);
+    const auto connection = found != nullptr ? found->connection.lock() : nullptr;
+    if (!connection) return;
+    const Kept function = std::move(found->function);
+    mxArray* const parameter = mxDuplicateArray(found->parameter.get());
+    connection->remove(number);
+    if (!function) return;
+    std::vector<mxArray*> arguments{parameter, make_null(), make_null()};
+    if (error) {
+      arguments[2] = error_to_mex(error);
+    } else {
+      arguments[1] = make();
+    }
+    UserFunctions::run_alone(function, std::move(arguments));
+  });
+}
+
+void start_call(Runtime& runtime, const std::shared_ptr<Connection>& connection,
+                const Handler& handler, std::chrono::milliseconds limit,
+                const std::function<void(const Completions&)>& start) {
+  const bool has_function = !is_null(handler.function);
+  const std::uint64_t number =
+      connection->add({.function = has_function ? Kept(handler.function) : Kept(),
+                       .parameter = Kept(handler.parameter),
+                       .member = {},
+                       .connection = connection,
+                       .subscription = nullptr});
+  if (limit == std::chrono::milliseconds::max()) limit = runtime.request_timeout;
+  try {
+    std::optional<CallScope> scope;
+    if (limit.count() != 0) scope.emplace(limit);
+    start(Completions(runtime, number));
+  } catch (...) {
+    connection->remove(number);
+    throw;
+  }
+}
+
+}  // namespace rr::matlab

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/matlab/src/queue.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "rr/error.hpp"
+
+namespace rr::matlab {
+
+void PendingCall::finish(dynamic::Value result) {
+  const std::lock_guard lock(mutex_);
+  if (std::exchange(has_ended_, true)) return;
+  result_ = std::move(result);
+  ended_.notify_all();
+}
+
+void PendingCall::fail(std::exception_ptr error) {
+  const std::lock_guard lock(mutex_);
+  if (std::exchange(has_ended_, true)) return;
+  error_ = std::move(error);
+  ended_.notify_all();
+}
+
+dynamic::Value PendingCall::wait() {
+  std::unique_lock lock(mutex_);
+  ended_.wait(lock, [&] { return has_ended_; });
+  if (error_) std::rethrow_exception(error_);
+  return result_;
+}
+
+void Queue::push(Work work, std::uint64_t key) {
+  Work lost;  // destroyed behind the lock
+  const std::lock_guard lock(mutex_);
+  is_woken_ = true;
+  changed_.notify_one();
+  if (key != 0) {
+    const auto same = std::find_if(entries_.begin(), entries_.end(),
+                                   [&](const Entry& entry) { return entry.key == key; });
+    if (same != entries_.end()) {
+      lost = std::exchange(same->work, std::move(work));
+      return;
+    }
+  }
+  entries_.push_back({key, std::move(work)});
+  if (entries_.size() <= limit) return;
+  lost = std::move(entries_.front().work);
+  entries_.pop_front();
+  ++lost_;
+}
+
+Queue::Work Queue::pop() {
+  const std::lock_guard lock(mutex_);
+  if (entries_.empty()) return {};
+  Work work = std::move(entries_.front().work);
+  entries_.pop_front();
+  return work;
+}
+
+std::size_t Queue::size() const {
+  const std::lock_guard lock(mutex_);
+  return entries_.size() + calls_.size();
+}
+
+std::uint64_t Queue::lost_count() const {
+  const std::lock_guard lock(mutex_);
+  return lost_;
+}
+
+void Queue::push(std::shared_ptr<PendingCall> call) {
+  const std::lock_guard lock(mutex_);
+  calls_.push_back(std::move(call));
+  is_woken_ = true;
+  changed_.notify_one();
+}
+
+std::shared_ptr<PendingCall> Queue::pop_call() {
+  const std::lock_guard lock(mutex_);
+  if (calls_.empty()) return nullptr;
+  auto call = std::move(calls_.front());
+  calls_.pop_front();
+  std::erase_if(running_, [](const auto& one) { return one.expired(); });
+  running_.push_back(call);
+  return call;
+}
+
+void Queue::abort_calls(std::uint64_t slot) {
+  std::vector<std::shared_ptr<PendingCall>> calls;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& call : calls_) calls.push_back(call);
+    for (const auto& one : running_) calls.push_back(one.lock());
+    std::erase_if(calls_, [&](const auto& call) { return call->slot() == slot; });
+  }
+  for (const auto& call : calls) {
+    if (!call || call->slot() != slot) continue;
+    call->fail(std::make_exception_ptr(
+        Error(ErrorCode::operation_aborted, "the client's function is gone")));
+  }
+}
+
+void Queue::wait(std::chrono::milliseconds longest) {
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, longest, [&] { return is_woken_; });
+  is_woken_ = false;
+}
+
+void Queue::wake() {
+  const std::lock_guard lock(mutex_);
+  is_woken_ = true;
+  changed_.notify_one();
+}
+
+void Queue::clear() {
+  std::deque<Entry> entries;  // destroyed behind the lock
+  const std::lock_guard lock(mutex_);
+  entries.swap(entries_);
+}
+
+}  // namespace rr::matlab

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <exception>
+#include <memory>
+#include <mutex>
+
+#include "rr/dynamic.hpp"
+#include "rr/function.hpp"
+
+namespace rr::matlab {
+
+/// A callback of a service's: a thread of the node waits until the interpreter's has run the
+/// function, or until it is not to be run any more.
+class PendingCall {
+ public:
+  /// `slot` tells whose function it is.
+  PendingCall(std::uint64_t slot, dynamic::List arguments)
+      : slot_(slot), arguments_(std::move(arguments)) {}
+
+  [[nodiscard]] std::uint64_t slot() const { return slot_; }
+  [[nodiscard]] const dynamic::List& arguments() const { return arguments_; }
+  /// The first of the two counts.
+  void finish(dynamic::Value result);
+  void fail(std::exception_ptr error);
+  /// Throws what it failed with.
+  dynamic::Value wait();
+
+ private:
+  const std::uint64_t slot_;
+  const dynamic::List arguments_;
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool has_ended_ = false;
+  dynamic::Value result_;
+  std::exception_ptr error_;
+};
+
+/// What threads of the node have for the interpreter's. Any thread puts in, the interpreter's takes
+/// out.
+class Queue {
+ public:
+  using Work = Function<void()>;
+  /// More than so many events, packets and completions do not wait; the oldest is lost.
+  static constexpr std::size_t limit = 65'536;
+
+  /// Something that the interpreter's thread will run. Of several with the same `key`, unless it is
+  /// 0, only the newest is kept, at the place of the first.
+  void push(Work work, std::uint64_t key = 0);
+  /// Empty when there is none.
+  Work pop();
+  [[nodiscard]] std::size_t size() const;
+  [[nodiscard]] std::uint64_t lost_count() const;
+
+  /// A callback; runs before everything else.
+  void push(std::shared_ptr<PendingCall> call);
+  std::shared_ptr<PendingCall> pop_call();
+  /// Ends those of a slot that wait or run: with operation_aborted.
+  void abort_calls(std::uint64_t slot);
+
+  /// Returns when something was put in, wake() was called since wait() before, or the time is over.
+  void wait(std::chrono::milliseconds longest);
+  void wake();
+  void clear();
+
+ private:
+  struct Entry {
+    std::uint64_t key;
+    Work work;
+  };
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  bool is_woken_ = false;
+  std::deque<Entry> entries_;
+  std::deque<std::shared_ptr<PendingCall>> calls_;
+  std::vector<std::weak_ptr<PendingCall>> running_;
+  std::uint64_t lost_ = 0;
+};
+
+}  // namespace rr::matlab

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/matlab/src/runtime.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "runtime/matlab/src/objects.hpp"
+
+namespace rr::matlab {
+
+using Clock = std::chrono::steady_clock;
+
+Runtime::Runtime()
+    : queue_(std::make_shared<Queue>()),
+      log_(std::make_shared<Log>()),
+      interrupts_(std::make_unique<Interrupts>([this] { interrupted(); })) {
+  NodeOptions options;
+  options.log = [log = log_](LogLevel level, std::string_view text) { log->write(level, text); };
+  node_ = std::make_unique<Node>(std::move(options));
+}
+
+// What waits for the interpreter's thread is let go first, then the threads end, then what they
+// used goes.
+Runtime::~Runtime() {
+  current.reset();
+  last_error.reset();
+  handles_.clear();
+  functions_.clear();
+  node_->shutdown();
+  queue_->clear();
+}
+
+Runtime::Waiting::Waiting(Runtime& runtime) : runtime_(runtime) {
+  const std::lock_guard lock(runtime.waiting_mutex_);
+  if (runtime.waiting_.empty()) runtime.interrupts_->begin();
+  runtime.waiting_.push_back(cancellation);
+}
+
+Runtime::Waiting::~Waiting() {
+  const std::lock_guard lock(runtime_.waiting_mutex_);
+  runtime_.waiting_.pop_back();
+}
+
+std::unique_ptr<CallScope> Runtime::make_scope(
+    const Waiting& waiting, std::optional<std::chrono::milliseconds> limit) const {
+  const std::chrono::milliseconds timeout = limit.value_or(request_timeout);
+  if (timeout.count() == 0) return std::make_unique<CallScope>(waiting.cancellation);
+  return std::make_unique<CallScope>(timeout, waiting.cancellation);
+}
+
+void Runtime::interrupted() {
+  std::vector<Cancellation> waiting;
+  {
+    const std::lock_guard lock(waiting_mutex_);
+    waiting = waiting_;
+  }
+  for (Cancellation& one : waiting) one.cancel();
+  queue_->wake();
+}
+
+bool Runtime::may_block() const {
+  return !Interrupts::must_be_asked() && !functions_.has_callbacks();
+}
+
+bool Runtime::wait_until(const std::function<bool()>& is_true, std::chrono::milliseconds limit) {
+  Waiting waiting(*this);
+  const bool is_limited = limit < std::chrono::hours(24 * 365);
+  const auto end = is_limited ? Clock::now() + limit : Clock::time_point::max();
+  while (true) {
+    run_calls();
+    if (is_true()) return true;
+    if (waiting.cancellation.is_cancelled() || interrupts_->is_pending()) {
+      throw Error(ErrorCode::operation_cancelled, "interrupted");
+    }
+    const auto now = Clock::now();
+    if (now >= end) return false;
+    constexpr std::chrono::milliseconds slice(20);
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - now);
+    queue_->wait(is_limited ? std::min(slice, left) : slice);
+  }
+}
+
+std::size_t Runtime::run_queue() {
+  run_calls();
+  std::size_t count = 0;
+  for (std::size_t left = queue_->size(); left != 0; --left) {
+    const Queue::Work work = queue_->pop();
+    if (!work) break;
+    ++count;
+    work();
+    run_calls();
+  }
+  return count;
+}
+
+void Runtime::run_calls() {
+  while (const std::shared_ptr<PendingCall> call = queue_->pop_call()) {
+    // Whatever ends it, the service's call must not wait for ever.
+    struct Ended {
+      ~Ended() {
+        call.fail(std::make_exception_ptr(
+            Error(ErrorCode::operation_aborted, "the client's function was interrupted")));
+      }
+      PendingCall& call;
+    } ended{*call};
+    try {
+      call->finish(run_callback(*this, *call));
+    } catch (const Error&) {
+      call->fail(std::current_exception());
+    }
+  }
+}
+
+}  // namespace rr::matlab

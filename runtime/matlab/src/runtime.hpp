@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "rr/call.hpp"
+#include "rr/dynamic.hpp"
+#include "rr/matlab/failure.hpp"
+#include "rr/node.hpp"
+#include "runtime/matlab/src/call.hpp"
+#include "runtime/matlab/src/handles.hpp"
+#include "runtime/matlab/src/interrupts.hpp"
+#include "runtime/matlab/src/log.hpp"
+#include "runtime/matlab/src/queue.hpp"
+#include "runtime/matlab/src/user_functions.hpp"
+
+namespace rr::matlab {
+
+class Connection;
+
+/// The one node of an interpreter, and what the interpreter holds of it. Made by the first command,
+/// on the interpreter's thread, which alone uses it; what threads of the node have for that one
+/// goes through the queue.
+class Runtime {
+ public:
+  Runtime();
+  ~Runtime();
+  Runtime(const Runtime&) = delete;
+  Runtime& operator=(const Runtime&) = delete;
+
+  Node& node() { return *node_; }
+  Handles& handles() { return handles_; }
+  UserFunctions& functions() { return functions_; }
+  Log& log() { return *log_; }
+  [[nodiscard]] const std::shared_ptr<Queue>& queue() const { return queue_; }
+
+  /// How long calls wait for their answers; 0: as the node does.
+  std::chrono::milliseconds request_timeout{0};
+
+  /// A call to a service that blocks: `direct()` if nothing else can happen meanwhile; else
+  /// `start(done)`, and callbacks run while it is waited for. An interrupt ends it with
+  /// operation_cancelled.
+  template <class... Result, class Direct, class Start>
+  auto call(Direct&& direct, Start&& start, std::optional<std::chrono::milliseconds> limit = {});
+
+  /// A call that has no other form.
+  template <class Direct>
+  auto call_directly(Direct&& direct, std::optional<std::chrono::milliseconds> limit = {});
+
+  /// Waits, running callbacks, until `is_true()`; false when the time is over before. Something
+  /// must wake the queue when it may have become true, or it is noticed after up to 20 ms. Throws
+  /// rr::Error (operation_cancelled) after an interrupt.
+  bool wait_until(const std::function<bool()>& is_true, std::chrono::milliseconds limit);
+
+  /// Runs what waits in the queue, at most what is there now; returns how many.
+  std::size_t run_queue();
+  /// Runs callbacks that wait.
+  void run_calls();
+
+  /// What the last error that was raised had besides its message, for who asks.
+  struct LastError {
+    Error error{ErrorCode::none, ""};
+    std::shared_ptr<Connection> connection;
+  };
+  std::optional<LastError> last_error;
+  /// Whose command runs, so that a parameter of its error can be read.
+  std::shared_ptr<Connection> current;
+
+ private:
+  /// A blocking call, for who is told of interrupts on another thread.
+  class Waiting {
+   public:
+    explicit Waiting(Runtime& runtime);
+    ~Waiting();
+    Waiting(const Waiting&) = delete;
+    Waiting& operator=(const Waiting&) = delete;
+    Cancellation cancellation;
+
+   private:
+    Runtime& runtime_;
+  };
+  std::unique_ptr<CallScope> make_scope(const Waiting& waiting,
+                                        std::optional<std::chrono::milliseconds> limit) const;
+  void interrupted();
+  [[nodiscard]] bool may_block() const;
+
+  std::shared_ptr<Queue> queue_;
+  std::shared_ptr<Log> log_;
+  UserFunctions functions_;
+  Handles handles_;
+  std::mutex waiting_mutex_;
+  std::vector<Cancellation> waiting_;
+  std::unique_ptr<Interrupts> interrupts_;
+  std::unique_ptr<Node> node_;
+};
+
+template <class Direct>
+auto Runtime::call_directly(Direct&& direct, std::optional<std::chrono::milliseconds> limit) {
+  Waiting waiting(*this);
+  const auto scope = make_scope(waiting, limit);
+  return direct();
+}
+
+template <class... Result, class Direct, class Start>
+auto Runtime::call(Direct&& direct, Start&& start,
+                   std::optional<std::chrono::milliseconds> limit) {
+  Waiting waiting(*this);
+  const auto scope = make_scope(waiting, limit);
+  if (may_block()) return direct();
+  struct Answer {
+    std::atomic<bool> has_come{false};
+    std::exception_ptr error;
+    std::tuple<Result...> result;
+  };
+  auto answer = std::make_shared<Answer>();
+  start([answer, queue = queue_](std::exception_ptr error, Result... result) {
+    answer->error = std::move(error);
+    answer->result = std::tuple<Result...>(std::move(result)...);
+    answer->has_come = true;
+    queue->wake();
+  });
+  wait_until([&] { return answer->has_come.load(); }, std::chrono::milliseconds::max());
+  if (answer->error) std::rethrow_exception(answer->error);
+  if constexpr (sizeof...(Result) == 1) return std::move(std::get<0>(answer->result));
+}
+
+}  // namespace rr::matlab

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/matlab/src/number_types.hpp"
+#include "runtime/matlab/src/values.hpp"
+
+namespace rr::matlab {
+namespace {
+
+using dynamic::Kind;
+using dynamic::Value;
+
+Dims dims_of(const Value& array) {
+  Dims dims;
+  for (const std::uint32_t dim : array.dims()) dims.push_back(static_cast<mwSize>(dim));
+  return full_dims(std::move(dims));
+}
+
+mxArray* number_to_mex(const Value& value) {
+  return with_number(value.number_type(), [&]<class T>(std::type_identity<T>) {
+    return make_number<T>(value.as<T>());
+  });
+}
+
+mxArray* numbers_to_mex(const Value& value, ElementType number, const Dims& dims) {
+  return with_number(number, [&]<class T>(std::type_identity<T>) {
+    const Array<T> items = value.array<T>();
+    return make_numbers<T>({items.data(), items.size()}, dims);
+  });
+}
+
+// The numbers of a namedarray, one after the other.
+template <class T>
+void append_numbers(const Value& value, std::vector<T>& numbers) {
+  if (value.kind() == Kind::number) {
+    numbers.push_back(value.as<T>());
+  } else if (value.kind() == Kind::array) {
+    const Array<T> items = value.array<T>();
+    numbers.insert(numbers.end(), items.begin(), items.end());
+  } else {
+    for (const auto& [name, field] : value.fields()) append_numbers(field, numbers);
+  }
+}
+
+mxArray* namedarray_to_mex(const Value& value, const TypePlan& plan) {
+  return with_number(plan.number, [&]<class T>(std::type_identity<T>) {
+    // Not a vector of bool, which is no numbers.
+    using Item = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
+    std::vector<Item> numbers;
+    append_numbers(value, numbers);
+    return make_column<Item>(numbers);
+  });
+}
+
+void fill_record(mxArray* to, mwIndex index, const Value& value, const TypePlan& plan,
+                 Plans& plans) {
+  const dynamic::List fields = value.items();
+  for (std::size_t i = 0; i < fields.size() && i < plan.fields.size(); ++i) {
+    mxSetFieldByNumber(to, index, static_cast<int>(i), to_mex(fields[i], *plan.fields[i], plans));
+  }
+}
+
+mxArray* record_to_mex(const Value& value, const TypePlan& plan, Plans& plans) {
+  if (plan.is_namedarray()) return namedarray_to_mex(value, plan);
+  auto names = plan.name_pointers;
+  mxArray* const record = mxCreateStructMatrix(1, 1, static_cast<int>(names.size()), names.data());
+  fill_record(record, 0, value, plan, plans);
+  return record;
+}
+
+mxArray* array_to_mex(const Value& value, const TypePlan& plan, Plans& plans) {
+  Dims dims = dims_of(value);
+  if (plan.item == nullptr || plan.item->kind != Kind::record) {
+    return numbers_to_mex(value, value.number_type(), dims);
+  }
+  const TypePlan& item = *plan.item;
+  if (item.is_namedarray()) {
+    dims.insert(dims.begin(), static_cast<mwSize>(item.numbers));
+    if (!value.has_dims()) dims.pop_back();  // no column of columns
+    return numbers_to_mex(value, item.number, dims);
+  }
+  auto names = item.name_pointers;
+  mxArray* const records = mxCreateStructArray(static_cast<mwSize>(dims.size()), dims.data(),
+                                               static_cast<int>(names.size()), names.data());
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    fill_record(records, static_cast<mwIndex>(i), value.at(i), item, plans);
+  }
+  return records;
+}
+
+mxArray* list_to_mex(const Value& value, const TypePlan& plan, Plans& plans) {
+  std::vector<mxArray*> items;
+  for (const Value& item : value.list()) items.push_back(to_mex(item, *plan.item, plans));
+  return make_cells(items);
+}
+
+// What is in a varvalue says its type itself.
+mxArray* any_to_mex(const Value& value, Plans& plans) {
+  mxArray* data = nullptr;
+  const TypePlan* const plan = plans.plan(value.type());
+  std::string type = "null";
+  if (plan == nullptr) {
+    data = make_null();
+  } else {
+    data = to_mex(value, *plan, plans);
+    type = plan->type.text();
+  }
+  return call_function("RobotRaconteurVarValue", {data, make_text(type)});
+}
+
+}  // namespace
+
+mxArray* to_mex(const Value& value, const TypePlan& plan, Plans& plans) {
+  if (plan.kind == Kind::any) return any_to_mex(value, plans);
+  switch (value.kind()) {
+    case Kind::number:
+    case Kind::enumeration:
+      return number_to_mex(value);
+    case Kind::text:
+      return make_text(value.text());
+    case Kind::array:
+      return array_to_mex(value, plan, plans);
+    case Kind::record:
+      return record_to_mex(value, plan, plans);
+    case Kind::list:
+      return list_to_mex(value, plan, plans);
+    case Kind::int_map: {
+      std::map<std::int32_t, mxArray*> items;
+      for (const auto& [key, item] : value.int_map()) {
+        items.emplace(key, to_mex(item, *plan.item, plans));
+      }
+      return make_map(items);
+    }
+    case Kind::string_map: {
+      std::map<std::string, mxArray*> items;
+      for (const auto& [key, item] : value.string_map()) {
+        items.emplace(key, to_mex(item, *plan.item, plans));
+      }
+      return make_map(items);
+    }
+    default:
+      return make_null();
+  }
+}
+
+mxArray* plain_to_mex(const Value& value) {
+  switch (value.kind()) {
+    case Kind::list: {
+      std::vector<mxArray*> items;
+      for (const Value& item : value.list()) items.push_back(plain_to_mex(item));
+      return make_cells(items);
+    }
+    case Kind::string_map: {
+      std::map<std::string, mxArray*> items;
+      for (const auto& [key, item] : value.string_map()) items.emplace(key, plain_to_mex(item));
+      return make_map(items);
+    }
+    case Kind::int_map: {
+      std::map<std::int32_t, mxArray*> items;
+      for (const auto& [key, item] : value.int_map()) items.emplace(key, plain_to_mex(item));
+      return make_map(items);
+    }
+    default: {
+      Plans plans;
+      const TypePlan* const plan = plans.plan(value.type());
+      return plan != nullptr ? to_mex(value, *plan, plans) : make_null();
+    }
+  }
+}
+
+mxArray* time_to_mex(const TimeSpec& time) {
+  return make_struct({{"seconds", make_number(time.seconds)},
+                      {"nanoseconds", make_number(time.nanoseconds)}});
+}
+
+}  // namespace rr::matlab

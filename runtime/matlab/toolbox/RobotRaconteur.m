@@ -1,0 +1,222 @@
+classdef RobotRaconteur
+  %ROBOTRACONTEUR Clients of Robot Raconteur services.
+  %   c = RobotRaconteur.ConnectService(url) connects to a service by nothing but its URL; what it
+  %   has is known from the service. methods(RobotRaconteur) lists what else there is. Times are in
+  %   seconds.
+  methods (Static)
+    function obj = Connect(varargin)
+      %CONNECT The same as ConnectService, as it was called in 2011.
+      obj = RobotRaconteur.ConnectService(varargin{:});
+    end
+    function obj = ConnectService(url, username, credentials, object_type)
+      %CONNECTSERVICE c = RobotRaconteur.ConnectService(url, username, credentials, object_type)
+      %   url may be a cell array of several ways to one service. credentials is a containers.Map
+      %   or a struct, as struct('password', 'secret').
+      if nargin < 2
+        username = '';
+      end
+      if nargin < 3
+        credentials = [];
+      end
+      if nargin < 4
+        object_type = '';
+      end
+      obj = RobotRaconteurObject(rrmex('connect', url, username, credentials, object_type));
+    end
+    function DisconnectService(obj)
+      %DISCONNECTSERVICE End the session of an object. It also ends when no variable is left of it.
+      if isa(obj, 'RobotRaconteurObject')
+        rrmex('disconnect', obj.rr_h);
+      else
+        obj.Close();
+      end
+    end
+    function Authenticate(obj, username, credentials)
+      %AUTHENTICATE Log in at the service of an object.
+      rrmex('authenticate', obj.rr_h, username, credentials);
+    end
+    function Logout(obj)
+      rrmex('logout', obj.rr_h);
+    end
+    function found = GetServiceAttributes(obj)
+      %GETSERVICEATTRIBUTES What the service tells of itself, as a containers.Map.
+      found = rrmex('attributes', obj.rr_h);
+    end
+
+    function count = Poll(seconds)
+      %POLL Call the handlers of what has come: events, packets, values, ended calls.
+      %   Waits up to so long for the first; returns how many were called.
+      if nargin < 1
+        seconds = 0;
+      end
+      count = rrmex('poll', seconds);
+    end
+    function count = ProcessRequests()
+      %PROCESSREQUESTS The same as Poll(0).
+      count = rrmex('poll', 0);
+    end
+    function EnableEvents(obj)
+      %ENABLEEVENTS Events are delivered, which they are anyway, and at Octave's prompt without Poll.
+      persistent is_hooked
+      rrmex('events', obj.rr_h, true);
+      if isempty(is_hooked) && exist('OCTAVE_VERSION', 'builtin') && isguirunning_or_prompt()
+        add_input_event_hook(@() RobotRaconteur.Poll(0));
+        is_hooked = true;
+      end
+    end
+    function DisableEvents(obj)
+      %DISABLEEVENTS Events of the object's session are dropped until EnableEvents.
+      rrmex('events', obj.rr_h, false);
+    end
+
+    function RequestObjectLock(obj, kind)
+      %REQUESTOBJECTLOCK Keep others from an object: 'User' (all sessions of the user) or 'Client'.
+      if nargin < 2
+        kind = 'User';
+      end
+      rrmex('lock', obj.rr_h, kind);
+    end
+    function ReleaseObjectLock(obj)
+      rrmex('unlock', obj.rr_h);
+    end
+    function MonitorEnter(obj, seconds)
+      %MONITORENTER Wait until this session alone may use the object.
+      if nargin < 2
+        seconds = -1;
+      end
+      rrmex('monitor_enter', obj.rr_h, seconds);
+    end
+    function MonitorExit(obj)
+      rrmex('monitor_exit', obj.rr_h);
+    end
+
+    function made = CreateStructure(obj, name)
+      %CREATESTRUCTURE A struct, pod or namedarray of a definition with all fields: 0, '', [].
+      made = rrmex('create', obj.rr_h, name);
+    end
+    function found = GetConstants(obj, service)
+      %GETCONSTANTS Constants and enums of a definition, in a struct; those of its structs and
+      %   objects are structs in it.
+      if nargin < 2
+        name = rrmex('about', obj.rr_h).type;
+        service = name(1:find(name == '.', 1, 'last') - 1);
+      end
+      found = rrmex('constants', obj.rr_h, service);
+    end
+    function names = GetPulledServiceTypes(obj)
+      %GETPULLEDSERVICETYPES Names of the definitions that the service has sent.
+      names = rrmex('definitions', obj.rr_h);
+    end
+    function text = GetPulledServiceType(obj, name)
+      %GETPULLEDSERVICETYPE The text of one of them.
+      text = rrmex('definition', obj.rr_h, name);
+    end
+
+    function sub = SubscribeService(url, username, credentials, object_type)
+      %SUBSCRIBESERVICE Keep a connection to a service, also when it goes and comes back.
+      if nargin < 2
+        username = '';
+      end
+      if nargin < 3
+        credentials = [];
+      end
+      if nargin < 4
+        object_type = '';
+      end
+      sub = RobotRaconteurSubscription( ...
+        rrmex('subscribe', url, username, credentials, object_type));
+    end
+    function sub = SubscribeServiceByType(types, filter)
+      %SUBSCRIBESERVICEBYTYPE The same for all services of these types that are found. filter is a
+      %   struct with any of Nodes, ServiceNames, TransportSchemes, Attributes, MaxConnections.
+      if nargin < 2
+        filter = struct();
+      end
+      sub = RobotRaconteurSubscription(rrmex('subscribe_type', types, filter));
+    end
+    function sub = SubscribeServiceInfo2(types, filter)
+      %SUBSCRIBESERVICEINFO2 Which services there are, without connecting.
+      if nargin < 2
+        filter = struct();
+      end
+      sub = RobotRaconteurServiceInfo2Subscription(rrmex('subscribe_info', types, filter));
+    end
+
+    function found = FindServiceByType(type, schemes, seconds)
+      %FINDSERVICEBYTYPE Services of a type, as a struct array. Nodes are asked and waited for.
+      if nargin < 2
+        schemes = {};
+      end
+      if nargin < 3
+        seconds = 1;
+      end
+      found = rrmex('find_type', type, schemes, seconds);
+    end
+    function found = FindNodeByID(id, schemes, seconds)
+      if nargin < 2
+        schemes = {};
+      end
+      if nargin < 3
+        seconds = 1;
+      end
+      found = rrmex('find_node_id', id, schemes, seconds);
+    end
+    function found = FindNodeByName(name, schemes, seconds)
+      if nargin < 2
+        schemes = {};
+      end
+      if nargin < 3
+        seconds = 1;
+      end
+      found = rrmex('find_node_name', name, schemes, seconds);
+    end
+    function UpdateDetectedNodes(schemes, seconds)
+      %UPDATEDETECTEDNODES Ask all nodes to announce themselves, and wait.
+      if nargin < 2
+        seconds = 1;
+      end
+      rrmex('update_nodes', seconds);
+    end
+    function found = GetDetectedNodes()
+      %GETDETECTEDNODES Nodes that are known, as a struct array.
+      found = rrmex('detected_nodes');
+    end
+
+    function SetLogLevel(level)
+      %SETLOGLEVEL 'DEBUG', 'INFO', 'WARNING', 'ERROR', 'DISABLE'
+      rrmex('log_level', level);
+    end
+    function OpenLogFile(path)
+      rrmex('log_open', path);
+    end
+    function CloseLogFile()
+      rrmex('log_close');
+    end
+    function time = nowUTC()
+      %NOWUTC The time, as wires have it: struct with seconds since 1970 and nanoseconds.
+      time = rrmex('now');
+    end
+    function Sleep(seconds)
+      %SLEEP Wait; callbacks of services run meanwhile.
+      rrmex('sleep', seconds);
+    end
+    function setRequestTimeout(seconds)
+      %SETREQUESTTIMEOUT How long calls wait for their answers, 15 at first.
+      rrmex('request_timeout', seconds);
+    end
+    function found = GetLastError()
+      %GETLASTERROR What the last error of a call had: code, name, subname, message, identifier,
+      %   and the parameter that the service has sent with it.
+      found = rrmex('last_error');
+    end
+    function Shutdown()
+      %SHUTDOWN End all connections and the node. What is used next starts another one.
+      rrmex('shutdown');
+    end
+  end
+end
+
+function answer = isguirunning_or_prompt()
+% The hook exists where there is a prompt only.
+answer = exist('add_input_event_hook', 'builtin') ~= 0;
+end

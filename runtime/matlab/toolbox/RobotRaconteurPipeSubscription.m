@@ -1,0 +1,42 @@
+classdef RobotRaconteurPipeSubscription < RobotRaconteurHandle
+  %ROBOTRACONTEURPIPESUBSCRIPTION A pipe of all clients of a subscription.
+  properties (Dependent)
+    Available
+  end
+  methods
+    function obj = RobotRaconteurPipeSubscription(number)
+      obj.rr_h = number;
+    end
+    function count = get.Available(obj)
+      count = rrmex('pipe_sub_available', obj.rr_h);
+    end
+    function [packet, client] = ReceivePacketWait(obj, seconds)
+      if nargin < 2
+        seconds = -1;
+      end
+      [has_come, packet, client] = rrmex('pipe_sub_receive', obj.rr_h, seconds);
+      if ~has_come
+        error('RobotRaconteur:OperationTimeout', 'no packet has come');
+      end
+    end
+    function [packet, client] = ReceivePacket(obj)
+      [packet, client] = ReceivePacketWait(obj, 0);
+    end
+    function [has_come, packet, client] = TryReceivePacketWait(obj, seconds)
+      if nargin < 2
+        seconds = 0;
+      end
+      [has_come, packet, client] = rrmex('pipe_sub_receive', obj.rr_h, seconds);
+    end
+    function count = SendPacketAll(obj, packet)
+      %SENDPACKETALL Send to all clients that are connected now; how many these are.
+      count = rrmex('pipe_sub_send', obj.rr_h, packet);
+    end
+    function text = GetLastError(obj)
+      text = rrmex('member_sub_error', obj.rr_h, 'pipe');
+    end
+    function Close(obj)
+      delete(obj);
+    end
+  end
+end

@@ -1,0 +1,90 @@
+classdef RobotRaconteurSubscription < RobotRaconteurHandle
+  %ROBOTRACONTEURSUBSCRIPTION Connections to services that come and go.
+  methods
+    function obj = RobotRaconteurSubscription(number)
+      obj.rr_h = number;
+    end
+    function client = GetDefaultClient(obj)
+      %GETDEFAULTCLIENT The client that is connected longest.
+      client = RobotRaconteurObject(rrmex('sub_default', obj.rr_h));
+    end
+    function [has_one, client] = TryGetDefaultClient(obj)
+      %TRYGETDEFAULTCLIENT [has_one, client]
+      number = rrmex('sub_try_default', obj.rr_h);
+      has_one = number ~= 0;
+      client = [];
+      if has_one
+        client = RobotRaconteurObject(number);
+      end
+    end
+    function client = GetDefaultClientWait(obj, seconds)
+      %GETDEFAULTCLIENTWAIT The same, waited for; RobotRaconteur:OperationTimeout with the reason.
+      if nargin < 2
+        seconds = -1;
+      end
+      client = RobotRaconteurObject(rrmex('sub_wait', obj.rr_h, seconds));
+    end
+    function found = GetConnectedClients(obj)
+      %GETCONNECTEDCLIENTS Cells of structs with NodeID, ServiceName, Client.
+      [found, numbers] = rrmex('sub_clients', obj.rr_h);
+      for i = 1:numel(found)
+        found{i}.Client = RobotRaconteurObject(numbers{i});
+      end
+    end
+    function found = GetClientConnectFailures(obj)
+      %GETCLIENTCONNECTFAILURES Cells of structs with URLs, Message, Identifier, Failures.
+      found = rrmex('sub_failures', obj.rr_h);
+    end
+    function claim = ClaimClient(obj, client)
+      %CLAIMCLIENT Keep a client when the subscription is closed; ReleaseClient gives it back.
+      claim = rrmex('sub_claim', obj.rr_h, client.rr_h);
+    end
+    function ReleaseClient(obj, claim)
+      rrmex('sub_release', obj.rr_h, claim);
+    end
+    function UpdateServiceURL(obj, urls)
+      rrmex('sub_update_urls', obj.rr_h, urls);
+    end
+    function UpdateServiceByType(obj, types, filter)
+      if nargin < 3
+        filter = struct();
+      end
+      rrmex('sub_update_types', obj.rr_h, types, filter);
+    end
+    function SetConnectRetryDelay(obj, seconds)
+      rrmex('sub_retry_delay', obj.rr_h, seconds);
+    end
+    function wire = SubscribeWire(obj, name, path)
+      %SUBSCRIBEWIRE A wire of all clients, now and later; path as '*.tool'.
+      if nargin < 3
+        path = '';
+      end
+      wire = RobotRaconteurWireSubscription(rrmex('wire_sub', obj.rr_h, name, path));
+    end
+    function pipe = SubscribePipe(obj, name, path, most)
+      %SUBSCRIBEPIPE A pipe likewise; at most so many packets wait, 0 for any number.
+      if nargin < 3
+        path = '';
+      end
+      if nargin < 4
+        most = 0;
+      end
+      pipe = RobotRaconteurPipeSubscription(rrmex('pipe_sub', obj.rr_h, name, path, most));
+    end
+    function objects = SubscribeSubObject(obj, path)
+      %SUBSCRIBESUBOBJECT An object below the root, as '*.tool'.
+      objects = RobotRaconteurSubObjectSubscription(rrmex('object_sub', obj.rr_h, path));
+    end
+    function listener = addlistener(obj, event, handler)
+      %ADDLISTENER ClientConnected and ClientDisconnected: handler(id, why); ClientConnectFailed:
+      %   handler(url, why). From RobotRaconteur.Poll.
+      listener = RobotRaconteurListener(rrmex('sub_listen', obj.rr_h, event, handler));
+    end
+    function Close(obj)
+      rrmex('sub_close', obj.rr_h);
+    end
+    function disp(obj)
+      fprintf('  subscription\n');
+    end
+  end
+end

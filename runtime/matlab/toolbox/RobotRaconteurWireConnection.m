@@ -1,0 +1,81 @@
+classdef RobotRaconteurWireConnection < RobotRaconteurHandle
+  %ROBOTRACONTEURWIRECONNECTION A connected wire. The newest value is received in the background.
+  %   InValue is the newest value from the service, OutValue what is sent to it. InValueLifespan is
+  %   in seconds, less than zero for values that do not expire.
+  properties (Dependent)
+    InValue
+    OutValue
+    InValueValid
+    OutValueValid
+    InValueLifespan
+    LastValueReceivedTime
+    LastValueSentTime
+    IsOpen
+  end
+  methods
+    function obj = RobotRaconteurWireConnection(number)
+      obj.rr_h = number;
+    end
+    function value = get.InValue(obj)
+      value = rrmex('wire_in', obj.rr_h);
+    end
+    function value = get.OutValue(obj)
+      value = rrmex('wire_out', obj.rr_h);
+    end
+    function set.OutValue(obj, value)
+      rrmex('wire_set_out', obj.rr_h, value);
+    end
+    function answer = get.InValueValid(obj)
+      answer = rrmex('wire_try_in', obj.rr_h);
+    end
+    function answer = get.OutValueValid(obj)
+      answer = rrmex('wire_has_out', obj.rr_h);
+    end
+    function seconds = get.InValueLifespan(obj)
+      seconds = rrmex('wire_lifespan', obj.rr_h);
+    end
+    function set.InValueLifespan(obj, seconds)
+      rrmex('wire_lifespan', obj.rr_h, seconds);
+    end
+    function time = get.LastValueReceivedTime(obj)
+      [value, time] = rrmex('wire_in', obj.rr_h);
+    end
+    function time = get.LastValueSentTime(obj)
+      [value, time] = rrmex('wire_out', obj.rr_h);
+    end
+    function answer = get.IsOpen(obj)
+      answer = rrmex('wire_is_open', obj.rr_h);
+    end
+    function [is_valid, value, time] = TryGetInValue(obj)
+      %TRYGETINVALUE [is_valid, value, time]
+      value = [];
+      time = [];
+      if rrmex('wire_try_in', obj.rr_h)
+        [is_valid, value, time] = rrmex('wire_try_in', obj.rr_h);
+      else
+        is_valid = false;
+      end
+    end
+    function answer = WaitInValueValid(obj, seconds)
+      %WAITINVALUEVALID Wait for a value, at most so long; false when none has come.
+      if nargin < 2
+        seconds = -1;
+      end
+      answer = rrmex('wire_wait', obj.rr_h, seconds);
+    end
+    function listener = addlistener(obj, event, handler)
+      %ADDLISTENER addlistener(wire, 'WireValueChanged', handler): handler(value, time) for the
+      %   newest value, from RobotRaconteur.Poll.
+      if ~strcmp(event, 'WireValueChanged')
+        error('RobotRaconteur:MemberNotFound', 'a wire has the event WireValueChanged only');
+      end
+      listener = RobotRaconteurListener(rrmex('wire_listen', obj.rr_h, handler));
+    end
+    function Close(obj)
+      rrmex('wire_close', obj.rr_h);
+    end
+    function disp(obj)
+      fprintf('  connected wire\n');
+    end
+  end
+end

@@ -1,0 +1,26 @@
+function text = rr_shown_value(obj, name, declaration)
+%RR_SHOWN_VALUE ` = value` of a property or wire, where it is short and can be read.
+text = '';
+kind = strtok(declaration);
+try
+  if strcmp(kind, 'property')
+    value = rrmex('access', obj.rr_h, name, false);
+  elseif strcmp(kind, 'wire')
+    value = rrmex('wire_peek', obj.rr_h, name, false);
+  else
+    return
+  end
+catch
+  return
+end
+if ischar(value)
+  text = [' = ''', value, ''''];
+elseif (isnumeric(value) || islogical(value)) && numel(value) <= 16
+  text = [' = ', mat2str(value)];
+else
+  text = sprintf(' = [%s %s]', strjoin(strsplit(num2str(size(value))), 'x'), class(value));
+end
+if numel(text) > 60
+  text = [text(1:57), '...'];
+end
+end
