@@ -75,6 +75,7 @@ std::vector<Command> subscription_commands();
 std::vector<Command> member_subscription_commands();
 std::vector<Command> discovery_commands();
 std::vector<Command> node_commands();
+std::vector<Command> service_commands();
 
 /// Runs the command of this name. Throws rr::Error (invalid_argument) when there is none.
 void run_command(Runtime& runtime, const std::string& name, Call& call);

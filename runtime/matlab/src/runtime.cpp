@@ -24,6 +24,7 @@ Runtime::Runtime()
 Runtime::~Runtime() {
   current.reset();
   last_error.reset();
+  queue_->refuse_requests();
   handles_.clear();
   functions_.clear();
   node_->shutdown();
@@ -108,6 +109,10 @@ void Runtime::run_calls() {
     } catch (const Error&) {
       call->fail(std::current_exception());
     }
+  }
+  while (const Queue::Work request = queue_->pop_request()) {
+    ++served_count;
+    request();
   }
 }
 

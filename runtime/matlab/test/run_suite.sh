@@ -19,4 +19,5 @@ export RR_TEST_PORT
 export RR_TEST_SERVICE=$1
 export RR_TEST_FOLDER=$work
 folder=$(dirname "$4")
+export RR_TEST_FILES=$folder
 "$2" --norc --path "$3" --path "$folder" --eval "rr_run_suite('$4', '$work/log')"
