@@ -80,7 +80,7 @@ class Bench final : public bench::BenchDefault {
     for (std::int32_t i = 1; i <= count; ++i) fired(i, "number " + std::to_string(i));
     reported(bench::Report{.count = count, .text = "all", .numbers = {}, .mode = {}, .next = {}});
   }
-  void set_level_in(double value) override {
+  void show_level(double value) override {
     level().set_in(value);
     reports().set_in(bench::Report{.count = 1, .text = "level", .numbers = {value}, .mode = {},
                                    .next = {}});

@@ -1,0 +1,193 @@
+% Wires, pipes, memories, generators.
+
+%!function c = bench()
+%!  persistent kept
+%!  if isempty(kept)
+%!    kept = rr_bench();
+%!  end
+%!  c = kept;
+%!endfunction
+
+%!test % wires: the newest value is there without pumping
+%! c = rr_bench();
+%! w = c.level.Connect();
+%! assert(~w.InValueValid);
+%! c.show_level(0.5);
+%! assert(w.InValueValid);
+%! assert(w.InValue, 0.5);
+%! [is_valid, value, stamp] = w.TryGetInValue();
+%! assert(is_valid && value == 0.5);
+%! assert(class(stamp.seconds), 'int64');
+%! assert(abs(double(w.LastValueReceivedTime.seconds) - time()) < 10);
+%! assert(~w.OutValueValid);
+%! w.OutValue = int8(3);
+%! assert(w.OutValue, 3);
+%! assert(rr_eventually(@() c.level_out() == 3));
+%! assert(w.InValueLifespan, -1);
+%! w.InValueLifespan = 0.05;
+%! assert(w.InValueLifespan, 0.05);
+%! assert(rr_eventually(@() ~w.InValueValid));
+%! assert(w.IsOpen);
+%! w.Close();
+%! assert(~w.IsOpen);
+
+%!error id=RobotRaconteur:ValueNotSet rr_bench().level.Connect().InValue
+%!error <member level: there is no value> rr_bench().level.Connect().OutValue
+
+%!test % waiting for a value
+%! c = rr_bench();
+%! w = c.level.Connect();
+%! start = tic();
+%! assert(~w.WaitInValueValid(0.1));
+%! assert(toc(start) >= 0.1);
+%! c.async_show_level(2, []);
+%! assert(w.WaitInValueValid(20));
+%! assert(w.InValue, 2);
+
+%!test % peeks and pokes
+%! c = bench();
+%! c.show_level(1.5);
+%! assert(c.level.PeekInValue(), 1.5);
+%! [value, time] = c.level.PeekInValue();
+%! assert(value, 1.5);
+%! c.level.PokeOutValue(2.5);
+%! assert(c.level.PeekOutValue(), 2.5);
+%! assert(c.reports.PeekInValue().numbers, 1.5);
+
+%!test % values call a function
+%! c = rr_bench();
+%! w = c.level.Connect();
+%! rr_log_call('clear');
+%! l = addlistener(w, 'WireValueChanged', @(value, time) rr_log_call(value));
+%! for i = 1:20
+%!   c.show_level(i);
+%! end
+%! assert(rr_eventually(@() numel(rr_log_call()) > 0 && rr_log_call(){end}{1} == 20));
+%! delete(l);
+%! c.show_level(21);
+%! RobotRaconteur.Poll(0.05);
+%! assert(rr_log_call(){end}{1}, 20);
+
+%!test % pipes
+%! c = rr_bench();
+%! p = c.numbers.Connect(-1);
+%! assert(p.Available, 0);
+%! assert(p.SendPacket(4), uint32(1));
+%! assert(p.ReceivePacketWait(20), 8);
+%! c.send_numbers([1 2 3]);
+%! assert(rr_eventually(@() p.Available == 3));
+%! [has_come, packet] = p.TryReceivePacketWait(1, true);
+%! assert(has_come && packet == 1);
+%! assert(p.ReceivePacket(), 1);
+%! [has_come, packet] = p.TryReceivePacketWait(0);
+%! assert(packet, 2);
+%! p.ReceivePacket();
+%! [has_come, packet] = p.TryReceivePacketWait(0.05);
+%! assert(~has_come && isempty(packet));
+%! assert(p.IsOpen && p.Index >= 0);
+%! rr_log_call('clear');
+%! l = addlistener(p, 'PacketReceived', @(packet) rr_log_call(packet));
+%! c.send_numbers([5 6]);
+%! assert(rr_eventually(@() numel(rr_log_call()) == 2));
+%! assert(rr_log_call(), {{5}, {6}});
+%! p.Close();
+%! assert(~p.IsOpen);
+
+%!test % a queue that is full
+%! c = rr_bench();
+%! p = c.numbers.Connect();
+%! p.SetQueueLimit(2, 'oldest');
+%! c.send_numbers(1:5);
+%! assert(rr_eventually(@() p.LostCount == 3));
+%! assert(p.ReceivePacket(), 4);
+
+%!error id=RobotRaconteur:InvalidOperation rr_bench().numbers.Connect().ReceivePacket()
+%!error id=RobotRaconteur:OperationTimeout rr_bench().numbers.Connect().ReceivePacketWait(0.05)
+%!error <member numbers: expected double, got char> rr_bench().numbers.Connect().SendPacket('x')
+
+%!test % memories by index
+%! c = bench();
+%! m = c.line;
+%! assert(size(m), [10 1]);
+%! assert(numel(m), 10);
+%! assert(m(:), (1:10)');
+%! assert(m(2:4), [2; 3; 4]);
+%! assert(m(end), 10);
+%! assert(m([1 3 5]), [1; 3; 5]);
+%! assert(c.line(7), 7);
+%! m(2:3) = [20 30];
+%! assert(m(1:4), [1; 20; 30; 4]);
+%! m(5) = 50;
+%! c.line(6) = 60;
+%! assert(c.line(5:6), [50; 60]);
+%! m(:) = 1:10;
+%! assert(m(:), (1:10)');
+%! m(9:10) = 0;
+%! assert(m(9:10), [0; 0]);
+
+%!test % memories of several dimensions
+%! c = bench();
+%! m = c.grid;
+%! whole = reshape(uint8(0:23), 3, 4, 2);
+%! m(:) = whole;
+%! assert(size(m), [3 4 2]);
+%! [a, b] = size(m);
+%! assert([a b], [3 8]);
+%! assert(size(m, 2), 4);
+%! assert(m(:, :, :), whole);
+%! assert(m(:), whole(:));
+%! assert(m(1:2, 2:3, 1), whole(1:2, 2:3, 1));
+%! assert(m(2, [1 4], 2), whole(2, [1 4], 2));
+%! assert(m(end, end, end), uint8(23));
+%! m(1:2, 1, 2) = [100; 101];
+%! whole(1:2, 1, 2) = [100; 101];
+%! assert(m(:, :, :), whole);
+
+%!test % memories of pods and namedarrays
+%! c = bench();
+%! p = c.path;
+%! assert(size(p), [5 1]);
+%! p(2:3) = [1 2; 3 4; 5 6];
+%! assert(p(3), [2; 4; 6]);
+%! assert(size(p(:)), [3 5]);
+%! r = c.records;
+%! assert(r(2).sequence, uint32(2));
+
+%!error id=RobotRaconteur:OutOfRange bench().line(11)
+%!error <index 1 of the memory goes from 1 to 10> bench().line(0)
+%!error <the memory has 3 dimensions> bench().grid(1, 2)
+%!test
+%! m = bench().line;
+%! try
+%!   m([1 3]) = [1 2];
+%!   error('not thrown');
+%! catch err
+%!   assert(err.message, 'a memory is written without gaps');
+%! end
+
+%!test % generators
+%! c = bench();
+%! g = c.count(3);
+%! assert(g.Next(), 0);
+%! [is_there, value] = g.TryNext();
+%! assert(is_there && value == 1);
+%! r = g.TryNext();
+%! assert(r, {true, 2});
+%! r = g.TryNext();
+%! assert(r{1}, false);
+%! assert(c.count(3).NextAll(), {0; 1; 2});
+%! s = c.running_sum(10);
+%! assert(s.Next(1), 11);
+%! assert(s.Next(int8(2)), 13);
+%! rr_log_call('clear');
+%! s.async_Next(5, @(varargin) rr_log_call(varargin{:}), 'mine');
+%! assert(rr_eventually(@() numel(rr_log_call()) == 1));
+%! assert(rr_log_call(){1}, {'mine', 18, []});
+%! s.Close();
+%! g = c.count(5);
+%! g.Next();
+%! g.Abort();
+
+%!error id=RobotRaconteur:StopIteration bench().count(0).Next()
+%!error <its steps take no value> bench().count(1).Next(5)
+%!error <member running_sum: expected double, got char> bench().running_sum(1).Next('x')
