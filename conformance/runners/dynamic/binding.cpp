@@ -68,7 +68,7 @@ std::unique_ptr<Caller> DynamicBinding::caller(const Held& held) {
 
 Json DynamicBinding::write(const VarValue& value) {
   if (newest_ == nullptr) return to_json(none_, value);
-  return json_of_any(newest_->value(value));
+  return json_of_any(newest_->types(), newest_->value(value));
 }
 
 VarValue DynamicBinding::read(const Json& json) {

@@ -61,9 +61,10 @@ void DynamicScript::add_property(const MemberDescription& member) {
   object().on_get(member.name, [self = shared_from_this(), name = member.name, type = member.type] {
     return value_of_json(self->definitions_, type, self->value_of(name));
   });
-  object().on_set(member.name,
-                  [self = shared_from_this(), name = member.name, type = member.type](
-                      const Value& value) { self->set_value(name, json_of_value(type, value)); });
+  object().on_set(member.name, [self = shared_from_this(), name = member.name,
+                                type = member.type](const Value& value) {
+    self->set_value(name, json_of_value(self->definitions_, type, value));
+  });
 }
 
 void DynamicScript::add_function(const MemberDescription& member) {
@@ -71,7 +72,8 @@ void DynamicScript::add_function(const MemberDescription& member) {
     object().on_call(
         member.name, [self = shared_from_this(), member](const dynamic::List& arguments) {
           const Json result =
-              self->outcome(member.name, json_of_parameters(member, arguments), member.type.text());
+              self->outcome(member.name, json_of_parameters(self->definitions_, member, arguments),
+                            member.type.text());
           return value_of_json(self->definitions_, member.type, result);
         });
     return;
@@ -80,7 +82,8 @@ void DynamicScript::add_function(const MemberDescription& member) {
       member.name,
       [self = shared_from_this(), member](const dynamic::List& arguments) -> dynamic::Steps {
         const auto steps = std::make_shared<ScriptedSteps>(
-            *self, self->next_outcome(member.name, json_of_parameters(member, arguments)));
+            *self, self->next_outcome(member.name,
+                                      json_of_parameters(self->definitions_, member, arguments)));
         return [self, steps, type = member.type](const Value&) -> std::optional<Value> {
           const std::optional<Json> value = steps->give();
           if (!value) return std::nullopt;
@@ -148,7 +151,7 @@ void DynamicScript::add_wire(const MemberDescription& member) {
   add_action("last_" + name, [this, member](std::string_view) {
     const auto newest = object().wire(member.name).out();
     if (!newest) throw Error(ErrorCode::value_not_set, "Value not set");
-    return json_of_value(member.type, newest->value);
+    return json_of_value(definitions_, member.type, newest->value);
   });
   add_action("close_" + name, [this, name](std::string_view) {
     for (dynamic::ServedWire& end : object().wire(name).connections()) end.close();
@@ -161,7 +164,7 @@ void DynamicScript::add_callback(const MemberDescription& member) {
   add_action("call_" + member.name, [this, member](std::string_view result_type) {
     try {
       return json_of_value(
-          member.type,
+          definitions_, member.type,
           object().call_back(member.name, ServiceContext::current_client(),
                              arguments_of(member.name, told("callbacks", member.name))));
     } catch (const Error& error) {

@@ -65,11 +65,12 @@ void serve_property(const dynamic::ServedObject& object, const ServedMember& ser
 }
 
 void serve_function(const dynamic::ServedObject& object, const ServedMember& served) {
+  const char* const kind = served.member.type.kind() == dynamic::Kind::null ? "do" : "call";
   object.on_call_later(
-      served.member.name, [served](const List& arguments, const dynamic::Reply& reply) {
-        served.answerer->post([served, arguments, reply](Runtime&) {
+      served.member.name, [served, kind](const List& arguments, const dynamic::Reply& reply) {
+        served.answerer->post([served, kind, arguments, reply](Runtime&) {
           answer(reply, [&] {
-            return served.result(served.answerer->call(served.request("call", arguments)));
+            return served.result(served.answerer->call(served.request(kind, arguments)));
           });
         });
       });

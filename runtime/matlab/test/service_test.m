@@ -36,6 +36,27 @@
 %!  error('it has not failed');
 %!endfunction
 
+%!function assign(object)
+%!  object.number = 1;
+%!endfunction
+
+%!function put(map, key, value)
+%!  map(double(key)) = value;
+%!endfunction
+
+%!function set_speed(state, value)
+%!  state('speed') = value;
+%!endfunction
+
+%!function text = failure_of(c)
+%!  text = '';
+%!  try
+%!    c.add(1, 2);
+%!  catch err
+%!    text = err.message;
+%!  end
+%!endfunction
+
 %!test % properties of a handle object
 %! [~, rig] = offered();
 %! c = client();
@@ -70,13 +91,13 @@
 %! assert(g.Next(), 0);
 %! assert(g.Next(), 1);
 %! assert(g.Next(), 2);
-%! fails(@() g.Next(), 'RobotRaconteur:StopIteration', 'RobotRaconteur.StopIteration');
+%! fails(@() g.Next(), 'RobotRaconteur:StopIteration', 'the generator has ended');
 %! g = c.sum(10);
 %! assert(g.Next(1), 11);
 %! assert(g.Next(5), 16);
 %! g.Close();
 %! g = c.sum(99);
-%! fails(@() g.Next(2), 'RobotRaconteur:StopIteration', 'RobotRaconteur.StopIteration');
+%! fails(@() g.Next(2), 'RobotRaconteur:StopIteration', 'the generator has ended');
 
 %!test % objects: handle objects, structs, none, and what has a type of its own
 %! c = client();
@@ -96,9 +117,6 @@
 %! catch err
 %!   assert(err.identifier, 'RobotRaconteur:ServiceError');
 %! end
-%!function assign(object)
-%!  object.number = 1;
-%!endfunction
 
 %!test % events and callbacks
 %! c = client();
@@ -110,9 +128,6 @@
 %! delete(l);
 %! c.ask = @(question) [question, '!'];
 %! assert(c.ask_back('who'), 'who!');
-%!function put(map, key, value)
-%!  map(double(key)) = value;
-%!endfunction
 
 %!test % wires and pipes
 %! [service, rig] = offered();
@@ -162,17 +177,6 @@
 %! fails(@() c.stop(), 'RobotRaconteur:NotImplementedError', 'stop is not implemented by this object');
 %! service.Close();
 %! assert(rr_eventually(@() ~isempty(failure_of(c))));
-%!function set_speed(state, value)
-%!  state('speed') = value;
-%!endfunction
-%!function text = failure_of(c)
-%!  text = '';
-%!  try
-%!    c.add(1, 2);
-%!  catch err
-%!    text = err.message;
-%!  end
-%!endfunction
 
 %!test % a client in C++, while the interpreter serves
 %! [service, ~, url] = offered();

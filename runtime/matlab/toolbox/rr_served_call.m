@@ -10,7 +10,7 @@ switch kind
   case 'set'
     result = [];
     if rr_served_has(served, ['set_', name])
-      call(served, ['set_', name], 0, varargin);
+      call(served, ['set_', name], false, varargin);
     elseif isstruct(served)
       error('RobotRaconteur:NotImplementedError', '%s cannot be set', name);
     else
@@ -19,16 +19,19 @@ switch kind
     end
   case 'call'
     need(served, name);
-    result = call(served, name, -1, varargin);
+    result = call(served, name, true, varargin);
+  case 'do'
+    need(served, name);
+    result = call(served, name, false, varargin);
   case 'generate'
     need(served, name);
-    generator = RobotRaconteurSteps(call(served, name, 1, varargin));
+    generator = RobotRaconteurSteps(call(served, name, true, varargin));
     result = @(action, value) generator.Step(action, value);
   case 'objref'
     result = find_object(served, name, varargin{1}, varargin(2:end));
   case 'on'
     result = [];
-    call(served, ['on_', name], 0, varargin);
+    call(served, ['on_', name], false, varargin);
 end
 end
 
@@ -38,33 +41,17 @@ if ~rr_served_has(served, name)
 end
 end
 
-function result = call(served, name, results, arguments)
-% As many results as wanted; -1: one if the function gives any.
+function result = call(served, name, has_result, given)
 result = [];
 if isstruct(served)
   f = served.(name);
 else
   f = @(varargin) feval(name, served, varargin{:});
 end
-if results == 0
-  f(arguments{:});
-  return
-end
-if results < 0 && gives_nothing(served, name)
-  f(arguments{:});
+if has_result
+  result = f(given{:});
 else
-  result = f(arguments{:});
-end
-end
-
-function answer = gives_nothing(served, name)
-answer = false;
-if isstruct(served)
-  try
-    answer = nargout(served.(name)) == 0;
-  catch
-    answer = false;
-  end
+  f(given{:});
 end
 end
 
@@ -79,7 +66,7 @@ if isstruct(served) && ~isa(served.(name), 'function_handle')
 elseif ~isstruct(served) && any(strcmp(name, properties(served)))
   found = served.(name);
 else
-  found = call(served, name, 1, index);
+  found = call(served, name, true, index);
 end
 result = [];
 if isempty(found)
