@@ -73,7 +73,7 @@ mxArray* find_object(Runtime& runtime, const ObjectHandle& object, const Resolve
   auto found = runtime.call<dynamic::Object>(
       [&] {
         if (index.is_null()) return from.object(name);
-        if (member.member.index == IndexForm::string) return from.object(name, index.text());
+        if (index.kind() == dynamic::Kind::text) return from.object(name, index.text());
         return from.object(name, index.as<std::int32_t>());
       },
       [&](auto done) { from.async_object(name, index, done); });

@@ -13,7 +13,7 @@ std::uint64_t Handles::add(std::shared_ptr<Handled> object) {
     index = free_.back();
     free_.pop_back();
   }
-  places_[index].object = std::move(object);
+  places_[index] = {++generation_, std::move(object)};
   return std::uint64_t{places_[index].generation} << 32 | index;
 }
 
@@ -26,7 +26,7 @@ std::shared_ptr<Handled> Handles::find(std::uint64_t number) const {
 void Handles::remove(std::uint64_t number) {
   if (!find(number)) return;
   Place& place = places_[index_of(number)];
-  ++place.generation;
+  place.generation = 0;
   // Its end may come back here.
   const std::shared_ptr<Handled> object = std::exchange(place.object, nullptr);
   free_.push_back(index_of(number));

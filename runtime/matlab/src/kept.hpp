@@ -28,6 +28,9 @@ class Kept {
 
   /// Null for none.
   [[nodiscard]] mxArray* get() const { return value_; }
+  /// Lets go of the value without an end to it: when the interpreter ends, what is in it must not
+  /// call functions any more.
+  void abandon() { value_ = nullptr; }
   explicit operator bool() const { return value_ != nullptr; }
 
  private:

@@ -2,15 +2,21 @@
 // The one function of the MEX file: `rrmex('command', arguments...)`.
 #include <mex.h>
 
-#include <memory>
+#include <cstdint>
 #include <string>
+#include <utility>
 
 #include "rr/matlab/failure.hpp"
 #include "runtime/matlab/src/objects.hpp"
 
 namespace {
 
-std::unique_ptr<rr::matlab::Runtime> runtime;  // from the first command to the end, or shutdown
+// From the first command to shutdown, or the interpreter's end. Not destroyed with the file: the
+// interpreter is gone then.
+rr::matlab::Runtime* runtime = nullptr;
+// Of the last handle that was given, by this or an earlier one: what the user still holds of an
+// earlier one must not mean anything here.
+std::uint32_t generation = 0;
 int depth = 0;                                 // handlers call this again
 
 // Of commands that run in each other.
@@ -22,21 +28,31 @@ class Entered {
   Entered& operator=(const Entered&) = delete;
 };
 
-void at_exit() { runtime.reset(); }
+// Objects that functions of the user hold come back here to be closed, so there is none any more.
+void end_runtime() {
+  generation = runtime->handles().generation();
+  delete std::exchange(runtime, nullptr);
+}
+
+void at_exit() {
+  if (runtime == nullptr) return;
+  runtime->functions().abandon();
+  end_runtime();
+}
 
 void shut_down() {
   if (depth != 1) {
     throw rr::Error(rr::ErrorCode::invalid_operation, "a handler cannot shut the node down");
   }
-  if (!runtime) return;
-  runtime.reset();
+  if (runtime == nullptr) return;
+  end_runtime();
   mexUnlock();
 }
 
 // The file stays loaded while there is a node: `clear all` takes away what the user holds only.
 rr::matlab::Runtime& need_runtime() {
-  if (!runtime) {
-    runtime = std::make_unique<rr::matlab::Runtime>();
+  if (runtime == nullptr) {
+    runtime = new rr::matlab::Runtime(generation);
     mexLock();
     mexAtExit(at_exit);
   }
@@ -49,7 +65,7 @@ void run_named(int result_count, mxArray** results, int argument_count,
   const std::string name = rr::matlab::read_text(arguments[0]);
   if (name == "shutdown") return shut_down();
   // An object that goes when there is no node any more must not make another one.
-  if (name == "close" && !runtime) return;
+  if (name == "close" && runtime == nullptr) return;
   rr::matlab::Call call(result_count, results, argument_count - 1, arguments + 1);
   rr::matlab::run_command(need_runtime(), name, call);
 }
@@ -60,7 +76,7 @@ std::optional<rr::matlab::Failure> run_guarded(int result_count, mxArray** resul
   return rr::matlab::run(
       [&] { run_named(result_count, results, argument_count, arguments); },
       [](const rr::Error& error) {
-        if (runtime) runtime->last_error.emplace(error, runtime->current);
+        if (runtime != nullptr) runtime->last_error.emplace(error, runtime->current);
       });
 }
 

@@ -32,6 +32,13 @@ void UserFunctions::clear() {
   waited_for_count_ = 0;
 }
 
+void UserFunctions::abandon() {
+  for (auto& [number, function] : functions_) {
+    function.function.abandon();
+    function.parameter.abandon();
+  }
+}
+
 UserFunctions::Outcome UserFunctions::run(const Kept& function, std::vector<mxArray*> arguments,
                                           bool wants_result) {
   mxArray* const cells = make_cells(arguments);
@@ -51,8 +58,10 @@ UserFunctions::Outcome UserFunctions::run(const Kept& function, std::vector<mxAr
 void UserFunctions::run_alone(const Kept& function, std::vector<mxArray*> arguments) {
   const Outcome outcome = run(function, std::move(arguments), false);
   if (outcome.failure) {
-    mexWarnMsgIdAndTxt("RobotRaconteur:HandlerFailed", "a handler has failed: %s",
-                       outcome.failure->message.c_str());
+    // Not mexWarnMsgIdAndTxt, which puts the name of the file before the text.
+    mxArray* given[] = {make_text("RobotRaconteur:HandlerFailed"),
+                        make_text("a handler has failed: %s"), make_text(outcome.failure->message)};
+    mexCallMATLABWithTrap(0, nullptr, 3, given, "warning");
   }
 }
 

@@ -50,6 +50,8 @@ class UserFunctions {
   /// Waits for a thread that is just about to put something into the queue.
   void remove(std::uint64_t number);
   void clear();
+  /// See Kept::abandon().
+  void abandon();
   /// Whether there is one that somebody waits for, so that the interpreter's thread must not block
   /// without looking at the queue.
   [[nodiscard]] bool has_callbacks() const { return waited_for_count_ != 0; }

@@ -101,7 +101,7 @@
 %! end
 %! e = RobotRaconteur.GetLastError();
 %! assert(e.subname, 'where');
-%! assert(e.parameter('place').data, 'attic');
+%! assert(e.parameter('place'), 'attic');
 %! assert(e.code, 100);
 
 %!error <as asked for> bench().fail('some.other.Fault')

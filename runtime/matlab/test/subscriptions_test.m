@@ -7,6 +7,25 @@
 %!  url = ['rr+tcp://127.0.0.1:', port, '/?service=bench'];
 %!endfunction
 
+%!function answer = try_level(c, w)
+%!  c.show_level(0.75);
+%!  answer = w.WaitInValueValid(0.1);
+%!endfunction
+
+%!function port = start_second(starter, folder, port)
+%!  [~] = unlink(fullfile(folder, 'second'));
+%!  system(['sh ', starter, ' ', port]);
+%!  port = '';
+%!  start = tic();
+%!  while isempty(port) && toc(start) < 20
+%!    pause(0.05);
+%!    [is_there, ~, ~] = stat(fullfile(folder, 'second'));
+%!    if ~isempty(is_there)
+%!      port = strtrim(strrep(fileread(fullfile(folder, 'second')), 'ready:', ''));
+%!    end
+%!  end
+%!endfunction
+
 %!test % default client
 %! sub = RobotRaconteur.SubscribeService(bench_url());
 %! c = sub.GetDefaultClientWait(20);
@@ -55,10 +74,6 @@
 %! bad = sub.SubscribeWire('no_such_wire');
 %! assert(rr_eventually(@() ~isempty(bad.GetLastError())));
 %! sub.Close();
-%!function answer = try_level(c, w)
-%!  c.show_level(0.75);
-%!  answer = w.WaitInValueValid(0.1);
-%!endfunction
 
 %!error id=RobotRaconteur:OperationTimeout RobotRaconteur.SubscribeService(bench_url('1')).GetDefaultClientWait(0.1)
 %!error id=RobotRaconteur:InvalidArgument RobotRaconteur.SubscribeService('nonsense')
@@ -103,19 +118,6 @@
 %! assert(any(strcmp(names, 'went')));
 %! sub.Close();
 %! system(['kill $(cat ', folder, '/pid)']);
-%!function port = start_second(starter, folder, port)
-%!  [~] = unlink(fullfile(folder, 'second'));
-%!  system(['sh ', starter, ' ', port]);
-%!  port = '';
-%!  start = tic();
-%!  while isempty(port) && toc(start) < 20
-%!    pause(0.05);
-%!    [is_there, ~, ~] = stat(fullfile(folder, 'second'));
-%!    if ~isempty(is_there)
-%!      port = strtrim(strrep(fileread(fullfile(folder, 'second')), 'ready:', ''));
-%!    end
-%!  end
-%!endfunction
 
 %!test % claims
 %! sub = RobotRaconteur.SubscribeService(bench_url());

@@ -12,7 +12,7 @@
 %!  c = bench();
 %!  c.(name) = given;
 %!  got = c.(name);
-%!  assert(rr_isequal(got, wanted), 'as %s', disp(got));
+%!  assert(rr_isequal(got, wanted), 'as %s', evalc('display(got)'));
 %!  c.(name) = got;
 %!  assert(rr_isequal(c.(name), wanted));
 %!endfunction
@@ -69,7 +69,7 @@
 %! check('a_cdouble', [1i; 2], [1i; 2]);
 %! c = bench();
 %! c.v_cdouble = 3;
-%! assert(c.v_cdouble, complex(3, 0));
+%! assert(c.v_cdouble, 3);
 
 %!test % strings
 %! check('v_string', 'some text', 'some text');

@@ -65,9 +65,15 @@ classdef RobotRaconteurObject < handle
         end
       end
       if numel(s) > used
-        value = subsref(value, s(used + 1:end));
+        rest = s(used + 1:end);
+        count = max(nargout, 1);
+        if nargout == 0 && rr_is_void(rest)
+          count = 0;
+        end
+        [varargout{1:count}] = subsref(value, rest);
+      else
+        varargout = {value};
       end
-      varargout = {value};
     end
 
     function obj = subsasgn(obj, s, value)
@@ -225,4 +231,10 @@ classdef RobotRaconteurObject < handle
             arguments{1:min(count, numel(arguments))});
     end
   end
+end
+
+function answer = rr_is_void(s)
+% Methods that give nothing, so that nothing is asked of them.
+answer = strcmp(s(1).type, '.') && any(strcmp(s(1).subs, ...
+  {'PokeOutValue', 'Close', 'Abort', 'async_Next', 'SetQueueLimit', 'delete', 'disp'}));
 end

@@ -15,7 +15,7 @@ catch
 end
 if ischar(value)
   text = [' = ''', value, ''''];
-elseif (isnumeric(value) || islogical(value)) && numel(value) <= 16
+elseif (isnumeric(value) || islogical(value)) && numel(value) <= 16 && ndims(value) == 2
   text = [' = ', mat2str(value)];
 else
   text = sprintf(' = [%s %s]', strjoin(strsplit(num2str(size(value))), 'x'), class(value));

@@ -4,9 +4,11 @@
 #include <mex.h>
 
 #include <array>
+#include <cmath>
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <span>
 #include <string>
@@ -112,6 +114,7 @@ std::string text_of_number(From number) {
   if constexpr (std::is_integral_v<From>) {
     return std::to_string(number);
   } else {
+    if (std::isnan(number)) return "NaN";
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "%.17g", static_cast<double>(number));
     return text.data();
