@@ -53,6 +53,7 @@ set(robdef_layers
   "runtime/c: runtime/cpp/include/rr runtime/cpp/src/channel runtime/cpp/src/client runtime/cpp/src/endpoint runtime/cpp/src/service"
   "runtime/c/test: runtime/c/include runtime/cpp/include/rr runtime/cpp/src/node/testing runtime/cpp/src/client/definition_text.hpp"
   "runtime/matlab: runtime/cpp/include/rr"
+  "runtime/matlab/test: runtime/cpp/include/rr runtime/cpp/src/dynamic/testing"
   "runtime/cpp/src/tap: runtime/cpp/include/rr"
   "runtime/cpp/src/replay: runtime/cpp/include/rr runtime/cpp/src/channel/capabilities.hpp runtime/cpp/src/channel/layer.hpp runtime/cpp/src/channel/socket.hpp"
   "runtime/cpp/src/node/replay_test.cpp: runtime/cpp/include/rr runtime/cpp/src/node runtime/cpp/src/replay"
@@ -69,6 +70,7 @@ set(robdef_layers
   # The suite's connections have the same layers around them as those of nodes.
   "conformance: runtime/cpp/include/rr runtime/cpp/src/replay runtime/cpp/src/channel/layer.hpp runtime/cpp/src/channel/tls.hpp runtime/cpp/src/channel/web_socket.hpp"
   "conformance/runners/board: runtime/cpp/include/rr conformance runtime/arduino/bench/plugged_board.hpp"
+  "conformance/runners/matlab: conformance runtime/cpp/include/rr runtime/matlab"
   "benchmarks: runtime/cpp/include/rr compiler"
   "examples: runtime/cpp/include/rr"
   "examples/dual_arm/cpp/dual_arm_test.cpp: examples runtime/cpp/include/rr runtime/cpp/src/realtime/testing")
@@ -83,7 +85,7 @@ set(robdef_outside_headers
   "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/serial runtime/cpp/src/channel runtime/cpp/src/discovery runtime/cpp/src/endpoint runtime/cpp/src/realtime/udp_socket.cpp runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp conformance benchmarks"
   "^fmt/| compiler benchmarks"
   "^nlohmann/| runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"
-  "^(mex\\.h|octave/)| runtime/matlab"
+  "^(mex\\.h|octave/)| runtime/matlab conformance/runners/matlab"
   "^histedit\\.h$| compiler/driver/live/line_reader.cpp"
   "^png\\.h$| examples")
 

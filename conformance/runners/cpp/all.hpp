@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "conformance/runners/cpp/adapters.hpp"
+#include "conformance/runners/shared/adapters.hpp"
 
 namespace rr::conformance {
 

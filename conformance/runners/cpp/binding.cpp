@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conformance/runners/cpp/binding.hpp"
+#include "conformance/runners/shared/binding.hpp"
 
 #include <utility>
+
+#include "conformance/runners/cpp/script.hpp"
 
 namespace rr::conformance {
 
@@ -24,6 +26,12 @@ Json GeneratedBinding::write(const VarValue& value) { return to_json(adapters_, 
 
 VarValue GeneratedBinding::read(const Json& json) {
   return made_from_json<VarValue>(adapters_, json);
+}
+
+Service GeneratedBinding::offer(Node& node, const std::string& name, const std::string& type,
+                                Json script, ServiceOptions options) {
+  const auto told = std::make_shared<Script>(adapters_, std::move(script));
+  return node.register_service(name, adapters_.object(type).serve(told), std::move(options));
 }
 
 }  // namespace rr::conformance

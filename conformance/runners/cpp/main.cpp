@@ -6,9 +6,9 @@
 #include <string>
 
 #include "conformance/runners/cpp/all.hpp"
-#include "conformance/runners/cpp/call.hpp"
-#include "conformance/runners/cpp/codec_verbs.hpp"
-#include "conformance/runners/cpp/serve.hpp"
+#include "conformance/runners/shared/call.hpp"
+#include "conformance/runners/shared/codec_verbs.hpp"
+#include "conformance/runners/shared/serve.hpp"
 
 namespace {
 
@@ -47,7 +47,8 @@ int main(int argc, char** argv) {
   } else if (verb == "encode") {
     answer_lines([&](const Json& request) { return encode(codec, request); });
   } else if (verb == "serve") {
-    rr::conformance::ServedNode node(adapters);
+    rr::conformance::GeneratedBinding binding(adapters);
+    rr::conformance::ServedNode node(binding);
     answer_lines([&](const Json& request) { return node.answer(request); });
   } else if (verb == "call") {
     rr::conformance::GeneratedBinding binding(adapters);

@@ -1,12 +1,55 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/runners/dynamic/binding.hpp"
 
-#include <utility>
+#include <rr/dynamic_service.hpp>
+#include <set>
+#include <sstream>
+#include <stdexcept>
 
 #include "conformance/runners/dynamic/caller.hpp"
 #include "conformance/runners/dynamic/notation.hpp"
+#include "conformance/runners/dynamic/script.hpp"
 
 namespace rr::conformance {
+namespace {
+
+// What a line of a definition says behind this word; nothing when it begins with another.
+std::string name_behind(const std::string& word, const std::string& line) {
+  std::istringstream words(line);
+  std::string first;
+  std::string name;
+  return words >> first >> name && first == word ? name : std::string();
+}
+
+// The definition of this name and what it imports, directly or not: what the recorded services
+// know.
+std::vector<std::string> with_imports(const std::vector<std::string>& texts,
+                                      const std::string& service) {
+  std::vector<std::string> result;
+  std::set<std::string> wanted = {service};
+  std::set<std::string> found;
+  for (bool is_more = true; is_more;) {
+    is_more = false;
+    for (const std::string& text : texts) {
+      std::istringstream lines(text);
+      std::string name;
+      std::vector<std::string> imports;
+      for (std::string line; std::getline(lines, line);) {
+        if (name.empty()) name = name_behind("service", line);
+        if (const std::string import = name_behind("import", line); !import.empty()) {
+          imports.push_back(import);
+        }
+      }
+      if (wanted.count(name) == 0 || !found.insert(name).second) continue;
+      wanted.insert(imports.begin(), imports.end());
+      result.push_back(text);
+      is_more = true;
+    }
+  }
+  return result;
+}
+
+}  // namespace
 
 // The clients of the node before are gone.
 void DynamicBinding::prepare(Node&) { newest_ = nullptr; }
@@ -25,12 +68,19 @@ std::unique_ptr<Caller> DynamicBinding::caller(const Held& held) {
 
 Json DynamicBinding::write(const VarValue& value) {
   if (newest_ == nullptr) return to_json(none_, value);
-  return json_of_any(newest_->value(value));
+  return json_of_any(newest_->types(), newest_->value(value));
 }
 
 VarValue DynamicBinding::read(const Json& json) {
   const dynamic::Definitions known = newest_ == nullptr ? dynamic::Definitions() : newest_->types();
   return dynamic::to_varvalue(value_of_json(known, known.type("varvalue"), json));
+}
+
+Service DynamicBinding::offer(Node& node, const std::string& name, const std::string& type,
+                              Json script, ServiceOptions options) {
+  const dynamic::Definitions definitions(with_imports(texts_, type.substr(0, type.rfind('.'))));
+  return dynamic::register_service(
+      node, name, DynamicScript::serve(definitions, type, std::move(script)), std::move(options));
 }
 
 }  // namespace rr::conformance

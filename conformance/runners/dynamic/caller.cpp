@@ -17,14 +17,6 @@ using dynamic::MemberDescription;
 using dynamic::Value;
 using dynamic::ValueType;
 
-Json parameters_json(const MemberDescription& member, const dynamic::List& values) {
-  Json list = Json::array();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    list.push_back(json_of_value(member.parameters.at(i).type, values[i]));
-  }
-  return list;
-}
-
 // Values of one member, both ways.
 class Typed {
  public:
@@ -33,7 +25,9 @@ class Typed {
   [[nodiscard]] Value value(const Json& json) const {
     return value_of_json(definitions_, type_, json);
   }
-  [[nodiscard]] Json json(const Value& value) const { return json_of_value(type_, value); }
+  [[nodiscard]] Json json(const Value& value) const {
+    return json_of_value(definitions_, type_, value);
+  }
 
  private:
   Definitions definitions_;
@@ -137,21 +131,21 @@ class DynamicMemory final : public PlannedMemory {
 
 class DynamicGenerator final : public PlannedGenerator {
  public:
-  DynamicGenerator(Typed parameter, ValueType result, dynamic::Generator generator)
+  DynamicGenerator(Typed parameter, Typed result, dynamic::Generator generator)
       : parameter_(std::move(parameter)),
         result_(std::move(result)),
         generator_(std::move(generator)) {}
   Json next(const Json& parameter) override {
     const auto result = generator_.next(parameter_.value(parameter));
     if (!result) throw Error(ErrorCode::stop_iteration, "");
-    return json_of_value(result_, *result);
+    return result_.json(*result);
   }
   void close() override { generator_.close(); }
   void abort() override { generator_.abort(); }
 
  private:
   const Typed parameter_;
-  const ValueType result_;
+  const Typed result_;
   dynamic::Generator generator_;
 };
 
@@ -159,18 +153,11 @@ class DynamicGenerator final : public PlannedGenerator {
 
 dynamic::List DynamicCaller::arguments_of(const MemberDescription& member,
                                           const Json& arguments) const {
-  if (arguments.size() != member.parameters.size()) {
-    throw std::runtime_error("another parameter count");
-  }
-  dynamic::List values;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    values.push_back(value_of_json(definitions_, member.parameters[i].type, arguments.at(i)));
-  }
-  return values;
+  return parameters_of_json(definitions_, member, arguments);
 }
 
 Json DynamicCaller::get(std::string_view property) {
-  return json_of_value(object_.member(property).type, object_.get(property));
+  return json_of_value(definitions_, object_.member(property).type, object_.get(property));
 }
 
 void DynamicCaller::set(std::string_view property, const Json& value) {
@@ -179,7 +166,8 @@ void DynamicCaller::set(std::string_view property, const Json& value) {
 
 Json DynamicCaller::call(std::string_view function, const Json& arguments) {
   const MemberDescription member = object_.member(function);
-  return json_of_value(member.type, object_.call(function, arguments_of(member, arguments)));
+  return json_of_value(definitions_, member.type,
+                       object_.call(function, arguments_of(member, arguments)));
 }
 
 Held DynamicCaller::objref(std::string_view member, const Json& index) {
@@ -198,9 +186,10 @@ Held DynamicCaller::objref(std::string_view member, const Json& index) {
 }
 
 Subscription DynamicCaller::listen(std::string_view event, std::function<void(Json)> handler) {
-  return object_.on_event(
-      event, [member = object_.member(event), handler = std::move(handler)](
-                 const dynamic::List& values) { handler(parameters_json(member, values)); });
+  return object_.on_event(event, [member = object_.member(event), known = definitions_,
+                                  handler = std::move(handler)](const dynamic::List& values) {
+    handler(json_of_parameters(known, member, values));
+  });
 }
 
 std::unique_ptr<PlannedPipe> DynamicCaller::pipe(std::string_view member, std::int32_t index,
@@ -226,14 +215,14 @@ std::unique_ptr<PlannedGenerator> DynamicCaller::generate(std::string_view funct
                                                           const Json& arguments) {
   const MemberDescription member = object_.member(function);
   return std::make_unique<DynamicGenerator>(
-      Typed(definitions_, member.generator_parameter), member.type,
+      Typed(definitions_, member.generator_parameter), Typed(definitions_, member.type),
       object_.generate(function, arguments_of(member, arguments)));
 }
 
 void DynamicCaller::set_callback(std::string_view name, std::function<Json(Json)> answer) {
   object_.callback(name).set([member = object_.member(name), known = definitions_,
                               answer = std::move(answer)](const dynamic::List& values) {
-    return value_of_json(known, member.type, answer(parameters_json(member, values)));
+    return value_of_json(known, member.type, answer(json_of_parameters(known, member, values)));
   });
 }
 

@@ -6,7 +6,7 @@
 #include <rr/dynamic.hpp>
 #include <string_view>
 
-#include "conformance/runners/cpp/caller.hpp"
+#include "conformance/runners/shared/caller.hpp"
 
 namespace rr::conformance {
 

@@ -13,7 +13,7 @@ Json DynamicCodec::read(const std::string& type, Decoder& decoder, const Element
   if (!known.wire_type().read(decoder, element, &value)) {
     throw std::runtime_error(decoder.message());
   }
-  return json_of_value(known, value);
+  return json_of_value(definitions_, known, value);
 }
 
 void DynamicCodec::write(const std::string& type, const Json& value, const ElementName& name,

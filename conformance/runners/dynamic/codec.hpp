@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "conformance/runners/cpp/codec_verbs.hpp"
+#include "conformance/runners/shared/codec_verbs.hpp"
 
 namespace rr::conformance {
 

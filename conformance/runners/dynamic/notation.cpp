@@ -14,6 +14,9 @@ using dynamic::Kind;
 using dynamic::Value;
 using dynamic::ValueType;
 
+Value read_json(const dynamic::Definitions& definitions, const ValueType& type, const Json& json);
+Json write_json(const ValueType& type, const Value& value);
+
 Json json_of_number(const Value& value) {
   const ElementType type = value.number_type();
   const std::span bits(static_cast<const std::byte*>(value.bits()), item_size(type));
@@ -27,7 +30,7 @@ Value number_of_json(ElementType type, const Json& json) {
 
 Json json_of_items(const ValueType& item, const dynamic::List& items) {
   Json list = Json::array();
-  for (const Value& one : items) list.push_back(json_of_value(item, one));
+  for (const Value& one : items) list.push_back(write_json(item, one));
   return list;
 }
 
@@ -52,7 +55,7 @@ Json json_of_record(const ValueType& type, const Value& value) {
   }
   Json object = Json::object();
   for (const dynamic::Field& field : type.fields()) {
-    object[field.name] = json_of_value(field.type, value.at(field.name));
+    object[field.name] = write_json(field.type, value.at(field.name));
   }
   return object;
 }
@@ -61,7 +64,7 @@ dynamic::List items_of_json(const dynamic::Definitions& definitions, const Value
                             const Json& json) {
   if (!json.is_array()) throw std::runtime_error("not a list: " + json.dump().substr(0, 60));
   dynamic::List items;
-  for (const Json& one : json) items.push_back(value_of_json(definitions, item, one));
+  for (const Json& one : json) items.push_back(read_json(definitions, item, one));
   return items;
 }
 
@@ -74,32 +77,29 @@ Value record_of_json(const dynamic::Definitions& definitions, const ValueType& t
   }
   dynamic::Fields fields;
   for (const dynamic::Field& field : type.fields()) {
-    fields.emplace_back(field.name, value_of_json(definitions, field.type, json.at(field.name)));
+    fields.emplace_back(field.name, read_json(definitions, field.type, json.at(field.name)));
   }
   return Value::record(std::move(fields));
 }
 
-Value any_of_json(const dynamic::Definitions& definitions, const Json& json) {
+Value read_any(const dynamic::Definitions& definitions, const Json& json) {
   if (json.is_null() || json.at("value").is_null()) return {};
   const ValueType type = definitions.type(json.at("type").get<std::string>());
-  return type.convert(value_of_json(definitions, type, json.at("value")));
+  return type.convert(read_json(definitions, type, json.at("value")));
 }
 
-}  // namespace
-
-Json json_of_any(const Value& value) {
+Json write_any(const Value& value) {
   if (value.is_null()) return nullptr;
   const ValueType type = value.type();
-  return {{"type", type.text()}, {"value", json_of_value(type, value)}};
+  return {{"type", type.text()}, {"value", write_json(type, value)}};
 }
 
-Value value_of_json(const dynamic::Definitions& definitions, const ValueType& type,
-                    const Json& json) {
+Value read_json(const dynamic::Definitions& definitions, const ValueType& type, const Json& json) {
   switch (type.kind()) {
     case Kind::null:
       return {};
     case Kind::any:
-      return any_of_json(definitions, json);
+      return read_any(definitions, json);
     case Kind::number:
       return number_of_json(type.number(), json);
     case Kind::text:
@@ -126,23 +126,22 @@ Value value_of_json(const dynamic::Definitions& definitions, const ValueType& ty
       dynamic::IntMap map;
       for (const Json& item : json) {
         map.emplace(item.at(0).get<std::int32_t>(),
-                    value_of_json(definitions, type.item(), item.at(1)));
+                    read_json(definitions, type.item(), item.at(1)));
       }
       return map;
     }
     default: {
       dynamic::StringMap map;
       for (const Json& item : json) {
-        map.emplace(item.at(0).get<std::string>(),
-                    value_of_json(definitions, type.item(), item.at(1)));
+        map.emplace(item.at(0).get<std::string>(), read_json(definitions, type.item(), item.at(1)));
       }
       return map;
     }
   }
 }
 
-Json json_of_value(const ValueType& type, const Value& value) {
-  if (type.kind() == Kind::any) return json_of_any(value);
+Json write_json(const ValueType& type, const Value& value) {
+  if (type.kind() == Kind::any) return write_any(value);
   switch (value.kind()) {
     case Kind::number:
     case Kind::enumeration:
@@ -161,20 +160,55 @@ Json json_of_value(const ValueType& type, const Value& value) {
     case Kind::int_map: {
       Json list = Json::array();
       for (const auto& [key, item] : value.int_map()) {
-        list.push_back({key, json_of_value(type.item(), item)});
+        list.push_back({key, write_json(type.item(), item)});
       }
       return list;
     }
     case Kind::string_map: {
       Json list = Json::array();
       for (const auto& [key, item] : value.string_map()) {
-        list.push_back({key, json_of_value(type.item(), item)});
+        list.push_back({key, write_json(type.item(), item)});
       }
       return list;
     }
     default:
       return nullptr;
   }
+}
+
+}  // namespace
+
+Value value_of_json(const dynamic::Definitions& definitions, const ValueType& type,
+                    const Json& json) {
+  return passed(definitions, type, read_json(definitions, type, json));
+}
+
+Json json_of_value(const dynamic::Definitions& definitions, const ValueType& type,
+                   const Value& value) {
+  return write_json(type, passed(definitions, type, value));
+}
+
+Json json_of_any(const dynamic::Definitions& definitions, const Value& value) {
+  return json_of_value(definitions, definitions.type("varvalue"), value);
+}
+
+Json json_of_parameters(const dynamic::Definitions& definitions,
+                        const dynamic::MemberDescription& member, const dynamic::List& values) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    list.push_back(json_of_value(definitions, member.parameters.at(i).type, values[i]));
+  }
+  return list;
+}
+
+dynamic::List parameters_of_json(const dynamic::Definitions& definitions,
+                                 const dynamic::MemberDescription& member, const Json& json) {
+  if (json.size() != member.parameters.size()) throw std::runtime_error("another parameter count");
+  dynamic::List values;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    values.push_back(value_of_json(definitions, member.parameters[i].type, json.at(i)));
+  }
+  return values;
 }
 
 }  // namespace rr::conformance

@@ -72,12 +72,15 @@ void events(Runtime& runtime, Call& call) {
 // poll(seconds): how many handlers have run
 void poll(Runtime& runtime, Call& call) {
   const auto limit = call.has(0) ? call.seconds(0) : std::chrono::milliseconds(0);
+  const std::uint64_t served = runtime.served_count;
   std::size_t count = runtime.run_queue();
-  if (count == 0 && limit.count() != 0) {
-    const bool has_come =
-        runtime.wait_until([&] { return runtime.queue()->size() != 0; }, limit);
-    if (has_come) count = runtime.run_queue();
+  const auto is_busy = [&] {
+    return runtime.queue()->size() != 0 || runtime.served_count != served;
+  };
+  if (count == 0 && limit.count() != 0 && runtime.wait_until(is_busy, limit)) {
+    count = runtime.run_queue();
   }
+  count += static_cast<std::size_t>(runtime.served_count - served);
   call.give(mxCreateDoubleScalar(static_cast<double>(count)));
 }
 

@@ -59,7 +59,7 @@ Queue::Work Queue::pop() {
 
 std::size_t Queue::size() const {
   const std::lock_guard lock(mutex_);
-  return entries_.size() + calls_.size();
+  return entries_.size() + calls_.size() + requests_.size();
 }
 
 std::uint64_t Queue::lost_count() const {
@@ -97,6 +97,29 @@ void Queue::abort_calls(std::uint64_t slot) {
     call->fail(std::make_exception_ptr(
         Error(ErrorCode::operation_aborted, "the client's function is gone")));
   }
+}
+
+void Queue::push_request(Work work) {
+  const std::lock_guard lock(mutex_);  // goes before `work`, which may be the last of its request
+  if (refuses_requests_ || requests_.size() >= limit) return;
+  requests_.push_back(std::move(work));
+  is_woken_ = true;
+  changed_.notify_one();
+}
+
+Queue::Work Queue::pop_request() {
+  const std::lock_guard lock(mutex_);
+  if (requests_.empty()) return {};
+  Work work = std::move(requests_.front());
+  requests_.pop_front();
+  return work;
+}
+
+void Queue::refuse_requests() {
+  std::deque<Work> requests;  // destroyed behind the lock
+  const std::lock_guard lock(mutex_);
+  refuses_requests_ = true;
+  requests.swap(requests_);
 }
 
 void Queue::wait(std::chrono::milliseconds longest) {

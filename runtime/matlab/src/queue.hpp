@@ -9,6 +9,8 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <utility>
+#include <vector>
 
 #include "rr/dynamic.hpp"
 #include "rr/function.hpp"
@@ -63,6 +65,13 @@ class Queue {
   /// Ends those of a slot that wait or run: with operation_aborted.
   void abort_calls(std::uint64_t slot);
 
+  /// A request of a client's to a service of ours; runs before everything else, too. Let go at
+  /// once, which fails it, when too many wait or none is taken any more.
+  void push_request(Work work);
+  Work pop_request();
+  /// Lets requests go that wait, and all to come.
+  void refuse_requests();
+
   /// Returns when something was put in, wake() was called since wait() before, or the time is over.
   void wait(std::chrono::milliseconds longest);
   void wake();
@@ -80,6 +89,8 @@ class Queue {
   std::deque<std::shared_ptr<PendingCall>> calls_;
   std::vector<std::weak_ptr<PendingCall>> running_;
   std::uint64_t lost_ = 0;
+  std::deque<Work> requests_;
+  bool refuses_requests_ = false;
 };
 
 }  // namespace rr::matlab

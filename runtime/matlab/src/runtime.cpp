@@ -25,6 +25,7 @@ Runtime::Runtime(std::uint32_t generation)
 Runtime::~Runtime() {
   current.reset();
   last_error.reset();
+  queue_->refuse_requests();
   handles_.clear();
   functions_.clear();
   node_->shutdown();
@@ -110,6 +111,10 @@ void Runtime::run_calls() {
     } catch (const Error&) {
       call->fail(std::current_exception());
     }
+  }
+  while (const Queue::Work request = queue_->pop_request()) {
+    ++served_count;
+    request();
   }
 }
 

@@ -30,6 +30,7 @@ namespace rr::matlab {
 
 class Connection;
 struct Module;
+struct ServedTypes;
 
 /// Definitions that came with generated classes.
 struct RecordTypes {
@@ -83,8 +84,17 @@ class Runtime {
 
   /// Runs what waits in the queue, at most what is there now; returns how many.
   std::size_t run_queue();
-  /// Runs callbacks that wait.
+  /// Runs callbacks and requests that wait.
   void run_calls();
+
+  /// The definitions that services may be offered by, and what they were read to; null while there
+  /// is another one.
+  std::vector<std::string> service_types;
+  std::shared_ptr<ServedTypes> served_types;
+  /// Requests to services of ours that were answered.
+  std::uint64_t served_count = 0;
+  /// Whose request is answered; 0 for nobody's.
+  std::uint32_t current_client = 0;
 
   /// What the last error that was raised had besides its message, for who asks.
   struct LastError {

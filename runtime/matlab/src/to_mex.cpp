@@ -31,26 +31,24 @@ mxArray* numbers_to_mex(const Value& value, ElementType number, const Dims& dims
   });
 }
 
-// The numbers of a namedarray, one after the other.
+// The numbers of a namedarray, one after the other, from `next` on.
 template <class T>
-void append_numbers(const Value& value, std::vector<T>& numbers) {
+void fill_numbers(const Value& value, std::span<T> numbers, std::size_t& next) {
   if (value.kind() == Kind::number) {
-    numbers.push_back(value.as<T>());
-  } else if (value.kind() == Kind::array) {
-    const Array<T> items = value.array<T>();
-    numbers.insert(numbers.end(), items.begin(), items.end());
+    numbers[next++] = value.as<T>();
+  } else if (value.kind() == Kind::array && value.number_type() != ElementType::void_) {
+    for (const T item : value.array<T>()) numbers[next++] = item;
   } else {
-    for (const auto& [name, field] : value.fields()) append_numbers(field, numbers);
+    for (const Value& field : value.items()) fill_numbers(field, numbers, next);
   }
 }
 
 mxArray* namedarray_to_mex(const Value& value, const TypePlan& plan) {
   return with_number(plan.number, [&]<class T>(std::type_identity<T>) {
-    // Not a vector of bool, which is no numbers.
-    using Item = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
-    std::vector<Item> numbers;
-    append_numbers(value, numbers);
-    return make_column<Item>(numbers);
+    Array<T> numbers(plan.numbers);
+    std::size_t next = 0;
+    fill_numbers(value, numbers.mutate(), next);
+    return make_column<T>({numbers.data(), next});
   });
 }
 

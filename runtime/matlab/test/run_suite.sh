@@ -20,6 +20,7 @@ export RR_TEST_PORT
 export RR_TEST_SERVICE=$1
 export RR_TEST_FOLDER=$work
 folder=$(dirname "$4")
+export RR_TEST_FILES=$folder
 paths=()
 for before in "${@:5}"; do
   paths+=(--path "$before")

@@ -3,12 +3,7 @@
 // can be seen. `matlab_test_service [--port N] [--seconds N]`, on the loopback address.
 #include <unistd.h>
 
-#include <charconv>
-#include <csignal>
-#include <cstdio>
-#include <cstring>
 #include <mutex>
-#include <string_view>
 #include <thread>
 
 #include "experimental/bench.hpp"
@@ -16,6 +11,7 @@
 #include "rr/node.hpp"
 #include "rr/service.hpp"
 #include "rr/users.hpp"
+#include "runtime/matlab/test/serving.hpp"
 
 namespace {
 
@@ -128,53 +124,22 @@ class Bench final : public bench::BenchDefault {
   std::timed_mutex monitor_;
 };
 
-struct Options {
-  int port = 0;
-  int seconds = 100;
-};
-
-bool read(int argc, char** argv, Options& options) {
-  for (int i = 1; i < argc; i += 2) {
-    const std::string_view name = argv[i];
-    int* const value = name == "--port"      ? &options.port
-                       : name == "--seconds" ? &options.seconds
-                                             : nullptr;
-    if (value == nullptr || i + 1 == argc) return false;
-    const char* const end = argv[i + 1] + std::strlen(argv[i + 1]);
-    if (std::from_chars(argv[i + 1], end, *value).ptr != end) return false;
+struct Served {
+  explicit Served(int wanted) {
+    const auto users = std::make_shared<rr::PasswordUsers>(
+        "alice " + rr::PasswordUsers::hash("open sesame") + " objectlock\nbob " +
+        rr::PasswordUsers::hash("me too") + " objectlock\n");
+    node.register_service("bench", std::make_shared<Bench>(), {.attributes = {{"place", "roof"}}});
+    node.register_service("guarded", std::make_shared<Bench>(), {.users = users});
+    port = node.listen_tcp(static_cast<std::uint16_t>(wanted), "127.0.0.1");
   }
-  return options.port >= 0 && options.port <= 65535;
-}
+  rr::Node node{{.name = "matlab.test"}};
+  std::uint16_t port = 0;
+};
 
 }  // namespace
 
-int main(int argc, char** argv) try {
-  Options options;
-  if (!read(argc, argv, options)) {
-    std::fputs("usage: matlab_test_service [--port N] [--seconds N]\n", stderr);
-    return 2;
-  }
-  // Blocked before the node starts its threads, so that only the wait below takes them.
-  sigset_t stop;
-  sigemptyset(&stop);
-  sigaddset(&stop, SIGINT);
-  sigaddset(&stop, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &stop, nullptr);
-
-  rr::Node node({.name = "matlab.test"});
-  const auto users = std::make_shared<rr::PasswordUsers>(
-      "alice " + rr::PasswordUsers::hash("open sesame") + " objectlock\nbob " +
-      rr::PasswordUsers::hash("me too") + " objectlock\n");
-  node.register_service("bench", std::make_shared<Bench>(),
-                        {.attributes = {{"place", "roof"}}});
-  node.register_service("guarded", std::make_shared<Bench>(), {.users = users});
-  const auto port = node.listen_tcp(static_cast<std::uint16_t>(options.port), "127.0.0.1");
-  std::printf("ready: %d\n", static_cast<int>(port));
-  std::fflush(stdout);
-  const timespec time{options.seconds, 0};
-  sigtimedwait(&stop, nullptr, &time);
-  return 0;
-} catch (const std::exception& error) {
-  std::fprintf(stderr, "matlab_test_service: %s\n", error.what());
-  return 1;
+int main(int argc, char** argv) {
+  return rr::matlab::testing::serve(argc, argv,
+                                    [](int port) { return std::make_unique<Served>(port); });
 }

@@ -1,5 +1,5 @@
 classdef RobotRaconteur
-  %ROBOTRACONTEUR Clients of Robot Raconteur services.
+  %ROBOTRACONTEUR Clients of Robot Raconteur services, and services.
   %   c = RobotRaconteur.ConnectService(url) connects to a service by nothing but its URL; what it
   %   has is known from the service. methods(RobotRaconteur) lists what else there is. Times are in
   %   seconds.
@@ -180,6 +180,56 @@ classdef RobotRaconteur
     function found = GetDetectedNodes()
       %GETDETECTEDNODES Nodes that are known, as a struct array.
       found = rrmex('detected_nodes');
+    end
+
+    function RegisterServiceType(definition)
+      %REGISTERSERVICETYPE Make a definition known that services are offered by: its text, or the
+      %   name of a file. Those that it imports, too, before the first object is served.
+      if numel(definition) < 4096 && exist(definition, 'file') == 2
+        definition = fileread(definition);
+      end
+      rrmex('service_type', definition);
+    end
+    function service = RegisterService(name, type, obj, options)
+      %REGISTERSERVICE service = RobotRaconteur.RegisterService(name, type, obj, options)
+      %   Offers obj, a handle object or a struct of function handles (see RobotRaconteurServed), as
+      %   an object of a registered type. options is a struct: Attributes (a containers.Map or
+      %   struct), Users (a text of users). Requests are answered by Poll and ServeFor, and while
+      %   a call of one's own waits.
+      if nargin < 4
+        options = struct();
+      end
+      attributes = [];
+      users = '';
+      if isfield(options, 'Attributes')
+        attributes = options.Attributes;
+      end
+      if isfield(options, 'Users')
+        users = options.Users;
+      end
+      if ~isa(obj, 'RobotRaconteurServed')
+        obj = RobotRaconteurServed(type, obj);
+      end
+      service = RobotRaconteurService(name, obj, attributes, users);
+    end
+    function port = StartServer(port, address)
+      %STARTSERVER Listen at a TCP port, 0 for a free one; returns it. address may be '127.0.0.1'.
+      if nargin < 1
+        port = 0;
+      end
+      if nargin < 2
+        address = '';
+      end
+      port = rrmex('listen_tcp', port, address);
+    end
+    function count = ServeFor(seconds)
+      %SERVEFOR Answer requests, and call handlers, for so long; returns how many requests. Ctrl-C
+      %   ends it.
+      count = rrmex('serve_for', seconds);
+    end
+    function number = CurrentClient()
+      %CURRENTCLIENT Whose request is answered now, for CallBack; 0 for nobody's.
+      number = rrmex('current_client');
     end
 
     function SetLogLevel(level)

@@ -92,6 +92,8 @@ class Node {
   /// varvalues, exceptions, objects behind varobjects. Those of stubs and services are known
   /// anyway.
   void add_definition(const Definition& definition);
+  /// The same for one that was made while the program runs: the node keeps it as long as it lives.
+  void add_definition(const std::shared_ptr<const Definition>& definition);
 
   /// Connects to the service at a URL. The root object must be an S, or implement it; with rr::Stub
   /// any object will do that this program has a definition of. Throws rr::Error.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rr/error.hpp"
+#include "runtime/cpp/src/dynamic/memory_items.hpp"
 #include "runtime/cpp/src/dynamic/stub.hpp"
 
 namespace rr::dynamic {
@@ -28,17 +29,10 @@ const ArrayNode& node_of(const MemberTable& member) {
 
 // An array of the memory's type for what will be read.
 std::shared_ptr<ArrayContent> make_room(const MemberTable& member, const Memory::Numbers& count) {
-  const ArrayNode& node = node_of(member);
-  auto content = std::make_shared<ArrayContent>();
-  content->number = node.number();
-  if (node.record() != nullptr) content->record = own(*node.record());
-  content->has_dims = node.has_dims();
   for (const std::uint64_t one : count) {
     if (one > any_length) throw Error(ErrorCode::invalid_argument, "no array is so long");
-    if (node.has_dims()) content->data.dims.push_back(static_cast<std::uint32_t>(one));
   }
-  content->data.items.make_room(MemoryRequests::size_of(count), node.wire_item().size);
-  return content;
+  return new_array(node_of(member), count, MemoryRequests::size_of(count));
 }
 
 void* items_of(const ArrayContent& content) {

@@ -1,24 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-
 #include "rr/error.hpp"
+#include "runtime/cpp/src/dynamic/members.hpp"
 #include "runtime/cpp/src/dynamic/stub.hpp"
 
 namespace rr::dynamic {
 namespace {
-
-std::string_view name_of(MemberKind kind) {
-  constexpr std::array<std::string_view, 8> names = {"property", "function", "event", "objref",
-                                                     "pipe",     "callback", "wire",  "memory"};
-  return names.at(static_cast<std::size_t>(kind));
-}
-
-[[noreturn]] void refuse_member(const MemberTable& member, std::string_view expected,
-                                std::string_view is) {
-  throw Error(
-      ErrorCode::member_format_mismatch,
-      subject_of(member.name) + ": expected " + std::string(expected) + ", got " + std::string(is));
-}
 
 void check_index(const MemberTable& table, const Member& member, IndexForm given) {
   if (member.index == given) return;
@@ -58,39 +44,18 @@ Object Object::of(const std::shared_ptr<Stub>& stub) {
 
 Definitions Object::types() const { return Definitions(stub_->table().tables->shared_from_this()); }
 
-std::vector<MemberDescription> Object::members() const {
-  std::vector<MemberDescription> members;
-  for (const MemberTable& member : stub_->table().members) {
-    members.push_back(stub_->describe(member));
-  }
-  return members;
-}
+std::vector<MemberDescription> Object::members() const { return describe_members(stub_->table()); }
 
 MemberDescription Object::member(std::string_view name) const {
-  if (const MemberTable* const found = stub_->table().find(name)) return stub_->describe(*found);
-  throw Error(ErrorCode::member_not_found,
-              "`" + type_name() + "` has no member `" + std::string(name) + "`");
+  return describe_member(stub_->table(), name);
 }
 
 const MemberTable& Object::need(std::string_view name, MemberKind kind) const {
-  const MemberTable* const found = stub_->table().find(name);
-  if (found == nullptr) {
-    throw Error(ErrorCode::member_not_found, "`" + type_name() + "` has no " +
-                                                 std::string(name_of(kind)) + " `" +
-                                                 std::string(name) + "`");
-  }
-  const MemberKind is = stub_->wire(*found).kind;
-  if (is != kind) refuse_member(*found, name_of(kind), name_of(is));
-  return *found;
+  return need_member(stub_->table(), name, kind);
 }
 
 const MemberTable& Object::need_function(std::string_view name, bool is_generator) const {
-  constexpr std::string_view generator = "generator function";
-  const MemberTable& member = need(name, MemberKind::function);
-  const bool is = stub_->wire(member).generator != GeneratorForm::none;
-  if (is && !is_generator) refuse_member(member, "plain function", generator);
-  if (!is && is_generator) refuse_member(member, generator, "plain function");
-  return member;
+  return dynamic::need_function(stub_->table(), name, is_generator);
 }
 
 Value Object::get(std::string_view property) const {

@@ -259,6 +259,10 @@ class TableBuilder {
     }
     table.wire.name = table.name;
     table.wire.text = table.text;
+    const auto& numbers = definition.version.numbers;
+    for (std::size_t i = 0; i < std::min(numbers.size(), table.wire.version.size()); ++i) {
+      table.wire.version[i] = static_cast<std::uint16_t>(numbers[i]);
+    }
     table.wire.records = table.records;
     table.wire.objects = table.objects;
     for (const model::Definition* const import : definition.imports) {

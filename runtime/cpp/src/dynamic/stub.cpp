@@ -65,12 +65,7 @@ ConvertedArguments::ConvertedArguments(const MemberTable& member, const List& ar
 }
 
 List read_arguments(const Arguments& arguments, const Member& member) {
-  List values(member.parameters.size());
-  std::vector<void*> places;
-  for (Value& value : values) places.push_back(&value);
-  places.push_back(nullptr);
-  arguments.read(member, places.data());
-  return values;
+  return read_parameters(member, [&](void* const* places) { arguments.read(member, places); });
 }
 
 std::unique_ptr<Completion> complete_with(Done<Value> done) {

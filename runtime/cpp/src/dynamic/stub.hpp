@@ -56,7 +56,17 @@ class ConvertedArguments {
   std::vector<const void*> places_;
 };
 
-/// Reads the parameters of an event or callback.
+/// The values of a member's parameters, which `read(places)` reads.
+template <class Read>
+List read_parameters(const Member& member, const Read& read) {
+  List values(member.parameters.size());
+  std::vector<void*> places;
+  for (Value& value : values) places.push_back(&value);
+  places.push_back(nullptr);
+  read(places.data());
+  return values;
+}
+/// Those of an event or callback.
 List read_arguments(const Arguments& arguments, const Member& member);
 
 /// Ends at a function of the program. The result is made to what the program gets by `finish`.

@@ -112,6 +112,15 @@ void Core::add_definition(const Definition& definition) {
   types_ = std::move(types);
 }
 
+void Core::keep_definition(std::shared_ptr<const Definition> definition) {
+  const Definition& kept = *definition;
+  {
+    const std::lock_guard lock(mutex_);
+    kept_definitions_.insert(std::move(definition));
+  }
+  add_definition(kept);
+}
+
 void Core::tell_tap(const Definition& definition) const {
   if (!options_->tap) return;
   options_->tap->definition(definition.text);

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_set>
@@ -50,6 +51,8 @@ class Core : public std::enable_shared_from_this<Core> {
 
   /// Makes a definition and its imports known.
   void add_definition(const Definition& definition);
+  /// The same for one that goes with its last owner: it is kept until the node's core goes.
+  void keep_definition(std::shared_ptr<const Definition> definition);
   /// What is known now; does not change any more.
   [[nodiscard]] std::shared_ptr<const TypeRegistry> types() const;
 
@@ -75,6 +78,7 @@ class Core : public std::enable_shared_from_this<Core> {
   std::shared_ptr<const channel::Tls> tls_;
   std::shared_ptr<channel::WebSockets> web_sockets_;
   mutable std::mutex mutex_;
+  std::set<std::shared_ptr<const Definition>> kept_definitions_;  // for types_
   std::shared_ptr<const TypeRegistry> types_;
   std::unordered_set<std::uint32_t> endpoints_;
   std::map<std::string, std::shared_ptr<channel::Channel>> channels_;

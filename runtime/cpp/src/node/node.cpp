@@ -312,6 +312,10 @@ void Node::add_definition(const Definition& definition) {
   state_->core->add_definition(definition);
 }
 
+void Node::add_definition(const std::shared_ptr<const Definition>& definition) {
+  state_->core->keep_definition(definition);
+}
+
 Node::Opened Node::open(State& state, std::string_view url, ConnectOptions options,
                         const ObjectType* type) {
   const Url parsed = Url::parse(url);

@@ -36,6 +36,9 @@ BoardService::BoardService(std::shared_ptr<Board> board, const BoardTexts& texts
   if (tables_->find_object(root_type_) == nullptr) {
     throw Error(ErrorCode::service_definition_error, "the board's root is no object it defines");
   }
+  for (const auto& [service, definition] : tables_->definitions()) {
+    node_.add_definition(std::shared_ptr<const Definition>(tables_, &definition.wire));
+  }
   exceptions_ = exceptions_of(texts.texts[1], root_type_.substr(0, root_type_.rfind('.')));
 }
 

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conformance/runners/shared/object_script.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "conformance/runners/shared/outcomes.hpp"
+
+namespace rr::conformance {
+namespace {
+
+constexpr std::string_view later = "_later";
+/// An answer is long gone then.
+constexpr std::chrono::milliseconds delay{50};
+
+}  // namespace
+
+Json ObjectScript::told(std::string_view kind, std::string_view name) {
+  const std::lock_guard lock(mutex_);
+  return part(part(node_, kind), name);
+}
+
+Json ObjectScript::value_of(std::string_view property) {
+  const std::lock_guard lock(mutex_);
+  const Json entry = part(part(node_, "properties"), property);
+  if (entry.contains("get_throw")) raise_told(entry["get_throw"]);
+  return part(entry, "value");
+}
+
+void ObjectScript::set_value(std::string_view property, Json value) {
+  const std::lock_guard lock(mutex_);
+  Json& entry = node_["properties"][std::string(property)];
+  if (entry.contains("set_throw")) raise_told(entry["set_throw"]);
+  entry["value"] = std::move(value);
+}
+
+Json ObjectScript::next_outcome(std::string_view function, const Json& parameters) {
+  std::size_t call = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    call = calls_[std::string(function)]++;
+  }
+  Json next = outcome_of_call(told("functions", function), call);
+  if (next.contains("throw")) raise_told(next["throw"], parameters);
+  return next;
+}
+
+Json ObjectScript::outcome(std::string_view function, const Json& parameters,
+                           std::string_view result_type) {
+  const auto action = actions_.find(function);
+  if (action != actions_.end()) return action->second(result_type);
+  if (function.ends_with(later)) {
+    const auto put_off = actions_.find(function.substr(0, function.size() - later.size()));
+    if (put_off != actions_.end()) {
+      do_later([&act = put_off->second] { (void)act({}); });
+      return nullptr;
+    }
+  }
+  const Json next = next_outcome(function, parameters);
+  if (next.is_null()) {
+    if (function == "release_child") release(parameters.at(0).get<std::string>());
+    return nullptr;
+  }
+  if (next.contains("echo")) return parameters.at(next["echo"].get<std::size_t>());
+  return part(next, "return");
+}
+
+void ObjectScript::do_later(std::function<void()> what) {
+  const std::lock_guard lock(mutex_);
+  put_off_.emplace_back([what = std::move(what)] {
+    std::this_thread::sleep_for(delay);
+    try {
+      what();
+    } catch (const Error&) {
+      return;  // whom it was for has gone
+    }
+  });
+}
+
+// What is put off may have kept the object, and be the last that did.
+void ObjectScript::finish() {
+  for (std::thread& thread : std::exchange(put_off_, {})) {
+    if (thread.get_id() == std::this_thread::get_id()) {
+      thread.detach();
+    } else {
+      thread.join();
+    }
+  }
+}
+
+void ObjectScript::release(const std::string& path) {
+  if (context_ == nullptr) throw std::runtime_error("an object that was not reached is called");
+  context_->release_path(context_->name() + "." + path);
+}
+
+std::shared_ptr<rr::Skeleton> ObjectScript::child(std::string_view objref, const Json& index) {
+  const std::string text = index.is_string() ? index.get<std::string>() : index.dump();
+  const std::lock_guard lock(mutex_);
+  std::shared_ptr<rr::Skeleton>& made = children_[std::string(objref) + "[" + text + "]"];
+  if (made) return made;
+  Json entry = part(part(node_, "objrefs"), objref);
+  if (entry.is_null()) return nullptr;
+  if (!index.is_null()) {
+    entry = part(part(entry, "items"), text);
+    if (entry.is_null()) throw Error(ErrorCode::invalid_argument, "no object with index " + text);
+  }
+  made = make_child(entry.at("type").get_ref<const std::string&>(), entry.at("node"));
+  return made;
+}
+
+void ObjectScript::raise_told(const Json& what, const Json& parameters) const {
+  raise([this](const Json& json) { return read_parameter(json); }, what, parameters);
+}
+
+bool ObjectScript::has_monitor(const ObjectType& type) {
+  return std::any_of(type.members.begin(), type.members.end(),
+                     [](const Member& member) { return (member.access & nolock) != 0; });
+}
+
+std::size_t ScriptedSteps::count() const {
+  return steps_.contains("yield") ? steps_["yield"].size() : steps_.value("accept", 0U);
+}
+
+bool ScriptedSteps::take() {
+  if (step_ < count()) {
+    ++step_;
+    return true;
+  }
+  if (steps_.contains("end")) script_.raise_told(steps_["end"]);
+  return false;
+}
+
+std::optional<Json> ScriptedSteps::give() {
+  const std::size_t step = step_;
+  if (!take()) return std::nullopt;
+  return steps_.contains("yield") ? steps_["yield"].at(step) : Json();
+}
+
+}  // namespace rr::conformance

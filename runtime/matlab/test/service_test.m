@@ -1,0 +1,202 @@
+% Services that Octave offers, used by a client in the same interpreter and by one in C++.
+
+%!function [service, rig, url] = offered()
+%!  persistent kept
+%!  if isempty(kept)
+%!    RobotRaconteur.RegisterServiceType(fullfile(getenv('RR_TEST_FILES'), 'experimental.rig.robdef'));
+%!    kept.rig = rr_rig();
+%!    kept.service = RobotRaconteur.RegisterService('rig', 'experimental.rig.Rig', kept.rig, ...
+%!      struct('Attributes', struct('place', 'roof')));
+%!    kept.rig.served = kept.service.Root;
+%!    port = RobotRaconteur.StartServer(0, '127.0.0.1');
+%!    kept.url = sprintf('rr+tcp://127.0.0.1:%d/?service=', port);
+%!  end
+%!  service = kept.service;
+%!  rig = kept.rig;
+%!  url = kept.url;
+%!endfunction
+
+%!function c = client()
+%!  persistent kept
+%!  if isempty(kept)
+%!    [~, ~, url] = offered();
+%!    kept = RobotRaconteur.ConnectService([url, 'rig']);
+%!  end
+%!  c = kept;
+%!endfunction
+
+%!function fails(f, identifier, text)
+%!  try
+%!    f();
+%!  catch err
+%!    assert(err.identifier, identifier);
+%!    assert(strcmp(err.message, text), 'says %s', err.message);
+%!    return
+%!  end
+%!  error('it has not failed');
+%!endfunction
+
+%!function assign(object)
+%!  object.number = 1;
+%!endfunction
+
+%!function put(map, key, value)
+%!  map(double(key)) = value;
+%!endfunction
+
+%!function set_speed(state, value)
+%!  state('speed') = value;
+%!endfunction
+
+%!function text = failure_of(c)
+%!  text = '';
+%!  try
+%!    c.add(1, 2);
+%!  catch err
+%!    text = err.message;
+%!  end
+%!endfunction
+
+%!test % properties of a handle object
+%! [~, rig] = offered();
+%! c = client();
+%! assert(c.speed, 1);
+%! c.speed = 2.5;
+%! assert(rig.speed, 2.5);
+%! assert(c.count, int16(2));
+%! rig.count = 40000;
+%! fails(@() c.count, 'RobotRaconteur:DataTypeMismatch', 'member count: int16 cannot hold 40000');
+%! rig.count = 3;
+%! assert(c.note, []);
+%! c.note = struct('text', 'a', 'numbers', [1; 2]);
+%! assert(rig.note, struct('text', 'a', 'numbers', [1; 2]));
+%! assert(c.mode, int32(5));
+%! assert(c.title, 'the rig');
+
+%!test % functions, errors and exceptions of the definition
+%! [~, rig] = offered();
+%! c = client();
+%! assert(c.add(1, 2), 3);
+%! c.stop();
+%! assert(rig.stopped, 1);
+%! fails(@() c.jam('stuck'), 'experimental.rig:Jam', 'stuck');
+%! value = c.echo(RobotRaconteurVarValue(struct('id', int16(1), 'at', [1; 2; 3]), ...
+%!   'experimental.rig.Sample[]'));
+%! assert(value.datatype, 'experimental.rig.Sample[]');
+%! assert(value.data.at, [1; 2; 3]);
+
+%!test % generators
+%! c = client();
+%! g = c.count_to(3);
+%! assert(g.Next(), 0);
+%! assert(g.Next(), 1);
+%! assert(g.Next(), 2);
+%! fails(@() g.Next(), 'RobotRaconteur:StopIteration', 'the generator has ended');
+%! g = c.sum(10);
+%! assert(g.Next(1), 11);
+%! assert(g.Next(5), 16);
+%! g.Close();
+%! g = c.sum(99);
+%! fails(@() g.Next(2), 'RobotRaconteur:StopIteration', 'the generator has ended');
+
+%!test % objects: handle objects, structs, none, and what has a type of its own
+%! c = client();
+%! assert(c.get_child().number, int32(1));
+%! child = c.get_children(7);
+%! assert(child.name(), 'child 7');
+%! child.number = 8;
+%! assert(c.get_children(7).name(), 'child 8');
+%! named = c.get_by_name('arm');
+%! assert(named.number, int32(3));
+%! assert(named.name(), 'named arm');
+%! fails(@() assign(named), 'RobotRaconteur:NotImplementedError', 'number cannot be set');
+%! assert(c.get_anything().number, int32(99));
+%! try
+%!   c.get_children(-1);
+%!   error('there is a child');
+%! catch err
+%!   assert(err.identifier, 'RobotRaconteur:ServiceError');
+%! end
+
+%!test % events and callbacks
+%! c = client();
+%! came = containers.Map('KeyType', 'double', 'ValueType', 'any');
+%! l = addlistener(c, 'changed', @(number, at) put(came, number, at));
+%! c.fire(2);
+%! assert(rr_eventually(@() came.Count == 2));
+%! assert(came(2), [2; 2; 3]);
+%! delete(l);
+%! c.ask = @(question) [question, '!'];
+%! assert(c.ask_back('who'), 'who!');
+
+%!test % wires and pipes
+%! [service, rig] = offered();
+%! c = client();
+%! service.Root.SetInValue('force', [1; 2; 3]);
+%! w = c.force.Connect();
+%! assert(rr_eventually(@() w.InValueValid));
+%! assert(w.InValue, [1; 2; 3]);
+%! w.OutValue = [4; 5; 6];
+%! assert(rr_eventually(@() ~isempty(rig.forces)));
+%! assert(rig.forces(:, end), [4; 5; 6]);
+%! assert(service.Root.OutValue('force'), [4; 5; 6]);
+%! w.Close();
+%! p = c.samples.Connect(-1);
+%! p.SendPacket(struct('id', 7, 'at', [1; 2; 3]));
+%! assert(rr_eventually(@() p.Available > 0));
+%! assert(p.ReceivePacket().id, int16(7));
+%! assert(rig.packets(1).at, [1; 2; 3]);
+%! p.Close();
+
+%!test % memories
+%! service = offered();
+%! c = client();
+%! m = c.buffer;
+%! assert(m(:), [0; 1; 2; 3]);
+%! m(2:3) = [10; 20];
+%! assert(service.Root.Memory('buffer'), [0; 10; 20; 3]);
+%! service.Root.SetMemory('buffer', (1:5)');
+%! m = c.buffer;
+%! assert(m(4:5), [4; 5]);
+%! g = c.grid;
+%! assert(g(:, 2:3), int16([2 3; 5 6]));
+
+%!test % a struct of function handles
+%! [~, ~, url] = offered();
+%! state = containers.Map({'speed'}, {4});
+%! served = struct('speed', @() state('speed'), 'set_speed', @(value) set_speed(state, value), ...
+%!                 'add', @(a, b) a * b, 'title', 'constant', ...
+%!                 'count_to', @(limit) struct('next', @(value) error('RobotRaconteur:StopIteration', '')));
+%! service = RobotRaconteur.RegisterService('other', 'experimental.rig.Rig', served);
+%! c = RobotRaconteur.ConnectService([url, 'other']);
+%! assert(c.speed, 4);
+%! c.speed = 5;
+%! assert(state('speed'), 5);
+%! assert(c.add(3, 4), 12);
+%! assert(c.title, 'constant');
+%! fails(@() c.stop(), 'RobotRaconteur:NotImplementedError', 'stop is not implemented by this object');
+%! service.Close();
+%! assert(rr_eventually(@() ~isempty(failure_of(c))));
+
+%!test % a client in C++, while the interpreter serves
+%! [service, ~, url] = offered();
+%! report = fullfile(getenv('RR_TEST_FOLDER'), 'client');
+%! system(sprintf('"%s" "%srig" > "%s" 2>&1; echo end >> "%s"', getenv('RR_TEST_CLIENT'), url, ...
+%!   report, report), false, 'async');
+%! count = 0;
+%! for i = 1:300
+%!   count = count + RobotRaconteur.ServeFor(0.1);
+%!   text = fileread(report);
+%!   if strfind(text, 'end')
+%!     break
+%!   end
+%! end
+%! assert(text, sprintf('as expected\nend\n'));
+%! assert(count > 20);
+
+%!test % definitions with mistakes
+%! fails(@() RobotRaconteurServed('experimental.rig.Rug', struct()), 'RobotRaconteur:KeyNotFound', ...
+%!   'no object `experimental.rig.Rug`');
+
+%!test % the interpreter ends while a service is offered, and clients are connected
+%! RobotRaconteur.Shutdown();
