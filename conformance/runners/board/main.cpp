@@ -13,7 +13,7 @@
 #include <string>
 
 #include "conformance/harness/json.hpp"
-#include "conformance/runners/cpp/node_settings.hpp"
+#include "conformance/runners/shared/node_settings.hpp"
 #include "runtime/arduino/bench/plugged_board.hpp"
 
 namespace {
