@@ -96,6 +96,14 @@ TEST(DualArm, WithoutAnythingBetweenTooAndTheMovementIsLarge) {
   EXPECT_GT(farthest, 0.5);
 }
 
+TEST(DualArm, AGamepadThatIsSilentForASecondIsLetGo) {
+  Robot robot;
+  SimulatedRun run(robot);
+  robot.coordinator().orders().set({.mode = 2, .gamepad = {.sticks = {1, 0, 0, 0}}});
+  run.run_for(3s);
+  EXPECT_NEAR(robot.coordinator().state().read().target[0], 0.5, 1e-9) << "0.5 rad/s for a second";
+}
+
 // The figure's axes move by at most 4 rad/s: a packet that is missing is 4 mrad of older data. Six
 // in a row are one in a million, at 10 %.
 TEST(DualArm, LossMakesTheStateOlderAndNothingElse) {
