@@ -37,7 +37,7 @@ struct RecordLayout {
   std::uint64_t packed = 0;  ///< bytes in a frame
 };
 
-/// Bounded arrays have no layout; is_bus_type() has refused them before.
+/// Of a record that check_record() has found nothing in.
 RecordLayout layout_of(const model::Record& record);
 
 /// Reports R0930 for what cannot be in a bus.

@@ -18,7 +18,8 @@ file(COPY "${SOURCE}/" DESTINATION "${SCRATCH}/source")
 if(INSTALL_FROM)
   run(${CMAKE_COMMAND} --install "${INSTALL_FROM}" --prefix "${SCRATCH}/prefix")
   foreach(installed bin/robdef include/rr/error.hpp include/rr.h include/rr_c/values.h share/man/man1/robdef.1
-                    share/bash-completion/completions/robdef)
+                    share/bash-completion/completions/robdef include/rr/realtime/service.hpp
+                    share/robdef/cbus/rr_bus.c)
     if(NOT EXISTS "${SCRATCH}/prefix/${installed}")
       message(SEND_ERROR "not installed: ${installed}")
     endif()

@@ -46,7 +46,7 @@ class Microscope {
 /// How sharp a picture is: the mean square of the differences of neighbours.
 double sharpness(const Frame& frame);
 
-/// The middle of a picture with that of another one, so that a mosaic shows no seams of its own.
+/// Pixels across the middle of a frame, which is what goes into a mosaic.
 inline constexpr int tile_size = 48;
 
 }  // namespace asom

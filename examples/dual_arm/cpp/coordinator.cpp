@@ -11,6 +11,8 @@ namespace {
 
 // Of a stick that is pushed to its end, in units of the axis a second.
 constexpr double stick_speed = 0.5;
+// Cycles after which a gamepad that says nothing counts as let go: whoever held it may be gone.
+constexpr std::uint64_t gamepad_patience = 1000;
 
 }  // namespace
 
@@ -23,13 +25,13 @@ Coordinator::Coordinator() {
 }
 
 void Coordinator::make_targets(std::uint64_t sample) {
-  orders_.take();
+  silence_ = orders_.take() ? 0 : silence_ + 1;
   const Orders& orders = orders_.value();
   if (table_.begin_sample(sample)) table_begin_ = sample;
   now_.mode = orders.mode;
   if (orders.mode == 1) {
     table_.read(static_cast<double>(sample - table_begin_) * period, targets_);
-  } else if (orders.mode == 2) {
+  } else if (orders.mode == 2 && silence_ < gamepad_patience) {
     // A stick moves the first two axes of an arm; with a button held down, of the bases too.
     for (std::size_t i = 0; i < orders.gamepad.sticks.size(); ++i) {
       const double step = period * stick_speed * std::clamp(orders.gamepad.sticks[i], -1.0, 1.0);

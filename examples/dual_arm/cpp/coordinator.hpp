@@ -58,6 +58,7 @@ class Coordinator {
   rr::realtime::SignalGroup<wire::RobotState> state_;
   std::array<double, axis_count> targets_{};
   std::uint64_t table_begin_ = 0;  // sample
+  std::uint64_t silence_ = 0;      // cycles since the last order
   wire::RobotState now_{};
 };
 

@@ -12,7 +12,8 @@
 #include <vector>
 
 #include "examples/dual_arm/c/arm_node.h"
-#include "examples/dual_arm/cpp/robot.hpp"
+#include "examples/dual_arm/cpp/host.hpp"
+#include "rr/node.hpp"
 #include "runtime/cpp/src/realtime/testing/bad_line.hpp"
 
 namespace dual_arm {
@@ -94,6 +95,37 @@ TEST(DualArm, WithoutAnythingBetweenTooAndTheMovementIsLarge) {
   }
   EXPECT_LE(largest, 1e-9);
   EXPECT_GT(farthest, 0.5);
+}
+
+TEST(DualArm, AGamepadThatIsSilentForASecondIsLetGo) {
+  Robot robot;
+  SimulatedRun run(robot);
+  robot.coordinator().orders().set({.mode = 2, .gamepad = {.sticks = {1, 0, 0, 0}}});
+  run.run_for(3s);
+  EXPECT_NEAR(robot.coordinator().state().read().target[0], 0.5, 1e-9) << "0.5 rad/s for a second";
+}
+
+TEST(DualArm, SignalsAreReadAndSetByNameOverTheNetwork) {
+  Robot robot;
+  rr::Node server;
+  rr::Node client;
+  const auto host = std::make_shared<Host>(robot);
+  const auto service = server.register_service("DualArm", host);
+  const auto port = server.listen_tcp(0, "127.0.0.1");
+  const auto stub = client.connect<wire::DualArmStub>("rr+tcp://127.0.0.1:" + std::to_string(port) +
+                                                      "?service=DualArm");
+  SimulatedRun run(robot);
+  EXPECT_EQ(stub->signal_names()->size(), 8U);
+  stub->write_signal("orders.mode", {2});
+  stub->write_signal("orders.gamepad.sticks", {0, 0, 0, -1});
+  run.run_for(100ms);
+  const auto target = stub->read_signal("state.target");
+  ASSERT_EQ(target.size(), axis_count);
+  EXPECT_NEAR(target[7], -0.05, 1e-9);
+  EXPECT_EQ(stub->read_signal("state.mode")[0], 2);
+  EXPECT_THROW(stub->write_signal("state.mode", {1}), rr::Error);
+  EXPECT_THROW(stub->write_signal("orders.mode", {256}), rr::Error);
+  EXPECT_THROW((void)stub->read_signal("orders.speed"), rr::Error);
 }
 
 // The figure's axes move by at most 4 rad/s: a packet that is missing is 4 mrad of older data. Six

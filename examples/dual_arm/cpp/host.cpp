@@ -1,9 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "examples/dual_arm/cpp/host.hpp"
 
+#include <cstddef>
+
 #include "rr/error.hpp"
 
 namespace dual_arm {
+
+namespace {
+
+// Orders are of this program alone, so their layout is written down.
+rr::realtime::Layout layout_of_orders() {
+  using rr::realtime::SignalType;
+  constexpr std::size_t gamepad = offsetof(Orders, gamepad);
+  static constexpr rr::realtime::SignalEntry entries[] = {
+      {"mode", SignalType::uint8, 1, offsetof(Orders, mode)},
+      {"gamepad.sticks", SignalType::double_, 4, gamepad + offsetof(wire::Gamepad, sticks)},
+      {"gamepad.buttons", SignalType::uint8, 1, gamepad + offsetof(wire::Gamepad, buttons)}};
+  return {"dual_arm.Orders", entries, sizeof(Orders)};
+}
+
+}  // namespace
+
+Host::Host(Robot& robot)
+    : robot_(robot),
+      table_(std::make_shared<rr::realtime::TableMemory>(robot.coordinator().table())) {
+  bus_.add("state", rr::realtime::layout_of<wire::RobotState>(), robot.coordinator().state());
+  bus_.add("orders", layout_of_orders(), robot.coordinator().orders());
+}
+
+std::optional<std::vector<std::string>> Host::signal_names() { return bus_.signal_names(); }
+
+rr::Array<double> Host::read_signal(const std::string& name) {
+  const std::vector<double> values = bus_.get(name);
+  return rr::Array<double>(std::span<const double>(values));
+}
+
+void Host::write_signal(const std::string& name, const rr::Array<double>& values) {
+  bus_.set(name, std::vector<double>(values.begin(), values.end()));
+}
 
 void Host::join(rr::realtime::BusService& bus) {
   bus.publish(robot_.coordinator().state(), state());

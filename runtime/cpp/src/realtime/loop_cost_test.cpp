@@ -99,8 +99,8 @@ TEST(RealtimeCost, TheLoopNeitherAllocatesNorLocksNorCallsTheKernelButForItsPack
   EXPECT_EQ(outcome.cost.locks, 0U);
   if (!outcome.cost.is_watched) GTEST_SKIP() << "the kernel does not take filters here";
   EXPECT_EQ(outcome.cost.kernel_calls, 0U) << "the last was number " << outcome.cost.last_call;
-  EXPECT_GT(outcome.cycles, 100U);
-  EXPECT_GT(outcome.accepted, 100U);
+  EXPECT_GT(outcome.cycles, 20U);
+  EXPECT_GT(outcome.accepted, 10U);
   EXPECT_GT(outcome.commands, 0U);
   EXPECT_GT(outcome.tables, 0U);
 }

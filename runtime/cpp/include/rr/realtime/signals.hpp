@@ -14,6 +14,8 @@
 /// the kernel, but for SignalGroup::read().
 namespace rr::realtime {
 
+static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+
 template <class T>
 concept Pod = std::is_trivially_copyable_v<T> && std::is_default_constructible_v<T>;
 

@@ -100,6 +100,18 @@ void use(const std::string& url, unsigned number, const std::atomic<bool>& is_ov
   }
 }
 
+/// The same; one that cannot connect, or whose call fails, begins anew.
+void use_again(const std::string& url, unsigned number, const std::atomic<bool>& is_over,
+               std::atomic<std::uint64_t>& calls, std::atomic<std::uint64_t>& failures) {
+  while (!is_over) {
+    try {
+      use(url, number, is_over, calls);
+    } catch (const rr::Error&) {
+      ++failures;
+    }
+  }
+}
+
 long long microseconds(Nanoseconds time) { return static_cast<long long>(time / 1us); }
 
 void print_times(const char* what, const JitterHistogram& times) {
@@ -136,6 +148,7 @@ int main(int argc, char** argv) try {
       "rr+tcp://127.0.0.1:" + std::to_string(server.listen_tcp(0, "127.0.0.1")) + "?service=arm";
   std::atomic<bool> is_over{false};
   std::atomic<std::uint64_t> calls{0};
+  std::atomic<std::uint64_t> failures{0};
   {
     BusService bus(5ms);
     bus.publish(loop.state, object->state());
@@ -143,7 +156,7 @@ int main(int argc, char** argv) try {
     std::thread realtime([&] { loop.run(cost); });
     std::vector<std::thread> users;
     for (unsigned i = 0; i < clients; ++i) {
-      users.emplace_back([&, i] { use(url, i, is_over, calls); });
+      users.emplace_back([&, i] { use_again(url, i, is_over, calls, failures); });
     }
     // The floor of this machine, under the same load.
     const std::string floor =
@@ -158,10 +171,12 @@ int main(int argc, char** argv) try {
     if (status != 0) std::printf("realtime load: cyclictest ended with %d\n", status);
   }
   const LoopCounts& counts = loop.loop.counts();
-  std::printf("realtime load: %u s, %u clients, %llu calls, %llu commands taken, table %llu\n",
-              seconds, clients, static_cast<unsigned long long>(calls.load()),
-              static_cast<unsigned long long>(loop.commands),
-              static_cast<unsigned long long>(loop.table.current()));
+  std::printf(
+      "realtime load: %u s, %u clients, %llu calls, %llu failed, %llu commands taken, table %llu\n",
+      seconds, clients, static_cast<unsigned long long>(calls.load()),
+      static_cast<unsigned long long>(failures.load()),
+      static_cast<unsigned long long>(loop.commands),
+      static_cast<unsigned long long>(loop.table.current()));
   std::printf("realtime load: priority %s, memory locked %s\n",
               loop.rights.has_priority ? "yes" : "no",
               loop.rights.has_locked_memory ? "yes" : "no");
