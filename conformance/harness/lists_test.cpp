@@ -45,11 +45,9 @@ TEST_F(Lists, AStarIsEverything) {
 
 TEST_F(Lists, AnEntryMayBeAboutSomeChannelsOnly) {
   const Deviations list(write("a over tls ws | * | service | step 3 | closed | why\n"));
-  const Run by_tcp{"a", "v4", Role::service};
-  EXPECT_EQ(list.find(by_tcp, step_place(3)), nullptr);
+  EXPECT_EQ(list.find({"a", "v4", Role::service}, step_place(3)), nullptr);
   for (const char* channel : {"tls", "ws"}) {
-    const Run run{"a", "v4", Role::service, channel};
-    EXPECT_NE(list.find(run, step_place(3)), nullptr) << channel;
+    EXPECT_NE(list.find({"a", "v4", Role::service, channel}, step_place(3)), nullptr) << channel;
   }
 }
 

@@ -185,7 +185,7 @@ TEST(WireSubscriptions, ReportAServiceWhoseValuesHaveAnotherType) {
   EXPECT_TRUE(TwoWired::is_at(level, 1));
   EXPECT_EQ(level.last_error(), std::nullopt);
   other->level().set_in("high");
-  EXPECT_TRUE(eventually([&] { return level.last_error().has_value(); }));
+  ASSERT_TRUE(eventually([&] { return level.last_error().has_value(); }));
   EXPECT_EQ(level.last_error()->code(), ErrorCode::data_type_mismatch);
   EXPECT_THAT(level.last_error()->message(), HasSubstr("`one.level` has values of another type"));
   EXPECT_FALSE(level.try_in());
