@@ -83,6 +83,26 @@ TEST_P(Unplugged, ACallUnderWayFailsAtOnce) {
   EXPECT_TRUE(comes_back(echo, "count"));
 }
 
+TEST_P(Unplugged, AResetInACallFailsItAndNothingElse) {
+  const std::string url = plug("echo115200.elf", "Echo");
+  const dynamic::Client echo = dynamic::connect(node, url);
+  const dynamic::Client another = dynamic::connect(node, url);
+  dynamic::PipeEndpoint pipe = another->pipe("counts").connect();
+  std::thread resetter([&] {
+    std::this_thread::sleep_for(200ms);
+    board->reset();
+  });
+  const Error error = error_of([&] { echo->call("wait", {std::uint16_t{3000}}); });
+  resetter.join();
+  EXPECT_EQ(error.code(), ErrorCode::connection_error);
+  EXPECT_TRUE(comes_back(echo, "count"));
+  EXPECT_TRUE(another.is_open());
+  EXPECT_TRUE(eventually([&] {
+    pipe.send(std::uint32_t{1});
+    return pipe.receive_for(100ms).has_value();
+  })) << "what the other client had open is opened again";
+}
+
 TEST_P(Unplugged, EventsAndWiresGoOn) {
   const std::string url = plug("light.elf", "Light");
   const dynamic::Client light = dynamic::connect(node, url);

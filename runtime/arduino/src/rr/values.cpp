@@ -87,17 +87,17 @@ bool write(Writer& writer, const double& value) {
 WideBits widen(uint32_t single) {
   const uint16_t sign = static_cast<uint16_t>(single >> 16) & 0x8000U;
   uint16_t exponent = (static_cast<uint16_t>(single >> 16) >> 7) & 0xFF;
-  uint32_t fraction = single & 0x7FFFFFUL;
+  uint32_t fraction = single & 0x7FFFFFU;
   if (exponent == 0xFF) {
     exponent = 0x7FF;
   } else if (exponent != 0 || fraction != 0) {
     if (exponent == 0) {  // subnormal: there are enough exponents here
       exponent = 1;
-      while ((fraction & 0x800000UL) == 0) {
+      while ((fraction & 0x800000U) == 0) {
         fraction <<= 1;
         --exponent;
       }
-      fraction &= 0x7FFFFFUL;
+      fraction &= 0x7FFFFFU;
     }
     exponent = static_cast<uint16_t>(exponent + 1023 - 127);
   }
@@ -109,21 +109,21 @@ WideBits widen(uint32_t single) {
 }
 
 uint32_t narrow(WideBits wide) {
-  const uint32_t sign = wide.high & 0x80000000UL;
+  const uint32_t sign = wide.high & 0x80000000U;
   const int16_t exponent =
       static_cast<int16_t>((static_cast<uint16_t>(wide.high >> 16) >> 4) & 0x7FF);
   // 23 bits, and whether anything was behind them.
-  uint32_t fraction = ((wide.high & 0xFFFFFUL) << 3) | (static_cast<uint8_t>(wide.low >> 24) >> 5);
+  uint32_t fraction = ((wide.high & 0xFFFFFU) << 3) | (static_cast<uint8_t>(wide.low >> 24) >> 5);
   uint32_t rest = wide.low << 3;
   if (exponent == 0x7FF) {
     const bool isNumber = fraction == 0 && rest == 0;
-    return sign | 0x7F800000UL | (isNumber ? 0 : fraction | 0x400000UL);
+    return sign | 0x7F800000U | (isNumber ? 0 : fraction | 0x400000U);
   }
   int16_t target = static_cast<int16_t>(exponent - (1023 - 127));
-  if (target >= 0xFF) return sign | 0x7F800000UL;
+  if (target >= 0xFF) return sign | 0x7F800000U;
   if (target < -23) return sign;
   if (target <= 0) {  // becomes subnormal
-    fraction |= 0x800000UL;
+    fraction |= 0x800000U;
     for (; target <= 0; ++target) {
       rest = (rest >> 1) | (fraction << 31) | (rest & 1);
       fraction >>= 1;
@@ -132,7 +132,7 @@ uint32_t narrow(WideBits wide) {
   }
   // A carry out of the fraction goes into the exponent, as it should.
   const uint32_t result = (static_cast<uint32_t>(target) << 23) + fraction;
-  const bool isUp = rest > 0x80000000UL || (rest == 0x80000000UL && (fraction & 1) != 0);
+  const bool isUp = rest > 0x80000000U || (rest == 0x80000000U && (fraction & 1) != 0);
   return sign | (isUp ? result + 1 : result);
 }
 
