@@ -151,6 +151,10 @@ public sealed class LiveTests
         double[] read = new double[5];
         await pair.Stub.Buffer.ReadAsync(9, read);
         Assert.Equal(new double[] { 0, 1, 2, 3, 0 }, read);
+        await pair.Stub.Buffer.WriteAsync(996, new double[] { 7, 8, 9, 10 });
+        await Assert.ThrowsAsync<RobdefException>(() => pair.Stub.Buffer.ReadAsync(997, read));
+        await pair.Stub.Buffer.ReadAsync(995, read);
+        Assert.Equal(new double[] { 0, 7, 8, 9, 10 }, read);
         Assert.Equal(new long[] { 20, 30 }, await pair.Stub.Grid.GetDimsAsync());
         double[] block = new double[4];
         await pair.Stub.Grid.WriteAsync([2, 3], [2, 2], new double[] { 1, 2, 3, 4 });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 using System;
+using System.Buffers;
 using System.Runtime.CompilerServices;
 using System.Runtime.InteropServices;
 using System.Threading;
@@ -74,6 +75,44 @@ internal sealed unsafe class MemoryTransfer<T>(Stub stub, string member, MemberA
             Transfer(pieces, native => Functions.rr_memory_write_pieces(_object.Native, native.Name, native.Type, native.Position, native.Count,
                 native.Dims, native.Pieces, null, native.Error), name.Value, &type, where, many, position.Length);
         }
+    }
+
+    /// <summary>Items stay where they are until it has ended, which it does with a cancellation too.</summary>
+    public Task ReadAsync(ulong[] position, ulong[] count, Memory<T> items, CancellationToken cancel) => IsNumbers
+        ? MoveAsync(isRead: true, position, count, items, cancel)
+        : Task.Run(() => Read(position, count, items.Span), cancel);
+
+    public Task WriteAsync(ulong[] position, ulong[] count, ReadOnlyMemory<T> items, CancellationToken cancel) => IsNumbers
+        ? MoveAsync(isRead: false, position, count, items, cancel)
+        : Task.Run(() => Write(position, count, items.Span), cancel);
+
+    private Task MoveAsync(bool isRead, ulong[] position, ulong[] count, ReadOnlyMemory<T> items, CancellationToken cancel)
+    {
+        ArgumentOutOfRangeException.ThrowIfNotEqual(count.Length, position.Length);
+        if (cancel.IsCancellationRequested)
+        {
+            return Task.FromCanceled(cancel);
+        }
+        var completion = new TaskCompletion<bool>(_object.Types, static _ => true, cancel);
+        MemoryHandle pinned = items.Pin();
+        RrMemoryType type = Type;
+        var options = new RrCallOptions { Size = (nuint)sizeof(RrCallOptions), Cancellation = completion.Cancellation };
+        RrCompletion native = completion.Native;
+        nint error;
+        int status;
+        nuint size = (nuint)((long)items.Length * Unsafe.SizeOf<T>());
+        fixed (byte* name = _name)
+        fixed (ulong* where = position, many = count)
+        {
+            var memberName = new RrStr { Data = name, Size = (nuint)_name.Length };
+            status = isRead
+                ? Functions.rr_memory_read_async(_object.Native, memberName, &type, where, many, (nuint)position.Length, pinned.Pointer, size, &options, &native, &error)
+                : Functions.rr_memory_write_async(_object.Native, memberName, &type, where, many, (nuint)position.Length, pinned.Pointer, size, &options, &native, &error);
+        }
+        Task task = status == 0 ? completion.Task : Task.FromException(completion.Abandon(native, status, error));
+        task.ContinueWith(static (_, place) => ((MemoryHandle)place!).Dispose(), pinned, CancellationToken.None,
+            TaskContinuationOptions.ExecuteSynchronously, TaskScheduler.Default);
+        return task;
     }
 
     private Call Question(string what) => new Call(_object, _name, GetParameter, MemberAccess.None)

@@ -31,13 +31,13 @@ public sealed class ArrayMemory<T>
     /// <summary>Writes items to a position.</summary>
     public void Write(long position, ReadOnlySpan<T> items) => _transfer.Write([(ulong)position], [(ulong)items.Length], items);
 
-    /// <summary>Reads as many items as there is room for. Cancelled before it begins, never in between.</summary>
+    /// <summary>Reads as many items as there is room for. Numbers: cancelled between two requests; pods and namedarrays: before it begins, in a thread of the pool.</summary>
     public Task ReadAsync(long position, Memory<T> items, CancellationToken cancel = default) =>
-        Task.Run(() => Read(position, items.Span), cancel);
+        _transfer.ReadAsync([(ulong)position], [(ulong)items.Length], items, cancel);
 
-    /// <summary>Writes items to a position. Cancelled before it begins, never in between.</summary>
+    /// <summary>Writes items to a position. Numbers: cancelled between two requests; pods and namedarrays: before it begins, in a thread of the pool.</summary>
     public Task WriteAsync(long position, ReadOnlyMemory<T> items, CancellationToken cancel = default) =>
-        Task.Run(() => Write(position, items.Span), cancel);
+        _transfer.WriteAsync([(ulong)position], [(ulong)items.Length], items, cancel);
 }
 
 /// <summary>A memory of several dimensions of an object on another node. The first dimension varies fastest.</summary>
@@ -72,11 +72,13 @@ public sealed class MultiDimMemory<T>
     public void Write(ReadOnlySpan<long> position, ReadOnlySpan<long> count, ReadOnlySpan<T> items) =>
         _transfer.Write(MemoryMarshal.Cast<long, ulong>(position), MemoryMarshal.Cast<long, ulong>(count), items);
 
-    /// <summary>Reads a part. Cancelled before it begins, never in between.</summary>
+    /// <summary>Reads a part. Numbers: cancelled between two requests; pods and namedarrays: before it begins, in a thread of the pool.</summary>
     public Task ReadAsync(long[] position, long[] count, Memory<T> items, CancellationToken cancel = default) =>
-        Task.Run(() => Read(position, count, items.Span), cancel);
+        _transfer.ReadAsync(Numbers(position), Numbers(count), items, cancel);
 
-    /// <summary>Writes a part. Cancelled before it begins, never in between.</summary>
+    /// <summary>Writes a part. Numbers: cancelled between two requests; pods and namedarrays: before it begins, in a thread of the pool.</summary>
     public Task WriteAsync(long[] position, long[] count, ReadOnlyMemory<T> items, CancellationToken cancel = default) =>
-        Task.Run(() => Write(position, count, items.Span), cancel);
+        _transfer.WriteAsync(Numbers(position), Numbers(count), items, cancel);
+
+    private static ulong[] Numbers(long[] numbers) => Array.ConvertAll(numbers, static number => (ulong)number);
 }

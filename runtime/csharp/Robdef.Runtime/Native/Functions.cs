@@ -145,6 +145,10 @@ internal static unsafe partial class Functions
     [LibraryImport(Library)]
     public static partial int rr_memory_write(SafeHandle handle, RrStr member, RrMemoryType* type, ulong* position, ulong* count, nuint dims, void* items, nuint size, RrCallOptions* options, nint* error);
     [LibraryImport(Library)]
+    public static partial int rr_memory_read_async(SafeHandle handle, RrStr member, RrMemoryType* type, ulong* position, ulong* count, nuint dims, void* items, nuint size, RrCallOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_memory_write_async(SafeHandle handle, RrStr member, RrMemoryType* type, ulong* position, ulong* count, nuint dims, void* items, nuint size, RrCallOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
     public static partial int rr_memory_read_pieces(SafeHandle handle, RrStr member, RrMemoryType* type, ulong* position, ulong* count, nuint dims, RrMemoryPieces* pieces, RrCallOptions* options, nint* error);
     [LibraryImport(Library)]
     public static partial int rr_memory_write_pieces(SafeHandle handle, RrStr member, RrMemoryType* type, ulong* position, ulong* count, nuint dims, RrMemoryPieces* pieces, RrCallOptions* options, nint* error);
