@@ -54,18 +54,12 @@ void last_error(Runtime& runtime, Call& call) {
                          {"parameter", parameter}}));
 }
 
-// constant(): what a call of the interpreter costs alone
-void constant(Runtime&, Call& call) {
-  call.give(mxCreateDoubleScalar(1));
-  call.give(mxCreateDoubleScalar(0));
-}
-
 }  // namespace
 
 std::vector<Command> node_commands() {
   return {{"log_level", log_level}, {"log_open", log_open}, {"log_close", log_close},
           {"request_timeout", request_timeout}, {"now", now}, {"sleep", sleep},
-          {"node", node}, {"last_error", last_error}, {"constant", constant}};
+          {"node", node}, {"last_error", last_error}};
 }
 
 }  // namespace rr::matlab
