@@ -35,5 +35,8 @@ if only_show
 else
   run(command);
   copyfile(fullfile(here, 'toolbox', '*.m'), output);
+  if is_octave
+    copyfile(fullfile(here, 'toolbox', 'octave', '*.m'), output);
+  end
 end
 end

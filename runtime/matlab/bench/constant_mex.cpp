@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// In place of the runtime's MEX file: the same toolbox above it, but nothing happens. What is left is
-// the interpreter's own cost.
+// In place of the runtime's MEX file: the same toolbox above it, but nothing happens. What is left
+// is the interpreter's own cost.
 #include <mex.h>
 
 extern "C" __attribute__((visibility("default"))) void mexFunction(int result_count,
