@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The service that the tests in Octave use: values are kept, members of each kind do something that
 // can be seen. `matlab_test_service [--port N] [--seconds N]`, on the loopback address.
+#include "rr/service.hpp"
+
 #include <unistd.h>
 
 #include <mutex>
@@ -9,7 +11,6 @@
 #include "experimental/bench.hpp"
 #include "rr/memories.hpp"
 #include "rr/node.hpp"
-#include "rr/service.hpp"
 #include "rr/users.hpp"
 #include "runtime/matlab/test/serving.hpp"
 
@@ -40,8 +41,8 @@ class Bench final : public bench::BenchDefault {
     rr::MultiArray<std::uint8_t> grid{{3, 4, 2}, rr::Array<std::uint8_t>(24)};
     for (std::size_t i = 0; i < 24; ++i) grid.items.mutate()[i] = static_cast<std::uint8_t>(i);
     rr_memory_grid = std::make_shared<rr::StoredMultiMemory<std::uint8_t>>(grid);
-    rr_memory_path = std::make_shared<rr::StoredArrayMemory<bench::Vector3>>(
-        rr::Array<bench::Vector3>(5));
+    rr_memory_path =
+        std::make_shared<rr::StoredArrayMemory<bench::Vector3>>(rr::Array<bench::Vector3>(5));
     rr_memory_records = std::make_shared<rr::StoredArrayMemory<bench::Sample>>(
         rr::Array<bench::Sample>{bench::Sample{.sequence = 1}, bench::Sample{.sequence = 2}});
     numbers().on_connect([](rr::PipeEndpoint<double> end) {
@@ -78,8 +79,8 @@ class Bench final : public bench::BenchDefault {
   }
   void show_level(double value) override {
     level().set_in(value);
-    reports().set_in(bench::Report{.count = 1, .text = "level", .numbers = {value}, .mode = {},
-                                   .next = {}});
+    reports().set_in(
+        bench::Report{.count = 1, .text = "level", .numbers = {value}, .mode = {}, .next = {}});
   }
   double level_out() override {
     const auto value = level().out();
