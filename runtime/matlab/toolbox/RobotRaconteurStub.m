@@ -41,6 +41,14 @@ classdef RobotRaconteurStub < handle
       listener = RobotRaconteurListener(rrmex('listen', obj.rr_h, event, handler));
     end
 
+    function answer = ismethod(obj, name)
+      answer = any(strcmp(name, methods(obj)));
+    end
+
+    function answer = isprop(obj, name)
+      answer = any(strcmp(name, properties(obj)));
+    end
+
     function text = type(obj)
       %TYPE The type of the object, in full; it may be one that implements the class's.
       text = rrmex('about', obj.rr_h).type;
