@@ -1,96 +1,100 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/matlab/src/interrupts.hpp"
 
-#include <sys/eventfd.h>
-#include <unistd.h>
+#include <signal.h>
 
 #include <atomic>
-#include <csignal>
-#include <cstdint>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <thread>
 #include <utility>
 
-#ifndef RR_OCTAVE
+#ifdef RR_OCTAVE
+#include <octave/quit.h>
+#else
 extern "C" bool utIsInterruptPending();  // libut, of MATLAB
 #endif
 
 namespace rr::matlab {
 namespace {
 
-// What the handler needs: it can be given nothing else. One node, and so one of these, is in a
-// process.
-struct Signalled {
-  std::atomic<bool> is_pending{false};
-  std::atomic<int> descriptor{-1};
-  struct sigaction previous {};
-};
-Signalled signalled;
-
-extern "C" void rr_matlab_interrupted(int signal, siginfo_t* info, void* context) {
-  signalled.is_pending = true;
-  const std::uint64_t one = 1;
-  const int descriptor = signalled.descriptor;
-  if (descriptor >= 0 && write(descriptor, &one, sizeof one) < 0) return;  // full: told already
-  const struct sigaction& previous = signalled.previous;
-  if ((previous.sa_flags & SA_SIGINFO) != 0) {
-    previous.sa_sigaction(signal, info, context);
-  } else if (previous.sa_handler != SIG_DFL && previous.sa_handler != SIG_IGN) {
-    previous.sa_handler(signal);
-  }
-}
+constexpr std::chrono::milliseconds period{50};  // of looking
+constexpr int idle_periods = 20;                 // without a call before the thread sleeps
 
 }  // namespace
 
 struct Interrupts::State {
+  void look();
+
   std::function<void()> told;
-  int descriptor = -1;
-  std::atomic<bool> is_ending{false};
+  std::atomic<bool> is_waiting{false};
+  std::atomic<bool> is_asleep{false};
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool is_ending = false;
   std::thread watcher;
 };
+
+void Interrupts::State::look() {
+  int idle = 0;
+  bool was_told = false;
+  std::unique_lock lock(mutex);
+  while (!is_ending) {
+    idle = is_waiting ? 0 : idle + 1;
+    if (idle < idle_periods) {
+      changed.wait_for(lock, period);
+    } else {
+      // A call that begins now sees that this sleeps, or is seen.
+      is_asleep = true;
+      changed.wait(lock, [&] { return is_ending || is_waiting; });
+      is_asleep = false;
+      idle = 0;
+    }
+    const bool is_interrupted = is_waiting && is_pending();
+    if (is_interrupted && !was_told) {
+      lock.unlock();
+      told();
+      lock.lock();
+    }
+    was_told = is_interrupted;
+  }
+}
 
 Interrupts::Interrupts(std::function<void()> told) : state_(std::make_unique<State>()) {
   state_->told = std::move(told);
   if (must_be_asked()) return;
-  state_->descriptor = eventfd(0, EFD_CLOEXEC);
-  if (state_->descriptor < 0) return;
-  signalled.descriptor = state_->descriptor;
-  // The interpreter's signals are for its own thread.
+  // Signals are for the interpreter's own threads.
   sigset_t all;
   sigset_t before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
-  state_->watcher = std::thread([state = state_.get()] {
-    std::uint64_t count = 0;
-    while (read(state->descriptor, &count, sizeof count) > 0 && !state->is_ending) state->told();
-  });
+  state_->watcher = std::thread([state = state_.get()] { state->look(); });
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  struct sigaction ours {};
-  sigaction(SIGINT, nullptr, &signalled.previous);
-  ours.sa_sigaction = rr_matlab_interrupted;
-  ours.sa_mask = signalled.previous.sa_mask;
-  ours.sa_flags = signalled.previous.sa_flags | SA_SIGINFO;
-  sigaction(SIGINT, &ours, nullptr);
 }
 
 Interrupts::~Interrupts() {
-  if (state_->descriptor < 0) return;
-  struct sigaction now {};
-  sigaction(SIGINT, nullptr, &now);
-  const bool is_ours = (now.sa_flags & SA_SIGINFO) != 0 &&
-                       now.sa_sigaction == rr_matlab_interrupted;  // else somebody builds on it
-  if (is_ours) sigaction(SIGINT, &signalled.previous, nullptr);
-  signalled.descriptor = -1;
-  state_->is_ending = true;
-  const std::uint64_t one = 1;
-  if (write(state_->descriptor, &one, sizeof one) == sizeof one) state_->watcher.join();
-  close(state_->descriptor);
+  if (!state_->watcher.joinable()) return;
+  {
+    const std::lock_guard lock(state_->mutex);
+    state_->is_ending = true;
+  }
+  state_->changed.notify_one();
+  state_->watcher.join();
 }
 
-void Interrupts::begin() { signalled.is_pending = false; }
+void Interrupts::begin() {
+  state_->is_waiting = true;
+  if (!state_->is_asleep) return;
+  const std::lock_guard lock(state_->mutex);
+  state_->changed.notify_one();
+}
 
-bool Interrupts::is_pending() const {
+void Interrupts::end() { state_->is_waiting = false; }
+
+bool Interrupts::is_pending() {
 #ifdef RR_OCTAVE
-  return signalled.is_pending;
+  return octave_interrupt_state > 0;
 #else
   return utIsInterruptPending();
 #endif

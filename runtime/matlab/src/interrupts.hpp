@@ -6,20 +6,21 @@
 
 namespace rr::matlab {
 
-/// Ctrl-C, while a call waits. In Octave it is a signal, which goes on to Octave's own handler; in
-/// MATLAB the interpreter has to be asked.
+/// Ctrl-C while a call waits. Both interpreters only set a flag, which somebody has to look at: in
+/// Octave a thread does while something waits; in MATLAB the interpreter's own thread must.
 class Interrupts {
  public:
-  /// `told` is called on a thread of this class, after each signal.
+  /// `told` is called on a thread of this class, once for each interrupt while something waits.
   explicit Interrupts(std::function<void()> told);
   ~Interrupts();
   Interrupts(const Interrupts&) = delete;
   Interrupts& operator=(const Interrupts&) = delete;
 
-  /// Forgets what was before: a call begins to wait.
+  /// A call begins to wait, and has ended. On the interpreter's thread.
   void begin();
-  /// Whether there was an interrupt since. On the interpreter's thread.
-  [[nodiscard]] bool is_pending() const;
+  void end();
+  /// Whether the interpreter was interrupted and has not seen it yet. On the interpreter's thread.
+  [[nodiscard]] static bool is_pending();
   /// Whether is_pending() has to be asked again and again, since nobody is told.
   [[nodiscard]] static bool must_be_asked();
 

@@ -33,13 +33,14 @@ Runtime::~Runtime() {
 
 Runtime::Waiting::Waiting(Runtime& runtime) : runtime_(runtime) {
   const std::lock_guard lock(runtime.waiting_mutex_);
-  if (runtime.waiting_.empty()) runtime.interrupts_->begin();
   runtime.waiting_.push_back(cancellation);
+  if (runtime.waiting_.size() == 1) runtime.interrupts_->begin();
 }
 
 Runtime::Waiting::~Waiting() {
   const std::lock_guard lock(runtime_.waiting_mutex_);
   runtime_.waiting_.pop_back();
+  if (runtime_.waiting_.empty()) runtime_.interrupts_->end();
 }
 
 std::unique_ptr<CallScope> Runtime::make_scope(
@@ -70,7 +71,7 @@ bool Runtime::wait_until(const std::function<bool()>& is_true, std::chrono::mill
   while (true) {
     run_calls();
     if (is_true()) return true;
-    if (waiting.cancellation.is_cancelled() || interrupts_->is_pending()) {
+    if (waiting.cancellation.is_cancelled() || Interrupts::is_pending()) {
       throw Error(ErrorCode::operation_cancelled, "interrupted");
     }
     const auto now = Clock::now();

@@ -103,6 +103,16 @@ class Runtime {
     ~Waiting();
     Waiting(const Waiting&) = delete;
     Waiting& operator=(const Waiting&) = delete;
+    /// Does it; that it was interrupted is said.
+    template <class Direct>
+    auto run(Direct&& direct) {
+      try {
+        return direct();
+      } catch (const Error& error) {
+        if (error.code() != ErrorCode::operation_cancelled || !cancellation.is_cancelled()) throw;
+        throw Error(error.code(), "interrupted; the service may still be busy with the call");
+      }
+    }
     Cancellation cancellation;
 
    private:
@@ -126,7 +136,7 @@ template <class Direct>
 auto Runtime::call_directly(Direct&& direct, std::optional<std::chrono::milliseconds> limit) {
   Waiting waiting(*this);
   const auto scope = make_scope(waiting, limit);
-  return direct();
+  return waiting.run(direct);
 }
 
 template <class... Result, class Direct, class Start>
@@ -134,7 +144,7 @@ auto Runtime::call(Direct&& direct, Start&& start,
                    std::optional<std::chrono::milliseconds> limit) {
   Waiting waiting(*this);
   const auto scope = make_scope(waiting, limit);
-  if (may_block()) return direct();
+  if (may_block()) return waiting.run(direct);
   struct Answer {
     std::atomic<bool> has_come{false};
     std::exception_ptr error;
