@@ -18,7 +18,7 @@ struct AsyncCall {
 void start_value(const AsyncCall& call, const Completions& completions,
                  const std::function<void(dynamic::Done<Value>)>& start) {
   start([completions, object = call.object, plan = call.member->plan](std::exception_ptr error,
-                                                                     const Value& value) {
+                                                                      const Value& value) {
     completions.end(std::move(error), [object, plan, value]() -> mxArray* {
       if (plan == nullptr) return make_null();
       return to_mex(value, *plan, object->connection()->plans);
@@ -38,8 +38,7 @@ void start(Runtime& runtime, const AsyncCall& call, const Completions& completio
       if (call.arguments.size() != 1) {
         throw Error(ErrorCode::invalid_argument, member.subject + ": expected one value");
       }
-      const Value value =
-          read_value(*call.object, call.arguments[0], member.plan, member.subject);
+      const Value value = read_value(*call.object, call.arguments[0], member.plan, member.subject);
       return object.async_set(name, value, [completions](std::exception_ptr error) {
         completions.end(std::move(error), [] { return make_null(); });
       });
@@ -62,16 +61,14 @@ void start(Runtime& runtime, const AsyncCall& call, const Completions& completio
           });
     }
     case Use::object: {
-      const Value index =
-          read_index(member, call.arguments.empty() ? nullptr : call.arguments[0]);
-      return object.async_object(
-          name, index,
-          [&runtime, completions, connection = call.object->connection()](
-              std::exception_ptr error, const dynamic::Object& found) {
-            completions.end(std::move(error), [&runtime, connection, found] {
-              return wrap_object(give_object(runtime, connection, found));
-            });
-          });
+      const Value index = read_index(member, call.arguments.empty() ? nullptr : call.arguments[0]);
+      return object.async_object(name, index,
+                                 [&runtime, completions, connection = call.object->connection()](
+                                     std::exception_ptr error, const dynamic::Object& found) {
+                                   completions.end(std::move(error), [&runtime, connection, found] {
+                                     return wrap_object(give_object(runtime, connection, found));
+                                   });
+                                 });
     }
     default:
       throw Error(ErrorCode::member_format_mismatch,

@@ -22,9 +22,9 @@ void set_field(mxArray* record, const std::string& name, mxArray* value) {
 mxArray* constants_to_mex(const dynamic::Fields& constants) {
   mxArray* const made = mxCreateStructMatrix(1, 1, 0, nullptr);
   for (const auto& [name, value] : constants) {
-    set_field(made, name,
-              value.kind() == Kind::record ? constants_to_mex(value.fields())
-                                           : plain_to_mex(value));
+    set_field(
+        made, name,
+        value.kind() == Kind::record ? constants_to_mex(value.fields()) : plain_to_mex(value));
   }
   return made;
 }
@@ -64,8 +64,8 @@ mxArray* repeat_record(const TypePlan& item, const Dims& dims, int depth) {
   const mxArray* const one = make_empty(item, depth + 1);
   auto names = item.name_pointers;
   const int field_count = static_cast<int>(names.size());
-  mxArray* const records = mxCreateStructArray(static_cast<mwSize>(dims.size()), dims.data(),
-                                               field_count, names.data());
+  mxArray* const records =
+      mxCreateStructArray(static_cast<mwSize>(dims.size()), dims.data(), field_count, names.data());
   for (std::size_t i = 0; i < count_of(records); ++i) {
     for (int k = 0; k < field_count; ++k) {
       mxSetFieldByNumber(records, static_cast<mwIndex>(i), k,
@@ -131,8 +131,8 @@ mxArray* make_empty(const TypePlan& plan, int depth) {
 // create(object, type): a struct with all fields
 void create(Runtime& runtime, Call& call) {
   const auto object = object_of(runtime, call);
-  call.give(make_empty(
-      *object->connection()->plans.plan(object->object().types(), call.text(1)), 0));
+  call.give(
+      make_empty(*object->connection()->plans.plan(object->object().types(), call.text(1)), 0));
 }
 
 // definitions(object): names, in cells
@@ -154,7 +154,9 @@ void definition(Runtime& runtime, Call& call) {
 mxArray* make_empty(const TypePlan& plan) { return make_empty(plan, 0); }
 
 std::vector<Command> definition_commands() {
-  return {{"constants", constants}, {"create", create}, {"definitions", definitions},
+  return {{"constants", constants},
+          {"create", create},
+          {"definitions", definitions},
           {"definition", definition}};
 }
 

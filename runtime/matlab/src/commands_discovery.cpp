@@ -92,8 +92,8 @@ void subscribe_info(Runtime& runtime, Call& call) {
 
 // info_services(subscription): struct array
 void info_services(Runtime& runtime, Call& call) {
-  call.give(services_to_mex(
-      runtime.handles().get<InfoHandle>(call.handle(0))->subscription.services()));
+  call.give(
+      services_to_mex(runtime.handles().get<InfoHandle>(call.handle(0))->subscription.services()));
 }
 
 // info_listen(subscription, event, function): number
@@ -125,10 +125,10 @@ void info_close(Runtime& runtime, Call& call) {
 }  // namespace
 
 std::vector<Command> discovery_commands() {
-  return {{"find_type", find_type}, {"find_node_id", find_node_id},
+  return {{"find_type", find_type},           {"find_node_id", find_node_id},
           {"find_node_name", find_node_name}, {"update_nodes", update_nodes},
           {"detected_nodes", detected_nodes}, {"subscribe_info", subscribe_info},
-          {"info_services", info_services}, {"info_listen", info_listen},
+          {"info_services", info_services},   {"info_listen", info_listen},
           {"info_close", info_close}};
 }
 

@@ -29,17 +29,16 @@ void listen(Runtime& runtime, Call& call) {
   const auto object = object_of(runtime, call);
   const Resolved& member = object->resolve(call.text(1));
   const auto& connection = object->connection();
-  const std::uint64_t number = connection->add(
-      {.function = Kept(need_function(call[2], member.subject)),
-       .parameter = {},
-       .member = member.member,
-       .connection = connection,
-       .subscription = nullptr});
+  const std::uint64_t number =
+      connection->add({.function = Kept(need_function(call[2], member.subject)),
+                       .parameter = {},
+                       .member = member.member,
+                       .connection = connection,
+                       .subscription = nullptr});
   try {
     auto subscription = object->object().on_event(
-        member.member.name,
-        [&runtime, number, queue = runtime.queue(),
-         has_events = connection->has_events](const List& arguments) {
+        member.member.name, [&runtime, number, queue = runtime.queue(),
+                             has_events = connection->has_events](const List& arguments) {
           if (!*has_events) return;
           queue->push([&runtime, number, arguments] { deliver(runtime, number, arguments); });
         });
@@ -74,8 +73,7 @@ void poll(Runtime& runtime, Call& call) {
   const auto limit = call.has(0) ? call.seconds(0) : std::chrono::milliseconds(0);
   std::size_t count = runtime.run_queue();
   if (count == 0 && limit.count() != 0) {
-    const bool has_come =
-        runtime.wait_until([&] { return runtime.queue()->size() != 0; }, limit);
+    const bool has_come = runtime.wait_until([&] { return runtime.queue()->size() != 0; }, limit);
     if (has_come) count = runtime.run_queue();
   }
   call.give(mxCreateDoubleScalar(static_cast<double>(count)));
@@ -111,28 +109,32 @@ void set_callback(Runtime& runtime, const ObjectHandle& object, const Resolved& 
     callback.clear();
   }
   if (is_null(function)) return;
-  const std::uint64_t number = connection->add(
-      {.function = Kept(need_function(function, member.subject)),
-       .parameter = {},
-       .is_waited_for = true,
-       .member = member.member,
-       .connection = connection,
-       .subscription = nullptr});
+  const std::uint64_t number =
+      connection->add({.function = Kept(need_function(function, member.subject)),
+                       .parameter = {},
+                       .is_waited_for = true,
+                       .member = member.member,
+                       .connection = connection,
+                       .subscription = nullptr});
   connection->callbacks.emplace(key, number);
   // Who ends it first says so, then ends what is in the queue; so nothing that is put in waits for
   // ever.
-  callback.set([number, queue = runtime.queue(),
-                is_open = runtime.functions().find(number)->is_open](const List& arguments) -> Value {
-    const auto pending = std::make_shared<PendingCall>(number, arguments);
-    queue->push(pending);
-    if (!*is_open) queue->abort_calls(number);
-    return pending->wait();
-  });
+  callback.set(
+      [number, queue = runtime.queue(),
+       is_open = runtime.functions().find(number)->is_open](const List& arguments) -> Value {
+        const auto pending = std::make_shared<PendingCall>(number, arguments);
+        queue->push(pending);
+        if (!*is_open) queue->abort_calls(number);
+        return pending->wait();
+      });
 }
 
 std::vector<Command> event_commands() {
-  return {{"listen", listen}, {"unlisten", unlisten}, {"events", events},
-          {"poll", poll}, {"lost", lost}};
+  return {{"listen", listen},
+          {"unlisten", unlisten},
+          {"events", events},
+          {"poll", poll},
+          {"lost", lost}};
 }
 
 }  // namespace rr::matlab

@@ -64,10 +64,9 @@ void end(Runtime& runtime, Call& call) {
   const auto handle = generator_of(runtime, call);
   const bool is_abort = read_number<bool>(call[1]);
   Generator& generator = handle->generator;
-  runtime.call<>([&] { is_abort ? generator.abort() : generator.close(); },
-                 [&](auto done) {
-                   is_abort ? generator.async_abort(done) : generator.async_close(done);
-                 });
+  runtime.call<>(
+      [&] { is_abort ? generator.abort() : generator.close(); },
+      [&](auto done) { is_abort ? generator.async_abort(done) : generator.async_close(done); });
 }
 
 }  // namespace

@@ -40,7 +40,9 @@ void monitor_exit(Runtime& runtime, Call& call) {
 }  // namespace
 
 std::vector<Command> lock_commands() {
-  return {{"lock", lock}, {"unlock", unlock}, {"monitor_enter", monitor_enter},
+  return {{"lock", lock},
+          {"unlock", unlock},
+          {"monitor_enter", monitor_enter},
           {"monitor_exit", monitor_exit}};
 }
 

@@ -53,8 +53,9 @@ std::optional<Value> read(Handle& handle, const mxArray* given) {
   const dynamic::MemberDescription member = object->member(handle.member);
   const TypePlan* const plan = home.plans.plan(member.type);
   const std::string subject = "member " + handle.member;
-  const Value value =
-      as_subject(subject, [&] { return from_mex(given, *plan, {home.plans, home.types()}); });
+  const Value value = as_subject(subject, [&] {
+    return from_mex(given, *plan, {home.plans, home.types()});
+  });
   return member.type.convert(value, subject);
 }
 
@@ -63,9 +64,9 @@ void wire(Runtime& runtime, Call& call) {
   const auto sub = sub_of(runtime, call);
   const std::string name = call.text(1);
   const std::string path = call.text(2);
-  call.give(give_handle(
-      runtime, std::make_shared<WireHandle>(
-                   sub, sub->subscription.subscribe_wire<Value>(name, path), name, path)));
+  call.give(give_handle(runtime,
+                        std::make_shared<WireHandle>(
+                            sub, sub->subscription.subscribe_wire<Value>(name, path), name, path)));
 }
 
 // pipe_sub(subscription, name, path, most that wait): number
@@ -83,9 +84,8 @@ void pipe(Runtime& runtime, Call& call) {
 void objects(Runtime& runtime, Call& call) {
   const auto sub = sub_of(runtime, call);
   const std::string path = call.text(1);
-  call.give(give_handle(runtime,
-                        std::make_shared<ObjectsHandle>(
-                            sub, sub->subscription.subscribe_sub_object(path), "", path)));
+  call.give(give_handle(runtime, std::make_shared<ObjectsHandle>(
+                                     sub, sub->subscription.subscribe_sub_object(path), "", path)));
 }
 
 void give_client_value(Call& call, WireHandle& handle, const ClientValue<Value>& value) {
@@ -228,13 +228,21 @@ void last_error(Runtime& runtime, Call& call) {
 }  // namespace
 
 std::vector<Command> member_subscription_commands() {
-  return {{"wire_sub", wire}, {"pipe_sub", pipe}, {"object_sub", objects},
-          {"wire_sub_in", wire_in}, {"wire_sub_try_in", wire_try_in},
-          {"wire_sub_all", wire_all}, {"wire_sub_wait", wire_wait},
-          {"wire_sub_lifespan", wire_lifespan}, {"wire_sub_set_out", wire_set_out},
-          {"wire_sub_listen", wire_listen}, {"pipe_sub_receive", pipe_receive},
-          {"pipe_sub_available", pipe_available}, {"pipe_sub_send", pipe_send},
-          {"object_sub_wait", object_wait}, {"member_sub_error", last_error}};
+  return {{"wire_sub", wire},
+          {"pipe_sub", pipe},
+          {"object_sub", objects},
+          {"wire_sub_in", wire_in},
+          {"wire_sub_try_in", wire_try_in},
+          {"wire_sub_all", wire_all},
+          {"wire_sub_wait", wire_wait},
+          {"wire_sub_lifespan", wire_lifespan},
+          {"wire_sub_set_out", wire_set_out},
+          {"wire_sub_listen", wire_listen},
+          {"pipe_sub_receive", pipe_receive},
+          {"pipe_sub_available", pipe_available},
+          {"pipe_sub_send", pipe_send},
+          {"object_sub_wait", object_wait},
+          {"member_sub_error", last_error}};
 }
 
 }  // namespace rr::matlab

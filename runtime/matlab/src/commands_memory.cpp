@@ -27,9 +27,9 @@ void read(Runtime& runtime, Call& call) {
   const dynamic::Memory memory = object->object().memory(member.member.name);
   const Memory::Numbers position = numbers_of(call[2]);
   const Memory::Numbers count = numbers_of(call[3]);
-  const Value items = runtime.call<Value>(
-      [&] { return memory.read(position, count); },
-      [&](auto done) { memory.async_read(position, count, done); });
+  const Value items =
+      runtime.call<Value>([&] { return memory.read(position, count); },
+                          [&](auto done) { memory.async_read(position, count, done); });
   call.give(to_mex(items, *member.plan, object->connection()->plans));
 }
 

@@ -32,9 +32,9 @@ void sleep(Runtime& runtime, Call& call) {
 
 // node(): struct with id, and how many numbers are held
 void node(Runtime& runtime, Call& call) {
-  call.give(make_struct(
-      {{"id", make_text(runtime.node().id().text())},
-       {"held", mxCreateDoubleScalar(static_cast<double>(runtime.handles().size()))}}));
+  call.give(
+      make_struct({{"id", make_text(runtime.node().id().text())},
+                   {"held", mxCreateDoubleScalar(static_cast<double>(runtime.handles().size()))}}));
 }
 
 // last_error(): struct with code, name, subname, message, identifier, parameter; [] for none
@@ -54,18 +54,17 @@ void last_error(Runtime& runtime, Call& call) {
                          {"parameter", parameter}}));
 }
 
-// constant(): what a call of the interpreter costs alone
-void constant(Runtime&, Call& call) {
-  call.give(mxCreateDoubleScalar(1));
-  call.give(mxCreateDoubleScalar(0));
-}
-
 }  // namespace
 
 std::vector<Command> node_commands() {
-  return {{"log_level", log_level}, {"log_open", log_open}, {"log_close", log_close},
-          {"request_timeout", request_timeout}, {"now", now}, {"sleep", sleep},
-          {"node", node}, {"last_error", last_error}, {"constant", constant}};
+  return {{"log_level", log_level},
+          {"log_open", log_open},
+          {"log_close", log_close},
+          {"request_timeout", request_timeout},
+          {"now", now},
+          {"sleep", sleep},
+          {"node", node},
+          {"last_error", last_error}};
 }
 
 }  // namespace rr::matlab

@@ -48,9 +48,8 @@ void set(Runtime& runtime, const ObjectHandle& object, const Resolved& member,
 Value call_member(Runtime& runtime, const ObjectHandle& object, const Resolved& member,
                   const dynamic::List& arguments) {
   const std::string& name = member.member.name;
-  return runtime.call<Value>(
-      [&] { return object.object().call(name, arguments); },
-      [&](auto done) { object.object().async_call(name, arguments, done); });
+  return runtime.call<Value>([&] { return object.object().call(name, arguments); },
+                             [&](auto done) { object.object().async_call(name, arguments, done); });
 }
 
 mxArray* open_generator(Runtime& runtime, const ObjectHandle& object, const Resolved& member,
@@ -101,10 +100,10 @@ void access(Runtime& runtime, Call& call) {
           call, call_member(runtime, *object, member, read_arguments(*object, member, arguments)),
           member, *object, Given::result);
     case Use::generate:
-      return give(call,
-                  open_generator(runtime, *object, member,
-                                 read_arguments(*object, member, arguments)),
-                  Given::generator);
+      return give(
+          call,
+          open_generator(runtime, *object, member, read_arguments(*object, member, arguments)),
+          Given::generator);
     case Use::object:
       return give(call, find_object(runtime, *object, member, arguments), Given::object);
     case Use::wire:
@@ -177,9 +176,9 @@ void about(Runtime& runtime, Call& call) {
 void same(Runtime& runtime, Call& call) {
   const auto a = object_of(runtime, call, 0);
   const auto b = object_of(runtime, call, 1);
-  call.give(mxCreateLogicalScalar(a->object().path() == b->object().path() &&
-                                  a->object().stub().rr_session() ==
-                                      b->object().stub().rr_session()));
+  call.give(
+      mxCreateLogicalScalar(a->object().path() == b->object().path() &&
+                            a->object().stub().rr_session() == b->object().stub().rr_session()));
 }
 
 }  // namespace
@@ -193,8 +192,8 @@ Value read_index(const Resolved& member, const mxArray* given) {
 }
 
 std::vector<Command> object_commands() {
-  return {{"access", access}, {"assign", assign}, {"kind", kind},
-          {"members", members}, {"about", about}, {"same", same}};
+  return {{"access", access},   {"assign", assign}, {"kind", kind},
+          {"members", members}, {"about", about},   {"same", same}};
 }
 
 }  // namespace rr::matlab

@@ -73,8 +73,7 @@ void listen(Runtime& runtime, Call& call) {
   const std::uint64_t number = add_listener(*pipe, call[1]);
   auto subscription =
       pipe->end.on_packet([&runtime, number, queue = runtime.queue()](const Value& packet) {
-        queue->push(
-            [&runtime, number, packet] { run_listener(runtime, number, packet, nullptr); });
+        queue->push([&runtime, number, packet] { run_listener(runtime, number, packet, nullptr); });
       });
   keep_listener(runtime, number, std::move(subscription));
   call.give(make_number(number));
@@ -100,9 +99,10 @@ void close(Runtime& runtime, Call& call) { pipe_of(runtime, call)->end.close(); 
 }  // namespace
 
 std::vector<Command> pipe_commands() {
-  return {{"pipe_connect", connect}, {"pipe_send", send}, {"pipe_receive", receive},
-          {"pipe_receive_wait", receive_wait}, {"pipe_available", available},
-          {"pipe_about", about}, {"pipe_listen", listen}, {"pipe_queue_limit", queue_limit},
+  return {{"pipe_connect", connect},     {"pipe_send", send},
+          {"pipe_receive", receive},     {"pipe_receive_wait", receive_wait},
+          {"pipe_available", available}, {"pipe_about", about},
+          {"pipe_listen", listen},       {"pipe_queue_limit", queue_limit},
           {"pipe_close", close}};
 }
 

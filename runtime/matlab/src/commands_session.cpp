@@ -127,7 +127,7 @@ std::vector<std::string> read_texts(const mxArray* given) {
 }
 
 std::vector<Command> session_commands() {
-  return {{"connect", connect}, {"disconnect", disconnect}, {"close", close},
+  return {{"connect", connect},       {"disconnect", disconnect},     {"close", close},
           {"attributes", attributes}, {"authenticate", authenticate}, {"logout", logout},
           {"service", service}};
 }

@@ -12,8 +12,7 @@ std::shared_ptr<SubscriptionHandle> sub_of(Runtime& runtime, Call& call) {
 }
 
 void give_subscription(Runtime& runtime, Call& call, ServiceSubscription made) {
-  call.give(
-      give_handle(runtime, std::make_shared<SubscriptionHandle>(runtime, std::move(made))));
+  call.give(give_handle(runtime, std::make_shared<SubscriptionHandle>(runtime, std::move(made))));
 }
 
 // subscribe(urls [, username, credentials, object type]): number
@@ -22,9 +21,8 @@ void subscribe(Runtime& runtime, Call& call) {
   if (call.has(1)) options.username = call.text(1);
   if (call.has(2)) options.credentials = read_credentials(call[2]);
   if (call.has(3)) options.object_type = call.text(3);
-  give_subscription(
-      runtime, call,
-      dynamic::subscribe(runtime.node(), read_texts(call[0]), std::move(options)));
+  give_subscription(runtime, call,
+                    dynamic::subscribe(runtime.node(), read_texts(call[0]), std::move(options)));
 }
 
 // subscribe_type(types, filter): number
@@ -89,11 +87,11 @@ void failures(Runtime& runtime, Call& call) {
     std::vector<mxArray*> urls;
     for (const std::string& url : service.urls) urls.push_back(make_text(url));
     const Failure failure = failure_of(*service.last_error);
-    found.push_back(make_struct(
-        {{"URLs", make_cells(urls)},
-         {"Message", make_text(failure.message)},
-         {"Identifier", make_text(failure.identifier)},
-         {"Failures", mxCreateDoubleScalar(static_cast<double>(service.failures))}}));
+    found.push_back(
+        make_struct({{"URLs", make_cells(urls)},
+                     {"Message", make_text(failure.message)},
+                     {"Identifier", make_text(failure.identifier)},
+                     {"Failures", mxCreateDoubleScalar(static_cast<double>(service.failures))}}));
   }
   call.give(make_cells(found));
 }
@@ -149,12 +147,10 @@ void listen(Runtime& runtime, Call& call) {
       });
     }
     if (event == "ClientDisconnected") {
-      return sub->subscription.on_disconnected(
-          [push, number](const SubscriptionClientId& id, const Error& why) {
-            push(number, [id, why] {
-              return Arguments{client_to_mex(id), make_text(why.message())};
-            });
-          });
+      return sub->subscription.on_disconnected([push, number](const SubscriptionClientId& id,
+                                                              const Error& why) {
+        push(number, [id, why] { return Arguments{client_to_mex(id), make_text(why.message())}; });
+      });
     }
     if (event == "ClientConnectFailed") {
       return sub->subscription.on_failed(
@@ -164,8 +160,9 @@ void listen(Runtime& runtime, Call& call) {
             });
           });
     }
-    throw Error(ErrorCode::member_not_found, "a subscription has the events ClientConnected, "
-                                             "ClientDisconnected and ClientConnectFailed");
+    throw Error(ErrorCode::member_not_found,
+                "a subscription has the events ClientConnected, "
+                "ClientDisconnected and ClientConnectFailed");
   });
 }
 
@@ -175,12 +172,19 @@ void close(Runtime& runtime, Call& call) { sub_of(runtime, call)->close(); }
 }  // namespace
 
 std::vector<Command> subscription_commands() {
-  return {{"subscribe", subscribe}, {"subscribe_type", subscribe_type},
-          {"sub_default", default_client}, {"sub_try_default", try_default_client},
-          {"sub_wait", wait_default_client}, {"sub_clients", clients},
-          {"sub_failures", failures}, {"sub_update_urls", update_urls},
-          {"sub_update_types", update_types}, {"sub_retry_delay", retry_delay},
-          {"sub_claim", claim}, {"sub_release", release}, {"sub_listen", listen},
+  return {{"subscribe", subscribe},
+          {"subscribe_type", subscribe_type},
+          {"sub_default", default_client},
+          {"sub_try_default", try_default_client},
+          {"sub_wait", wait_default_client},
+          {"sub_clients", clients},
+          {"sub_failures", failures},
+          {"sub_update_urls", update_urls},
+          {"sub_update_types", update_types},
+          {"sub_retry_delay", retry_delay},
+          {"sub_claim", claim},
+          {"sub_release", release},
+          {"sub_listen", listen},
           {"sub_close", close}};
 }
 

@@ -97,11 +97,8 @@ void listen(Runtime& runtime, Call& call) {
   // Only the newest value of a wire waits for the interpreter's thread.
   auto subscription = wire->end.on_in([&runtime, number, queue = runtime.queue()](
                                           const Value& value, const TimeSpec& time) {
-    queue->push(
-        [&runtime, number, value, time] {
-          run_listener(runtime, number, value, &time);
-        },
-        number);
+    queue->push([&runtime, number, value, time] { run_listener(runtime, number, value, &time); },
+                number);
   });
   keep_listener(runtime, number, std::move(subscription));
   call.give(make_number(number));
@@ -140,10 +137,12 @@ void is_open(Runtime& runtime, Call& call) {
 }  // namespace
 
 std::vector<Command> wire_commands() {
-  return {{"wire_connect", connect}, {"wire_in", in}, {"wire_try_in", try_in},
-          {"wire_out", out}, {"wire_has_out", has_out}, {"wire_set_out", set_out},
-          {"wire_wait", wait}, {"wire_lifespan", lifespan}, {"wire_listen", listen},
-          {"wire_peek", peek}, {"wire_poke", poke}, {"wire_close", close},
+  return {{"wire_connect", connect}, {"wire_in", in},
+          {"wire_try_in", try_in},   {"wire_out", out},
+          {"wire_has_out", has_out}, {"wire_set_out", set_out},
+          {"wire_wait", wait},       {"wire_lifespan", lifespan},
+          {"wire_listen", listen},   {"wire_peek", peek},
+          {"wire_poke", poke},       {"wire_close", close},
           {"wire_is_open", is_open}};
 }
 

@@ -8,30 +8,30 @@ namespace {
 
 mxArray* error_to_mex(const std::exception_ptr& error) {
   const auto failure = run([&] { std::rethrow_exception(error); }, [](const Error&) {});
-  return make_struct({{"identifier", make_text(failure->identifier)},
-                      {"message", make_text(failure->message)}});
+  return make_struct(
+      {{"identifier", make_text(failure->identifier)}, {"message", make_text(failure->message)}});
 }
 
 }  // namespace
 
 void Completions::end(std::exception_ptr error, Function<mxArray*()> make) const {
-  queue_->push([runtime = runtime_, number = function_, error = std::move(error),
-                make = std::move(make)] {
-    UserFunction* const found = runtime->functions().find(number);
-    const auto connection = found != nullptr ? found->connection.lock() : nullptr;
-    if (!connection) return;
-    const Kept function = std::move(found->function);
-    mxArray* const parameter = mxDuplicateArray(found->parameter.get());
-    connection->remove(number);
-    if (!function) return;
-    std::vector<mxArray*> arguments{parameter, make_null(), make_null()};
-    if (error) {
-      arguments[2] = error_to_mex(error);
-    } else {
-      arguments[1] = make();
-    }
-    UserFunctions::run_alone(function, std::move(arguments));
-  });
+  queue_->push(
+      [runtime = runtime_, number = function_, error = std::move(error), make = std::move(make)] {
+        UserFunction* const found = runtime->functions().find(number);
+        const auto connection = found != nullptr ? found->connection.lock() : nullptr;
+        if (!connection) return;
+        const Kept function = std::move(found->function);
+        mxArray* const parameter = mxDuplicateArray(found->parameter.get());
+        connection->remove(number);
+        if (!function) return;
+        std::vector<mxArray*> arguments{parameter, make_null(), make_null()};
+        if (error) {
+          arguments[2] = error_to_mex(error);
+        } else {
+          arguments[1] = make();
+        }
+        UserFunctions::run_alone(function, std::move(arguments));
+      });
 }
 
 void start_call(Runtime& runtime, const std::shared_ptr<Connection>& connection,

@@ -59,9 +59,8 @@ bool is_shaped(const mxArray* given) {
 }
 
 Value shaped_from_mex(const mxArray* given, ElementType number) {
-  const auto dims = in_field("dims", [&] {
-    return read_vector<std::uint32_t>(read_field(given, "dims"));
-  });
+  const auto dims =
+      in_field("dims", [&] { return read_vector<std::uint32_t>(read_field(given, "dims")); });
   const mxArray* const array = read_field(given, "array");
   return with_number(number, [&]<class T>(std::type_identity<T>) {
     return Value(MultiArray<T>{dims, in_field("array", [&] { return items_of<T>(array); })});

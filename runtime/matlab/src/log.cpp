@@ -13,12 +13,12 @@ namespace rr::matlab {
 namespace {
 
 constexpr std::array<std::pair<std::string_view, int>, 7> levels = {{{"trace", 0},
-                                                                      {"debug", 0},
-                                                                      {"info", 1},
-                                                                      {"warning", 2},
-                                                                      {"error", 3},
-                                                                      {"fatal", 3},
-                                                                      {"disable", 4}}};
+                                                                     {"debug", 0},
+                                                                     {"info", 1},
+                                                                     {"warning", 2},
+                                                                     {"error", 3},
+                                                                     {"fatal", 3},
+                                                                     {"disable", 4}}};
 
 }  // namespace
 

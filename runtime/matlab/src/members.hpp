@@ -30,8 +30,9 @@ class MemberHandle : public Handled {
   [[nodiscard]] dynamic::Value read(const mxArray* given) const { return read(given, plan); }
   [[nodiscard]] dynamic::Value read(const mxArray* given, const TypePlan* as) const {
     if (as == nullptr) return {};
-    return as_subject(
-        subject, [&] { return from_mex(given, *as, {connection->plans, owner.types()}); });
+    return as_subject(subject, [&] {
+      return from_mex(given, *as, {connection->plans, owner.types()});
+    });
   }
 
   const std::shared_ptr<Connection> connection;

@@ -20,7 +20,7 @@ std::span<const rr::matlab::Module* const> compiled_in;
 // Of the last handle that was given, by this or an earlier one: what the user still holds of an
 // earlier one must not mean anything here.
 std::uint32_t generation = 0;
-int depth = 0;                                 // handlers call this again
+int depth = 0;  // handlers call this again
 
 // Of commands that run in each other.
 class Entered {
@@ -63,8 +63,7 @@ rr::matlab::Runtime& need_runtime() {
   return *runtime;
 }
 
-void run_named(int result_count, mxArray** results, int argument_count,
-               const mxArray** arguments) {
+void run_named(int result_count, mxArray** results, int argument_count, const mxArray** arguments) {
   if (argument_count < 1) throw rr::matlab::Misfit("expected the name of a command");
   const std::string name = rr::matlab::read_text(arguments[0]);
   if (name == "shutdown") return shut_down();
@@ -77,11 +76,11 @@ void run_named(int result_count, mxArray** results, int argument_count,
 std::optional<rr::matlab::Failure> run_guarded(int result_count, mxArray** results,
                                                int argument_count, const mxArray** arguments) {
   const Entered entered;
-  return rr::matlab::run(
-      [&] { run_named(result_count, results, argument_count, arguments); },
-      [](const rr::Error& error) {
-        if (runtime != nullptr) runtime->last_error.emplace(error, runtime->current);
-      });
+  return rr::matlab::run([&] { run_named(result_count, results, argument_count, arguments); },
+                         [](const rr::Error& error) {
+                           if (runtime != nullptr)
+                             runtime->last_error.emplace(error, runtime->current);
+                         });
 }
 
 }  // namespace

@@ -117,9 +117,8 @@ std::shared_ptr<ObjectHandle> object_of(Runtime& runtime, Call& call, std::size_
 Value read_value(const ObjectHandle& object, const mxArray* given, const TypePlan* plan,
                  const std::string& subject) {
   if (plan == nullptr) return {};
-  return as_subject(subject, [&] {
-    return from_mex(given, *plan, object.context(object.object().types()));
-  });
+  return as_subject(
+      subject, [&] { return from_mex(given, *plan, object.context(object.object().types())); });
 }
 
 dynamic::List read_arguments(const ObjectHandle& object, const Resolved& member,
@@ -154,8 +153,8 @@ std::vector<mxArray*> write_arguments(const dynamic::MemberDescription& member,
                                       const dynamic::List& arguments, Connection& connection) {
   std::vector<mxArray*> given;
   for (std::size_t i = 0; i < arguments.size() && i < member.parameters.size(); ++i) {
-    given.push_back(to_mex(arguments[i], *connection.plans.plan(member.parameters[i].type),
-                           connection.plans));
+    given.push_back(
+        to_mex(arguments[i], *connection.plans.plan(member.parameters[i].type), connection.plans));
   }
   return given;
 }
@@ -166,9 +165,8 @@ Value run_callback(Runtime& runtime, const PendingCall& call) {
   if (!connection) throw Error(ErrorCode::operation_aborted, "the client's function is gone");
   const dynamic::MemberDescription member = function->member;
   const TypePlan* const plan = connection->plans.plan(member.type);
-  const auto outcome =
-      UserFunctions::run(function->function, write_arguments(member, call.arguments(), *connection),
-                         plan != nullptr);
+  const auto outcome = UserFunctions::run(
+      function->function, write_arguments(member, call.arguments(), *connection), plan != nullptr);
   if (outcome.failure) throw error_of(*outcome.failure);
   if (plan == nullptr) return {};
   const std::string subject = "member " + member.name + ", result";

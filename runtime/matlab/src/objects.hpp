@@ -73,8 +73,8 @@ enum class Use {
 struct Resolved {
   Use use{};
   dynamic::MemberDescription member;
-  std::string subject;               ///< `member pose`, for errors
-  const TypePlan* plan = nullptr;    ///< of what is got; null for void
+  std::string subject;             ///< `member pose`, for errors
+  const TypePlan* plan = nullptr;  ///< of what is got; null for void
   std::vector<const TypePlan*> parameters;
 };
 

@@ -19,8 +19,8 @@ struct TypePlan {
   RecordKind record_kind{};
   std::string name;  ///< as ValueType::name
   bool has_dims = false;
-  std::size_t rank = 0;         ///< of an array with fixed dims
-  std::size_t numbers = 0;      ///< in one namedarray
+  std::size_t rank = 0;            ///< of an array with fixed dims
+  std::size_t numbers = 0;         ///< in one namedarray
   const TypePlan* item = nullptr;  ///< of an array, list or map
   std::vector<std::string> names;  ///< of a record's fields
   std::vector<const char*> name_pointers;

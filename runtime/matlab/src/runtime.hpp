@@ -140,8 +140,7 @@ auto Runtime::call_directly(Direct&& direct, std::optional<std::chrono::millisec
 }
 
 template <class... Result, class Direct, class Start>
-auto Runtime::call(Direct&& direct, Start&& start,
-                   std::optional<std::chrono::milliseconds> limit) {
+auto Runtime::call(Direct&& direct, Start&& start, std::optional<std::chrono::milliseconds> limit) {
   Waiting waiting(*this);
   const auto scope = make_scope(waiting, limit);
   if (may_block()) return waiting.run(direct);

@@ -35,8 +35,8 @@ mxArray* SubscriptionHandle::give(Runtime& runtime, const std::shared_ptr<Stub>&
 }
 
 mxArray* client_to_mex(const SubscriptionClientId& client) {
-  return make_struct({{"NodeID", make_text(client.node.text())},
-                      {"ServiceName", make_text(client.service)}});
+  return make_struct(
+      {{"NodeID", make_text(client.node.text())}, {"ServiceName", make_text(client.service)}});
 }
 
 namespace {
@@ -106,8 +106,9 @@ ServiceFilter read_filter(const mxArray* given) {
 
 mxArray* services_to_mex(const std::vector<FoundService>& services) {
   constexpr int field_count = 7;
-  const char* names[field_count] = {"Name", "RootObjectType", "RootObjectImplements",
-                                    "ConnectionURL", "NodeID", "NodeName", "Attributes"};
+  const char* names[field_count] = {"Name",          "RootObjectType", "RootObjectImplements",
+                                    "ConnectionURL", "NodeID",         "NodeName",
+                                    "Attributes"};
   mxArray* const found =
       mxCreateStructMatrix(static_cast<mwSize>(services.size()), 1, field_count, names);
   const auto cells = [](const std::vector<std::string>& texts) {

@@ -19,9 +19,8 @@ Dims dims_of(const Value& array) {
 }
 
 mxArray* number_to_mex(const Value& value) {
-  return with_number(value.number_type(), [&]<class T>(std::type_identity<T>) {
-    return make_number<T>(value.as<T>());
-  });
+  return with_number(value.number_type(),
+                     [&]<class T>(std::type_identity<T>) { return make_number<T>(value.as<T>()); });
 }
 
 mxArray* numbers_to_mex(const Value& value, ElementType number, const Dims& dims) {
@@ -171,8 +170,8 @@ mxArray* plain_to_mex(const Value& value) {
 }
 
 mxArray* time_to_mex(const TimeSpec& time) {
-  return make_struct({{"seconds", make_number(time.seconds)},
-                      {"nanoseconds", make_number(time.nanoseconds)}});
+  return make_struct(
+      {{"seconds", make_number(time.seconds)}, {"nanoseconds", make_number(time.nanoseconds)}});
 }
 
 }  // namespace rr::matlab

@@ -16,7 +16,7 @@ trap '[ -z "$service" ] || kill "$service" 2>/dev/null || true; rm -rf "$work"' 
 "$service_program" --port 0 --seconds 110 > "$work/service" &
 service=$!
 for _ in $(seq 100); do
-  grep -q '^ready: ' "$work/service" && break
+  [ -e "$work/service" ] && grep -q '^ready: ' "$work/service" && break
   sleep 0.1
 done
 RR_TEST_PORT=$(sed -n 's/^ready: //p' "$work/service")

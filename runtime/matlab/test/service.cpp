@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The service that the tests in Octave use: values are kept, members of each kind do something that
 // can be seen. `matlab_test_service [--port N] [--seconds N]`, on the loopback address.
+#include "rr/service.hpp"
+
 #include <unistd.h>
 
 #include <charconv>
@@ -14,7 +16,6 @@
 #include "experimental/bench.hpp"
 #include "rr/memories.hpp"
 #include "rr/node.hpp"
-#include "rr/service.hpp"
 #include "rr/users.hpp"
 
 namespace {
@@ -44,8 +45,8 @@ class Bench final : public bench::BenchDefault {
     rr::MultiArray<std::uint8_t> grid{{3, 4, 2}, rr::Array<std::uint8_t>(24)};
     for (std::size_t i = 0; i < 24; ++i) grid.items.mutate()[i] = static_cast<std::uint8_t>(i);
     rr_memory_grid = std::make_shared<rr::StoredMultiMemory<std::uint8_t>>(grid);
-    rr_memory_path = std::make_shared<rr::StoredArrayMemory<bench::Vector3>>(
-        rr::Array<bench::Vector3>(5));
+    rr_memory_path =
+        std::make_shared<rr::StoredArrayMemory<bench::Vector3>>(rr::Array<bench::Vector3>(5));
     rr_memory_records = std::make_shared<rr::StoredArrayMemory<bench::Sample>>(
         rr::Array<bench::Sample>{bench::Sample{.sequence = 1}, bench::Sample{.sequence = 2}});
     numbers().on_connect([](rr::PipeEndpoint<double> end) {
@@ -82,8 +83,8 @@ class Bench final : public bench::BenchDefault {
   }
   void show_level(double value) override {
     level().set_in(value);
-    reports().set_in(bench::Report{.count = 1, .text = "level", .numbers = {value}, .mode = {},
-                                   .next = {}});
+    reports().set_in(
+        bench::Report{.count = 1, .text = "level", .numbers = {value}, .mode = {}, .next = {}});
   }
   double level_out() override {
     const auto value = level().out();
@@ -165,8 +166,7 @@ int main(int argc, char** argv) try {
   const auto users = std::make_shared<rr::PasswordUsers>(
       "alice " + rr::PasswordUsers::hash("open sesame") + " objectlock\nbob " +
       rr::PasswordUsers::hash("me too") + " objectlock\n");
-  node.register_service("bench", std::make_shared<Bench>(),
-                        {.attributes = {{"place", "roof"}}});
+  node.register_service("bench", std::make_shared<Bench>(), {.attributes = {{"place", "roof"}}});
   node.register_service("guarded", std::make_shared<Bench>(), {.users = users});
   const auto port = node.listen_tcp(static_cast<std::uint16_t>(options.port), "127.0.0.1");
   std::printf("ready: %d\n", static_cast<int>(port));

@@ -10,8 +10,5 @@ classdef RobotRaconteurHandle < handle
         obj.rr_h = uint64(0);
       end
     end
-    function answer = isvalid(obj)
-      answer = obj.rr_h ~= 0;
-    end
   end
 end

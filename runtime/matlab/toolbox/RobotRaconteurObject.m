@@ -25,20 +25,20 @@ classdef RobotRaconteurObject < handle
         return
       end
       called = numel(s) > 1 && strcmp(s(2).type, '()');
-      arguments = {};
+      given = {};
       if called
-        arguments = s(2).subs;
+        given = s(2).subs;
       end
       if strncmp(name, 'async_', 6)
-        rr_start(obj, name(7:end), arguments);
+        rr_start(obj, name(7:end), given);
         varargout = {};
         return
       end
       if any(strcmp(name, {'delete', 'disp', 'isvalid', 'addlistener'}))
-        [varargout{1:nargout}] = feval(name, obj, arguments{:});
+        [varargout{1:nargout}] = feval(name, obj, given{:});
         return
       end
-      [value, kind] = rrmex('access', obj.rr_h, name, called, arguments{:});
+      [value, kind] = rrmex('access', obj.rr_h, name, called, given{:});
       used = 1;
       switch kind
         case 1
@@ -53,7 +53,7 @@ classdef RobotRaconteurObject < handle
           value = rr_wrap(obj, value, kind);
       end
       if numel(s) > used
-        if called && used == 1 && isempty(arguments)
+        if called && used == 1 && isempty(given)
           used = 2;
         end
       end
@@ -98,10 +98,6 @@ classdef RobotRaconteurObject < handle
         rrmex('close', obj.rr_h);
         obj.rr_h = uint64(0);
       end
-    end
-
-    function answer = isvalid(obj)
-      answer = obj.rr_h ~= 0;
     end
 
     function answer = eq(a, b)
@@ -189,26 +185,26 @@ classdef RobotRaconteurObject < handle
     end
   end
   methods (Access = private)
-    function rr_start(obj, name, arguments)
+    function rr_start(obj, name, given)
       count = rrmex('parameter_count', obj.rr_h, name);
       handler = [];
       parameter = [];
       seconds = -1;
-      if numel(arguments) > count
-        handler = arguments{count + 1};
+      if numel(given) > count
+        handler = given{count + 1};
       end
-      if numel(arguments) > count + 1
-        parameter = arguments{count + 2};
+      if numel(given) > count + 1
+        parameter = given{count + 2};
       end
-      if numel(arguments) > count + 2
-        seconds = arguments{count + 3};
+      if numel(given) > count + 2
+        seconds = given{count + 3};
       end
-      if numel(arguments) > count + 3
+      if numel(given) > count + 3
         error('RobotRaconteur:InvalidArgument', ...
               'async_%s: expected %d arguments, then handler, parameter, seconds', name, count);
       end
       rrmex('async', obj.rr_h, name, handler, parameter, seconds, ...
-            arguments{1:min(count, numel(arguments))});
+            given{1:min(count, numel(given))});
     end
   end
 end

@@ -18,7 +18,7 @@ if ischar(value)
 elseif (isnumeric(value) || islogical(value)) && numel(value) <= 16 && ndims(value) == 2
   text = [' = ', mat2str(value)];
 else
-  text = sprintf(' = [%s %s]', strjoin(strsplit(num2str(size(value))), 'x'), class(value));
+  text = sprintf(' = %s %s', strrep(mat2str(size(value)), ' ', 'x'), class(value));
 end
 if numel(text) > 60
   text = [text(1:57), '...'];

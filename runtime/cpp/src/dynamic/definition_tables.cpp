@@ -170,8 +170,8 @@ const Fields* Tables::find_constants(std::string_view scope) const {
 
 Fields Definitions::constants(std::string_view scope) const {
   if (const Fields* const found = tables_->find_constants(scope)) return *found;
-  throw Error(ErrorCode::key_not_found, "no definition, struct or object `" + std::string(scope) +
-                                            "`");
+  throw Error(ErrorCode::key_not_found,
+              "no definition, struct or object `" + std::string(scope) + "`");
 }
 
 namespace {

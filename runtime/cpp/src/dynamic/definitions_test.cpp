@@ -124,8 +124,10 @@ TEST(Definitions, MakeNamedarraysOfNumbersWithOneDimensionMore) {
   EXPECT_EQ(two.size(), 2U);
   EXPECT_EQ(two.at(1)["x"].as<double>(), 4);
   EXPECT_EQ(two.array<double>().data(), flat.data());  // not copied
-  const Value grid = types().type("conformance.types.Vector3[*]").convert(
-      MultiArray<std::int32_t>{{3, 1, 2}, Array<std::int32_t>{1, 2, 3, 4, 5, 6}});
+  const Value grid =
+      types()
+          .type("conformance.types.Vector3[*]")
+          .convert(MultiArray<std::int32_t>{{3, 1, 2}, Array<std::int32_t>{1, 2, 3, 4, 5, 6}});
   EXPECT_THAT(grid.dims(), ElementsAre(1, 2));
   EXPECT_EQ(grid.at(1)["z"].as<double>(), 6);
   EXPECT_EQ(refusal("conformance.types.Vector3[]", MultiArray<double>{{2, 3}, flat}),

@@ -70,9 +70,8 @@ namespace containers {
 inline mxArray* make_map(std::span<mxArray* const> keys, std::span<mxArray* const> values,
                          const char* key_type) {
   if (keys.empty()) {
-    return call_function("containers.Map",
-                         {mxCreateString("KeyType"), mxCreateString(key_type),
-                          mxCreateString("ValueType"), mxCreateString("any")});
+    return call_function("containers.Map", {mxCreateString("KeyType"), mxCreateString(key_type),
+                                            mxCreateString("ValueType"), mxCreateString("any")});
   }
   return call_function("containers.Map",
                        {make_cells(keys), make_cells(values), mxCreateString("UniformValues"),

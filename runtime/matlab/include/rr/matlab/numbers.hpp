@@ -217,8 +217,8 @@ mxArray* make_room(const Dims& dims) {
       for (mxArray* argument : arguments) mxDestroyArray(argument);
       if (failure == nullptr) return room;
       mxDestroyArray(failure);
-      throw Error(ErrorCode::out_of_system_resource, "the interpreter has no room for an array of " +
-                                                         std::to_string(size) + " bytes");
+      throw Error(ErrorCode::out_of_system_resource,
+                  "the interpreter has no room for an array of " + std::to_string(size) + " bytes");
     }
   }
   const auto rank = static_cast<mwSize>(dims.size());
