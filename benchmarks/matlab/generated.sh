@@ -7,7 +7,7 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 build=$(cd "${1:-build/release}" && pwd)
 toolbox=$build/matlab
-classes=$build/runtime/matlab/test/robdef_bench_classes_robdef
+classes=$build/runtime/matlab/test/generated/robdef_bench_classes_robdef
 work=$(mktemp -d)
 service=
 trap '[ -z "$service" ] || kill "$service" 2>/dev/null || true; rm -rf "$work"' EXIT

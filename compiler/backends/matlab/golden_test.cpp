@@ -25,14 +25,11 @@ namespace fs = std::filesystem;
 
 const fs::path golden_folder = ROBDEF_GOLDEN_DIR;
 
-/// The features, and the words of MATLAB in each position. The words of C++ are hundreds of types,
-/// each a file here, and mean nothing to MATLAB.
+/// The features, and the words of MATLAB in each position.
 model::Compiled compiled_features() {
   std::vector<std::string> texts;
   const GoldenCorpus features(ROBDEF_DEFINITIONS_DIR);
-  for (const fs::path& input : features.inputs()) {
-    if (input.stem() != "experimental.reserved_words") texts.push_back(GoldenCorpus::read(input));
-  }
+  for (const fs::path& input : features.inputs()) texts.push_back(GoldenCorpus::read(input));
   const GoldenCorpus own(ROBDEF_OWN_DEFINITIONS_DIR);
   for (const fs::path& input : own.inputs()) texts.push_back(GoldenCorpus::read(input));
   model::Compiled compiled = model::compiled(texts);

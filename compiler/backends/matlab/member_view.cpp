@@ -21,6 +21,23 @@ namespace {
 using model::Member;
 using model::Object;
 
+/// Whether a value of the type may hold a varvalue, which only the runtime knows how to convert.
+bool has_varvalue(const model::Type& type, std::set<const model::Record*>& seen) {
+  if (std::holds_alternative<model::VarValue>(type.base)) return true;
+  const auto* record = std::get_if<const model::Record*>(&type.base);
+  if (record == nullptr || !seen.insert(*record).second) return false;
+  return std::ranges::any_of(
+      (*record)->fields, [&](const model::Field& field) { return has_varvalue(field.type, seen); });
+}
+
+bool has_varvalue(const Member& member) {
+  std::set<const model::Record*> seen;
+  return has_varvalue(member.type, seen) ||
+         std::ranges::any_of(member.parameters, [&](const model::Parameter& parameter) {
+           return has_varvalue(parameter.type, seen);
+         });
+}
+
 std::string stub_alias(const Object& object) { return "rr_stub_" + object.name; }
 
 class MemberMaker {
@@ -93,22 +110,21 @@ class MemberMaker {
     view.property_doc.push_back("% " + view.declaration);
   }
 
-  /// Properties and functions are called by their types; what lives longer than a call is used by
-  /// its name.
+  /// Properties and functions are called by their types; what lives longer than a call, or has
+  /// varvalues, is used by its name.
   [[nodiscard]] std::string binding(const MemberView& view, const Member& member) const {
     const std::string stub = stub_alias(object_);
     const auto method = [&](const std::string& name) { return "&" + stub + "::" + name; };
     const std::string name = "(\"" + member.name + "\"),";
+    const bool is_call = (view.is_property || view.is_function) && !view.is_generator;
+    if (!is_call || has_varvalue(member)) return "::rr::matlab::named_member" + name;
     if (view.is_property) {
       return "::rr::matlab::typed_property<" + stub + ", " +
              (view.can_get ? method("get_" + member.name) : "nullptr") + ", " +
              (view.can_set ? method("set_" + member.name) : "nullptr") + ">" + name;
     }
-    if (view.is_function && !view.is_generator) {
-      return "::rr::matlab::typed_function<" + stub + ", " +
-             method(cpp::member_name(object_, member.name)) + ">" + name;
-    }
-    return "::rr::matlab::named_member" + name;
+    return "::rr::matlab::typed_function<" + stub + ", " +
+           method(cpp::member_name(object_, member.name)) + ">" + name;
   }
 
   const Object& object_;

@@ -57,13 +57,22 @@ constexpr auto keywords = std::to_array<std::string_view>({"__FILE__",
                                                            "while"});
 
 // Of handle classes and of RobotRaconteurStub, and words that begin a block inside a classdef.
-constexpr auto class_words = std::to_array<std::string_view>(
-    {"addlistener", "delete",     "disp",       "display",  "enumeration",
-     "eq",          "events",     "findobj",    "findprop", "ge",
-     "gt",          "isvalid",    "le",         "listener", "lt",
-     "members",     "methods",    "ne",         "notify",   "numArgumentsFromSubscript",
-     "numel",       "properties", "servicedef", "size",     "subsasgn",
-     "subsindex",   "subsref",    "type"});
+constexpr auto class_words =
+    std::to_array<std::string_view>({"addlistener", "delete",
+                                     "disp",        "display",
+                                     "enumeration", "eq",
+                                     "events",      "findobj",
+                                     "findprop",    "ge",
+                                     "gt",          "ismethod",
+                                     "isprop",      "isvalid",
+                                     "le",          "listener",
+                                     "lt",          "members",
+                                     "methods",     "ne",
+                                     "notify",      "numArgumentsFromSubscript",
+                                     "numel",       "properties",
+                                     "servicedef",  "size",
+                                     "subsasgn",    "subsindex",
+                                     "subsref",     "type"});
 
 bool contains(const auto& words, std::string_view word) {
   return std::ranges::find(words, word) != words.end();
@@ -126,8 +135,10 @@ void check_members(const model::Object& object, Report& report) {
   };
   for (const model::Constant& constant : object.constants) add(constant, "constant");
   for (const model::Member& member : object.members) {
-    // An objref appears as get_ only.
-    if (member.kind != model::MemberKind::objref) add(member, model::name_of(member.kind));
+    // An objref appears as get_ only, an event in addlistener.
+    const bool is_named =
+        member.kind != model::MemberKind::objref && member.kind != model::MemberKind::event;
+    if (is_named) add(member, model::name_of(member.kind));
   }
 }
 

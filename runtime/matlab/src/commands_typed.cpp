@@ -49,29 +49,17 @@ class TypedHandle final : public ObjectHandle {
 /// A typed call as it goes on in this interpreter.
 class RunningCall final : public TypedCall {
  public:
-  RunningCall(Runtime& runtime, TypedHandle& object) : runtime_(runtime), object_(object) {}
+  explicit RunningCall(Runtime& runtime) : runtime_(runtime) {}
 
   void block(void (*body)(void*), void* context) override {
     has_begun_ = true;
     runtime_.call_directly([&] { body(context); });
   }
-  mxArray* make(const VarValue& value) override {
-    return to_mex(object_.connection()->client().value(value), any_plan(),
-                  object_.connection()->plans);
-  }
-  VarValue read(const mxArray* given) override {
-    return dynamic::to_varvalue(any_from_mex(given, object_.context(object_.object().types())));
-  }
   /// Whether something may have been sent.
   [[nodiscard]] bool has_begun() const { return has_begun_; }
 
  private:
-  const TypePlan& any_plan() {
-    return *object_.connection()->plans.plan(object_.object().types(), "varvalue");
-  }
-
   Runtime& runtime_;
-  TypedHandle& object_;
   bool has_begun_ = false;
 };
 
@@ -137,8 +125,7 @@ void typed(Runtime& runtime, Call& call) {
   std::shared_ptr<Stub> stub;
   std::span<const TypedMember> members;
   const TypedObject* const compiled = find_class(runtime, name);
-  // What a subscription has connected has no client that could read varvalues.
-  if (compiled != nullptr && object->connection()->client().rr_session()) {
+  if (compiled != nullptr) {
     check_names(*compiled, names);
     stub = make_stub_beside(object->object().stub(), compiled->type());
     members = compiled->members;
@@ -169,7 +156,7 @@ void member(Runtime& runtime, Call& call) {
   const std::string& name = object->name(place);
   const TypedMember* const typed = object->typed(place);
   if (typed != nullptr && runtime.may_block()) {
-    RunningCall running(runtime, *object);
+    RunningCall running(runtime);
     try {
       if (mxArray* const result = typed->run(object->stub(), call.rest(2), running)) {
         call.give(result);

@@ -24,10 +24,6 @@ classdef RobotRaconteurStub < handle
       end
     end
 
-    function answer = isvalid(obj)
-      answer = obj.rr_h ~= 0;
-    end
-
     function answer = eq(a, b)
       answer = rrmex('same', a.rr_h, b.rr_h);
     end
@@ -39,6 +35,14 @@ classdef RobotRaconteurStub < handle
     function listener = addlistener(obj, event, handler)
       %ADDLISTENER Call handler(parameters...) for each event; delete(listener) ends it.
       listener = RobotRaconteurListener(rrmex('listen', obj.rr_h, event, handler));
+    end
+
+    function answer = ismethod(obj, name)
+      answer = any(strcmp(name, methods(obj)));
+    end
+
+    function answer = isprop(obj, name)
+      answer = any(strcmp(name, properties(obj)));
     end
 
     function text = type(obj)
@@ -77,14 +81,14 @@ classdef RobotRaconteurStub < handle
       end
     end
 
-    function rr_async(obj, name, arguments, handler, more)
+    function rr_async(obj, name, given, handler, more)
       if numel(more) > 2
         error('RobotRaconteur:InvalidArgument', ...
               '%s: expected handler, parameter, seconds', name);
       end
-      given = {[], -1};
-      given(1:numel(more)) = more;
-      rrmex('async', obj.rr_h, name(7:end), handler, given{:}, arguments{:});
+      rest = {[], -1};
+      rest(1:numel(more)) = more;
+      rrmex('async', obj.rr_h, name(7:end), handler, rest{:}, given{:});
     end
   end
 

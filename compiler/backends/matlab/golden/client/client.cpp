@@ -54,6 +54,9 @@ extern const ::rr::matlab::Module rr_matlab_module;
 namespace experimental::recursion {
 extern const ::rr::matlab::Module rr_matlab_module;
 }
+namespace experimental::reserved_words {
+extern const ::rr::matlab::Module rr_matlab_module;
+}
 namespace experimental::rr::std {
 extern const ::rr::matlab::Module rr_matlab_module;
 }
@@ -84,6 +87,7 @@ constexpr const ::rr::matlab::Module* rr_modules[] = {
     &::experimental::pods::rr_matlab_module,
     &::experimental::properties::rr_matlab_module,
     &::experimental::recursion::rr_matlab_module,
+    &::experimental::reserved_words::rr_matlab_module,
     &::experimental::rr::std::rr_matlab_module,
     &::experimental::structs::rr_matlab_module,
     &::experimental::matlab_words::rr_matlab_module,

@@ -26,7 +26,7 @@
 namespace rr::matlab {
 
 /// How a typed call is made.
-class TypedCall : public VarValues {
+class TypedCall {
  public:
   /// Runs `body`, the blocking call of a stub, so that it can be interrupted.
   virtual void block(void (*body)(void* context), void* context) = 0;
@@ -90,7 +90,7 @@ mxArray* run_method(Stub& stub, std::span<const mxArray* const> given, TypedCall
   typename Of::Arguments arguments;
   need_form(given.size() == std::tuple_size_v<typename Of::Arguments>);
   [&]<std::size_t... I>(std::index_sequence<I...>) {
-    (read_typed(given[I], std::get<I>(arguments), call), ...);
+    (read_typed(given[I], std::get<I>(arguments)), ...);
   }
   (std::make_index_sequence<std::tuple_size_v<typename Of::Arguments>>());
   S& target = dynamic_cast<S&>(stub);
@@ -103,7 +103,7 @@ mxArray* run_method(Stub& stub, std::span<const mxArray* const> given, TypedCall
   } else {
     typename Of::Result result{};
     block(call, [&] { result = invoke(); });
-    return make_typed(result, call);
+    return make_typed(result);
   }
 }
 

@@ -18,7 +18,7 @@ using WireDims = std::vector<std::uint32_t>;
 /// Items of these sizes, which stand before the one that all have in the interpreter. Those of a
 /// namedarray have their numbers as first dimension.
 template <class T>
-mxArray* make_items(std::span<const T> items, Dims dims, bool has_dims, VarValues& varvalues) {
+mxArray* make_items(std::span<const T> items, Dims dims, bool has_dims) {
   if constexpr (Number<T>) {
     return make_numbers<T>(items, full_dims(std::move(dims)));
   } else if constexpr (NamedArray<T>) {
@@ -30,14 +30,14 @@ mxArray* make_items(std::span<const T> items, Dims dims, bool has_dims, VarValue
   } else {
     mxArray* const records = Typed<T>::make_array(full_dims(std::move(dims)));
     for (std::size_t i = 0; i < items.size(); ++i) {
-      Typed<T>::fill(records, i, items[i], varvalues);
+      Typed<T>::fill(records, i, items[i]);
     }
     return records;
   }
 }
 template <class T>
-mxArray* make_items(std::span<const T> items, VarValues& varvalues) {
-  return make_items<T>(items, {static_cast<mwSize>(items.size())}, false, varvalues);
+mxArray* make_items(std::span<const T> items) {
+  return make_items<T>(items, {static_cast<mwSize>(items.size())}, false);
 }
 
 /// Whether `given` is made of T, not looking at its sizes.
@@ -51,7 +51,7 @@ bool holds_items(const mxArray* given) {
 }
 
 template <class T>
-void read_items(const mxArray* given, std::span<T> items, VarValues& varvalues) {
+void read_items(const mxArray* given, std::span<T> items) {
   if constexpr (Number<T>) {
     read_numbers<T>(given, items.data());
   } else if constexpr (NamedArray<T>) {
@@ -60,7 +60,7 @@ void read_items(const mxArray* given, std::span<T> items, VarValues& varvalues) 
   } else {
     Typed<T>::check_fields(given);
     for (std::size_t i = 0; i < items.size(); ++i) {
-      Typed<T>::read_item(given, i, items[i], varvalues);
+      Typed<T>::read_item(given, i, items[i]);
     }
   }
 }
@@ -99,52 +99,50 @@ WireDims item_dims(const mxArray* given, std::size_t rank) {
 
 template <class T>
 struct Typed<Array<T>> {
-  static mxArray* make(const Array<T>& value, VarValues& varvalues) {
-    return make_items<T>({value.data(), value.size()}, varvalues);
+  static mxArray* make(const Array<T>& value) {
+    return make_items<T>({value.data(), value.size()});
   }
-  static void read(const mxArray* given, Array<T>& value, VarValues& varvalues) {
+  static void read(const mxArray* given, Array<T>& value) {
     Array<T> items(item_count<T>(given));
-    if (items.size() != 0) read_items<T>(given, items.mutate(), varvalues);
+    if (items.size() != 0) read_items<T>(given, items.mutate());
     value = std::move(items);
   }
 };
 
 template <class T, std::size_t Length>
 struct Typed<std::array<T, Length>> {
-  static mxArray* make(const std::array<T, Length>& value, VarValues& varvalues) {
-    return make_items<T>(value, varvalues);
-  }
-  static void read(const mxArray* given, std::array<T, Length>& value, VarValues& varvalues) {
+  static mxArray* make(const std::array<T, Length>& value) { return make_items<T>(value); }
+  static void read(const mxArray* given, std::array<T, Length>& value) {
     need_form(item_count<T>(given) == Length);
-    read_items<T>(given, value, varvalues);
+    read_items<T>(given, value);
   }
 };
 
 template <class T, std::size_t Maximum>
 struct Typed<BoundedArray<T, Maximum>> {
-  static mxArray* make(const BoundedArray<T, Maximum>& value, VarValues& varvalues) {
-    return make_items<T>({value.data(), value.size()}, varvalues);
+  static mxArray* make(const BoundedArray<T, Maximum>& value) {
+    return make_items<T>({value.data(), value.size()});
   }
-  static void read(const mxArray* given, BoundedArray<T, Maximum>& value, VarValues& varvalues) {
+  static void read(const mxArray* given, BoundedArray<T, Maximum>& value) {
     const std::size_t count = item_count<T>(given);
     need_form(count <= Maximum);
     value.resize(count);
-    read_items<T>(given, {value.data(), count}, varvalues);
+    read_items<T>(given, {value.data(), count});
   }
 };
 
 template <class T>
 struct Typed<MultiArray<T>> {
-  static mxArray* make(const MultiArray<T>& value, VarValues& varvalues) {
+  static mxArray* make(const MultiArray<T>& value) {
     return make_items<T>({value.items.data(), value.items.size()},
-                         Dims(value.dims.begin(), value.dims.end()), true, varvalues);
+                         Dims(value.dims.begin(), value.dims.end()), true);
   }
-  static void read(const mxArray* given, MultiArray<T>& value, VarValues& varvalues) {
+  static void read(const mxArray* given, MultiArray<T>& value) {
     value.dims = item_dims<T>(given, 0);
     std::size_t count = 1;
     for (const std::uint32_t dim : value.dims) count *= dim;
     Array<T> items(count);
-    if (count != 0) read_items<T>(given, items.mutate(), varvalues);
+    if (count != 0) read_items<T>(given, items.mutate());
     value.items = std::move(items);
   }
 };
@@ -152,13 +150,13 @@ struct Typed<MultiArray<T>> {
 template <class T, std::size_t... Sizes>
 struct Typed<FixedMultiArray<T, Sizes...>> {
   using Value = FixedMultiArray<T, Sizes...>;
-  static mxArray* make(const Value& value, VarValues& varvalues) {
-    return make_items<T>(value.items, Dims{static_cast<mwSize>(Sizes)...}, true, varvalues);
+  static mxArray* make(const Value& value) {
+    return make_items<T>(value.items, Dims{static_cast<mwSize>(Sizes)...}, true);
   }
-  static void read(const mxArray* given, Value& value, VarValues& varvalues) {
+  static void read(const mxArray* given, Value& value) {
     need_form(item_dims<T>(given, sizeof...(Sizes)) ==
               WireDims(Value::dims.begin(), Value::dims.end()));
-    read_items<T>(given, value.items, varvalues);
+    read_items<T>(given, value.items);
   }
 };
 

@@ -13,7 +13,7 @@ constexpr ::rr::matlab::TypedMember rr_table_Machine[] = {
     ::rr::matlab::typed_function<rr_stub_Machine, &rr_stub_Machine::join>("join"),
     ::rr::matlab::typed_function<rr_stub_Machine, &rr_stub_Machine::inspect>("inspect"),
     ::rr::matlab::typed_function<rr_stub_Machine, &rr_stub_Machine::filter>("filter"),
-    ::rr::matlab::typed_function<rr_stub_Machine, &rr_stub_Machine::a_function_whose_name_is_rather_long>("a_function_whose_name_is_rather_long"),
+    ::rr::matlab::named_member("a_function_whose_name_is_rather_long"),
 };
 
 constexpr ::rr::matlab::TypedObject rr_objects[] = {
