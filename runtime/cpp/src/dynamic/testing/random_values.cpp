@@ -48,7 +48,12 @@ T random_number(Chance& chance) {
 
 Value RandomValues::number(ElementType type) {
   return with_number(type, [&](auto tag) -> Value {
-    return random_number<typename decltype(tag)::type>(chance_);
+    using T = typename decltype(tag)::type;
+    T value = random_number<T>(chance_);
+    if constexpr (!std::is_arithmetic_v<T>) {
+      if (shapes_.matlab_only) value.imag(value.imag() + 0);
+    }
+    return value;
   });
 }
 
@@ -142,7 +147,7 @@ Value RandomValues::value(const ValueType& type, int depth) {
     return type.convert(map);
   }
   StringMap map;
-  for (const Value& item : items) map.emplace(text(), item);
+  for (const Value& item : items) map.emplace((shapes_.matlab_only ? "k" : "") + text(), item);
   return type.convert(map);
 }
 
