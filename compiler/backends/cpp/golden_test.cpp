@@ -130,7 +130,8 @@ TEST_F(TemplatesFromOutside, AreRefusedWithTheirPlace) {
     FAIL() << "accepted";
   } catch (const TemplateError& error) {
     EXPECT_STREQ(error.what(),
-                 "outputs.txt:2: `objects` is no subject; there are all, definition, object, record, enum and exception");
+                 "outputs.txt:2: `objects` is no subject; there are all, definition, object, "
+                 "record, enum and exception");
   }
 }
 
