@@ -236,7 +236,7 @@ TEST(BadBoardLine, LosesNoCallWithoutAnError) {
     SimulatedLine line(elf_dir + "echo115200.elf", 115200, rates, seed);
     while (line.hello().kind != Outcome::Kind::reply) {
     }
-    for (int call = 0; call < calls() / 4; ++call) {
+    for (int call = 0; call < calls() / 10; ++call) {
       const Outcome outcome = line.ask(Kind::Call, adding(call, 0.5), 300ms);
       if (outcome.kind == Outcome::Kind::reply) {
         ASSERT_EQ(double_in(outcome.body, 1), call + 0.5);

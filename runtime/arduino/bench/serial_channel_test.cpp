@@ -106,7 +106,7 @@ TEST(SerialUrls, SayWhyTheyLeadNowhere) {
   board.set_silent(true);
   const Error silent = error_of_connecting("rr+serial://" + board.path());
   EXPECT_EQ(silent.code(), ErrorCode::connection_error);
-  EXPECT_THAT(silent.message(), HasSubstr("no board has answered in time at " + board.path()));
+  EXPECT_THAT(silent.message(), HasSubstr("the board at " + board.path() + " does not answer"));
   const Error missing = error_of_connecting("rr+serial:///dev/there_is_no_such_port");
   EXPECT_EQ(missing.code(), ErrorCode::connection_error);
   EXPECT_THAT(missing.message(), HasSubstr("/dev/there_is_no_such_port does not exist"));

@@ -84,7 +84,9 @@ class Lamp {
   /// What is so many 256th of the way to the target.
   void show(uint16_t part) {
     for (uint8_t index = 0; index < 3; ++index) {
-      const uint16_t sum = to_[index] * part + from_[index] * (256 - part);
+      // Modulo 65,536 on the way, and right at its end.
+      const uint16_t way = static_cast<uint16_t>(to_[index] - from_[index]) * part;
+      const uint16_t sum = (static_cast<uint16_t>(from_[index]) << 8) + way;
       analogWrite(pins[index], sum >> 8);
     }
   }

@@ -46,7 +46,7 @@ std::string Line::wait(Deadline deadline) {
   (void)changed_.wait_until(lock, deadline, [&] { return name_ || is_hopeless(); });
   if (name_) return *name_;
   throw Error(ErrorCode::connection_error,
-              failures_ != 0 ? failure_.text : "no board has answered in time at " + place_.path);
+              failures_ != 0 ? failure_.text : "the board at " + place_.path + " does not answer");
 }
 
 std::unique_ptr<MessageLink> Line::connect() {
