@@ -42,10 +42,10 @@
 %!   {'report', struct('count', {{}}), 1}, {'count', false, 'x'}, {'line', [1 2 3], [-1 2]}, ...
 %!   {'grid', [0 0 0], [1e9 1e9 1e9]}, {'grid', [1e18 1 1], [1 1 1]}, {'numbers', 2^40, 1}};
 
-%!test try_all({}, strange);
-%!test try_all({uint64(0)}, strange);
-%!test try_all({intmax('uint64')}, strange);
-%!test try_all({-1}, strange);
+%!test try_all({}, strange(1:4:end));
+%!test try_all({uint64(0)}, strange(1:4:end));
+%!test try_all({intmax('uint64')}, strange(1:4:end));
+%!test try_all({-1}, strange(1:4:end));
 %!test
 %! c = rr_bench();
 %! try_all({c.rr_h}, strange);
@@ -56,14 +56,14 @@
 %! p = c.numbers.Connect();
 %! g = c.count(1);
 %! for h = {w.rr_h, p.rr_h, g.rr_h}
-%!   try_all(h, strange(1:3:end));
+%!   try_all(h, strange(2:4:end));
 %! end
 %! s = RobotRaconteur.SubscribeService(['rr+tcp://127.0.0.1:', getenv('RR_TEST_PORT'), '/?service=bench']);
 %! s.GetDefaultClientWait(20);
 %! v = s.SubscribeWire('level');
 %! q = s.SubscribePipe('numbers');
 %! for h = {s.rr_h, v.rr_h, q.rr_h}
-%!   try_all(h, strange(1:3:end));
+%!   try_all(h, strange(2:4:end));
 %! end
 %! assert(c.add(1, 2), int32(3));
 
