@@ -28,7 +28,7 @@ measure() {
   octave-cli --norc "${paths[@]}" --path "$here" --eval "calls('$what', @$constructor, '$url')"
 }
 
-printf '%-26s %9s %9s %9s %9s %9s\n' 'microseconds, median' get set add struct '10^5 dbl'
+printf '%-26s %9s %9s %9s %9s %9s\n' 'microseconds, least' get set add struct '10^5 dbl'
 measure 'dynamic object' RobotRaconteur.ConnectService "$toolbox"
 measure 'class, by name' experimental.bench.Bench "$toolbox" "$classes"
 measure 'class, stubs compiled in' experimental.bench.Bench "$classes" "$toolbox"
