@@ -66,7 +66,7 @@ public sealed class EndingTests
         AssertNothingIsLeft(before);
     }
 
-    /// <summary>What docs/csharp.md states, once the just-in-time compiler has done its best, which takes a while.</summary>
+    /// <summary>What the README states, once the just-in-time compiler has done its best, which takes a while.</summary>
     [Fact]
     public void Calls_allocate_no_more_than_is_stated()
     {

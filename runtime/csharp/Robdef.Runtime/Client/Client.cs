@@ -11,14 +11,23 @@ namespace Robdef.Runtime;
 internal sealed class Session
 {
     public Session(ClientHandle client, Node node, KnownTypes types)
+        : this(node, types, (MessageVersion)Functions.rr_client_message_version(client)) => Client = client;
+
+    /// <summary>One that a subscription has made, which does not tell its version: what is sent is written anew where it must be.</summary>
+    public Session(Node node, KnownTypes types)
+        : this(node, types, MessageVersion.V4)
     {
-        Client = client;
-        Node = node;
-        Types = types;
-        Version = (MessageVersion)Functions.rr_client_message_version(client);
     }
 
-    public ClientHandle Client { get; }
+    private Session(Node node, KnownTypes types, MessageVersion version)
+    {
+        Node = node;
+        Types = types;
+        Version = version;
+    }
+
+    /// <summary>Null in that of a subscription.</summary>
+    public ClientHandle? Client { get; }
 
     /// <summary>Kept, so that it does not end while a client uses it.</summary>
     public Node Node { get; }
@@ -36,12 +45,14 @@ public sealed class Client<TStub> : IDisposable, IAsyncDisposable
     where TStub : Stub
 {
     private readonly Session _session;
+    private readonly ClientHandle _handle;
 
     internal unsafe Client(Session session, Func<ObjectHandle, TStub> create)
     {
         _session = session;
+        _handle = session.Client!;
         nint error;
-        Failure.Check(Functions.rr_client_root(session.Client, out nint root, &error), error, session.Types);
+        Failure.Check(Functions.rr_client_root(_handle, out nint root, &error), error, session.Types);
         Root = create(session.Handle(root));
     }
 
@@ -49,20 +60,20 @@ public sealed class Client<TStub> : IDisposable, IAsyncDisposable
     public TStub Root { get; }
 
     /// <summary>Whether the session goes on.</summary>
-    public bool IsOpen => Functions.rr_client_is_open(_session.Client) != 0;
+    public bool IsOpen => Functions.rr_client_is_open(_handle) != 0;
 
     /// <summary>The message format in which this connection speaks.</summary>
     public MessageVersion MessageVersion => _session.Version;
 
     /// <summary>The name of the service's node.</summary>
-    public string RemoteName => Failure.Text(Functions.rr_client_remote_name(_session.Client));
+    public string RemoteName => Failure.Text(Functions.rr_client_remote_name(_handle));
 
     /// <summary>The id of the service's node.</summary>
     public unsafe Guid RemoteNode
     {
         get
         {
-            RrNodeId id = Functions.rr_client_remote_node(_session.Client);
+            RrNodeId id = Functions.rr_client_remote_node(_handle);
             return new Guid(new ReadOnlySpan<byte>(id.Bytes, 16), bigEndian: true);
         }
     }
@@ -71,7 +82,7 @@ public sealed class Client<TStub> : IDisposable, IAsyncDisposable
     public unsafe Dictionary<string, VarValue?> GetAttributes()
     {
         nint error;
-        Failure.Check(Functions.rr_client_attributes(_session.Client, out nint data, &error), error, _session.Types);
+        Failure.Check(Functions.rr_client_attributes(_handle, out nint data, &error), error, _session.Types);
         return Elements.Take(data, VarValueCodec.StringMap, _session.Types.Registry) ?? [];
     }
 
@@ -79,7 +90,7 @@ public sealed class Client<TStub> : IDisposable, IAsyncDisposable
     public unsafe Dictionary<string, VarValue?> FetchAttributes()
     {
         nint error;
-        Failure.Check(Functions.rr_client_fetch_attributes(_session.Client, out nint data, &error), error, _session.Types);
+        Failure.Check(Functions.rr_client_fetch_attributes(_handle, out nint data, &error), error, _session.Types);
         return Elements.Take(data, VarValueCodec.StringMap, _session.Types.Registry) ?? [];
     }
 
@@ -93,20 +104,20 @@ public sealed class Client<TStub> : IDisposable, IAsyncDisposable
     public unsafe void Logout()
     {
         nint error;
-        Failure.Check(Functions.rr_client_logout(_session.Client, &error), error, _session.Types);
+        Failure.Check(Functions.rr_client_logout(_handle, &error), error, _session.Types);
     }
 
     /// <summary>Ends all open calls with OperationCancelled.</summary>
-    public void CancelCalls() => Functions.rr_client_cancel_calls(_session.Client);
+    public void CancelCalls() => Functions.rr_client_cancel_calls(_handle);
 
     /// <summary>Tells the service, waits for its answer for half a second at most, and ends the connection.</summary>
-    public void Close() => Functions.rr_client_close(_session.Client);
+    public void Close() => Functions.rr_client_close(_handle);
 
     /// <summary>Closes the session and lets go of it.</summary>
-    public void Dispose() => _session.Client.Dispose();
+    public void Dispose() => _handle.Dispose();
 
     /// <summary>The same, on another thread.</summary>
-    public ValueTask DisposeAsync() => new(Task.Run(_session.Client.Dispose));
+    public ValueTask DisposeAsync() => new(Task.Run(_handle.Dispose));
 
     private unsafe void Authenticate(string userName, string password, Dictionary<string, VarValue?>? credentials)
     {
@@ -115,7 +126,7 @@ public sealed class Client<TStub> : IDisposable, IAsyncDisposable
         using var values = new NativeElements(credentials);
         RrElements native = values.Value;
         nint error;
-        int status = Functions.rr_client_authenticate(_session.Client, user.Value, secret.Value, &native, &error);
+        int status = Functions.rr_client_authenticate(_handle, user.Value, secret.Value, &native, &error);
         Failure.Check(status, error, _session.Types);
     }
 }

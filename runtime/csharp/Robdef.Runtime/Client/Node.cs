@@ -96,6 +96,10 @@ public sealed class Node : IDisposable
         return cancel.CanBeCanceled ? UnlessCancelled(completion.Task, cancel) : completion.Task;
     }
 
+    /// <summary>Keeps a connection to the service at a URL, and makes it again when it is lost. Does not wait.</summary>
+    public ServiceSubscription<TStub> Subscribe<TStub>(string url, SubscribeOptions? options = null)
+        where TStub : Stub, IStub<TStub> => new(this, url, options ?? new SubscribeOptions());
+
     /// <summary>Offers an object and what it refers to, until the service is closed or the node ends.</summary>
     /// <param name="name">The service's name.</param>
     /// <param name="root">Its root object.</param>

@@ -226,6 +226,29 @@ internal static unsafe partial class Functions
     public static partial int rr_wire_poke_out_async(SafeHandle handle, RrStr member, RrElements* value, RrCallOptions* options, RrCompletion* completion, nint* error);
 
     [LibraryImport(Library)]
+    public static partial int rr_service_subscribe(SafeHandle node, RrStr* urls, nuint count, RrSubscribeOptions* options, out nint subscription, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_service_subscription_release(nint subscription);
+    [LibraryImport(Library)]
+    public static partial void rr_service_subscription_close(SafeHandle subscription);
+    [LibraryImport(Library)]
+    public static partial int rr_service_subscription_is_open(SafeHandle subscription);
+    [LibraryImport(Library)]
+    public static partial int rr_service_subscription_root(SafeHandle subscription, int waitMs, out nint root, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_subscribe(SafeHandle subscription, RrStr member, RrStr path, out nint wire, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_wire_subscription_release(nint wire);
+    [LibraryImport(Library)]
+    public static partial void rr_wire_subscription_close(SafeHandle wire);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_subscription_send(SafeHandle wire, RrElements* value, nuint* count, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_subscription_received(SafeHandle wire, out nint value, RrTime* time, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_subscription_wait(SafeHandle wire, int timeoutMs);
+
+    [LibraryImport(Library)]
     public static partial int rr_definition_new(RrStr text, nint* imports, nuint count, out nint definition, nint* error);
     [LibraryImport(Library)]
     public static partial void rr_definition_release(nint definition);

@@ -56,6 +56,16 @@ internal sealed class WireHandle(nint value) : Handle(value)
     protected override void Release(nint value) => Functions.rr_wire_release(value);
 }
 
+internal sealed class ServiceSubscriptionHandle(nint value) : Handle(value)
+{
+    protected override void Release(nint value) => Functions.rr_service_subscription_release(value);
+}
+
+internal sealed class WireSubscriptionHandle(nint value) : Handle(value)
+{
+    protected override void Release(nint value) => Functions.rr_wire_subscription_release(value);
+}
+
 internal sealed class DefinitionHandle(nint value) : Handle(value)
 {
     protected override void Release(nint value) => Functions.rr_definition_release(value);

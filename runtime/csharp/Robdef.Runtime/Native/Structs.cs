@@ -123,6 +123,25 @@ internal unsafe struct RrConnectOptions
 }
 
 [StructLayout(LayoutKind.Sequential)]
+internal unsafe struct RrSubscribeOptions
+{
+    public nuint Size;
+    public RrStr Username;
+    public RrStr Password;
+    public RrElements Credentials;
+    public RrStr ObjectType;
+    public int RequestTimeoutMs;
+    public int RetryDelayMs;
+    public int MaxRetryDelayMs;
+    public int ConnectTimeoutMs;
+    public nint Context;
+    public delegate* unmanaged[Cdecl]<nint, void*, void> OnConnected;
+    public delegate* unmanaged[Cdecl]<nint, void*, RrErrorInfo*, void> OnDisconnected;
+    public delegate* unmanaged[Cdecl]<nint, RrErrorInfo*, void> OnFailed;
+    public delegate* unmanaged[Cdecl]<nint, void> Drop;
+}
+
+[StructLayout(LayoutKind.Sequential)]
 internal struct RrIndex
 {
     public uint Form;
