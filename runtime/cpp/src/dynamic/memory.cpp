@@ -39,9 +39,15 @@ void* items_of(const ArrayContent& content) {
   return const_cast<void*>(content.data.items.items());
 }
 
-Memory::Numbers count_of(const Value& array) {
+// One number for each dimension of the memory: those that the array leaves out at its end, or has
+// too many of, are 1.
+Memory::Numbers count_of(const Value& array, const Memory::Numbers& position) {
   const std::vector<std::uint32_t> dims = array.dims();
-  return {dims.begin(), dims.end()};
+  Memory::Numbers count(dims.begin(), dims.end());
+  if (!array.has_dims()) return count;
+  while (count.size() > position.size() && count.back() == 1) count.pop_back();
+  while (count.size() < position.size()) count.push_back(1);
+  return count;
 }
 
 // The array that a read has filled.
@@ -73,7 +79,8 @@ Value Memory::read(const Numbers& position, const Numbers& count) const {
 void Memory::write(const Numbers& position, const Value& items) const {
   const Value array = convert_for(stub_->describe(*member_), items);
   const ArrayStorage& storage = content_of<ArrayContent>(array).data.items;
-  requests(stub_, *member_).write_part(position, count_of(array), storage.items(), storage.count());
+  requests(stub_, *member_)
+      .write_part(position, count_of(array, position), storage.items(), storage.count());
 }
 
 void Memory::async_read(const Numbers& position, const Numbers& count, Done<Value> done) const {
@@ -99,7 +106,7 @@ void Memory::async_write(const Numbers& position, const Value& items, Done<> don
     std::memcpy(kept.make_room(storage.count(), size), storage.items(), storage.count() * size);
   }
   requests(stub_, *member_)
-      .start_write(position, count_of(array), kept.items(), kept.count(), kept.owner(),
+      .start_write(position, count_of(array, position), kept.items(), kept.count(), kept.owner(),
                    complete_with(std::move(done)));
 }
 

@@ -198,6 +198,11 @@ TEST_P(DynamicStreams, KeepMemories) {
   EXPECT_EQ(column.at(0)["id"].as<int>(), 3);
   grid.write({1, 0}, StringMap{{"dims", List{1, 1}}, {"array", List{sample(9)}}});
   EXPECT_EQ(rig.stored_memory("grid").at(1)["id"].as<int>(), 9);
+  // Dims of 1 at the end may be left out, or be too many.
+  grid.write({0, 1}, StringMap{{"dims", List{1}}, {"array", List{sample(7)}}});
+  grid.write({1, 1}, StringMap{{"dims", List{1, 1, 1}}, {"array", List{sample(8)}}});
+  EXPECT_EQ(rig.stored_memory("grid").at(2)["id"].as<int>(), 7);
+  EXPECT_EQ(rig.stored_memory("grid").at(3)["id"].as<int>(), 8);
   EXPECT_EQ(error_text([&] { (void)buffer.read({3}, {2}); }).substr(0, 3), "29:");
 }
 

@@ -30,7 +30,7 @@ class Chance {
 
 /// What some languages cannot hold.
 struct Shapes {
-  /// Arrays with dimensions have two or three, the third is not 1: MATLAB has no others. No key of
+  /// Arrays with dimensions have two or three, none of the last is 1: MATLAB drops it. No key of
   /// a map is empty, which Octave's do not take; no imaginary part is -0, which Octave drops.
   bool matlab_only = false;
 };

@@ -74,7 +74,7 @@ std::vector<std::uint32_t> RandomValues::dims() {
   std::vector<std::uint32_t> dims(shapes_.matlab_only ? chance_.below(2) + 2
                                                       : chance_.below(3) + 1);
   for (std::uint32_t& one : dims) one = static_cast<std::uint32_t>(chance_.below(4));
-  if (shapes_.matlab_only && dims.size() == 3 && dims.back() == 1) dims.back() = 2;
+  if (shapes_.matlab_only && dims.back() == 1) dims.back() = 2;
   return dims;
 }
 
