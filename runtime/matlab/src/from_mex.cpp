@@ -110,12 +110,15 @@ List records_from_mex(const mxArray* given, const TypePlan& item, const ReadCont
 // Pods: struct arrays, or cells of structs. With dims, the runtime wants them as {dims, array}.
 Value record_array_from_mex(const mxArray* given, const TypePlan& plan,
                             const ReadContext& context) {
+  const bool has_records = mxIsStruct(given) || mxIsCell(given);
+  if (!has_records) refuse(given, plan);
   if (!plan.has_dims) {
     if (!is_vector(given)) refuse(given, plan);
     return records_from_mex(given, *plan.item, context);
   }
   const bool is_given_shaped = is_shaped(given);
   const mxArray* const items = is_given_shaped ? read_field(given, "array") : given;
+  if (!mxIsStruct(items) && !mxIsCell(items)) refuse(items, plan);
   const auto dims = is_given_shaped ? read_vector<std::uint32_t>(read_field(given, "dims"))
                                     : wire_dims(given, plan.rank);
   return StringMap{{"dims", Value(Array<std::uint32_t>(dims))},
