@@ -36,5 +36,5 @@ struct rr::matlab::Fields<::experimental::structs::Segment> {
 template <>
 struct rr::matlab::Fields<::experimental::structs::Empty> {
   using Record = ::experimental::structs::Empty;
-  static constexpr auto list = ::std::make_tuple(
+  static constexpr auto list = ::std::make_tuple();
 };
