@@ -41,14 +41,12 @@ struct ArmLoop {
 
 class ArmObject final : public arm::ArmDefault {
  public:
-  explicit ArmObject(ArmLoop& loop)
-      : loop_(loop), memory_(std::make_shared<TableMemory>(loop.table)) {}
+  explicit ArmObject(ArmLoop& loop) : memory_(std::make_shared<TableMemory>(loop.table)) {}
 
   std::shared_ptr<rr::ArrayMemorySource<double>> table() override { return memory_; }
   void start() override { memory_->load(3, 10); }
 
  private:
-  ArmLoop& loop_;
   std::shared_ptr<TableMemory> memory_;
 };
 
