@@ -13,10 +13,10 @@
 %!endfunction
 
 %!function try_all(first, others)
-%!  % What ends the session or opens files is tried elsewhere.
+%!  % What ends the session, opens files or ports, or waits as told is tried elsewhere.
 %!  names = setdiff(all_commands(), {'disconnect', 'close', 'log_open', 'subscribe', ...
 %!                                   'subscribe_type', 'find_type', 'find_node_name', 'connect', ...
-%!                                   'update_nodes', 'sleep', 'poll', 'request_timeout'});
+%!                                   'update_nodes', 'sleep', 'poll', 'request_timeout', 'listen_tcp', 'serve_for'});
 %!  assert(numel(names) > 60);
 %!  for i = 1:numel(names)
 %!    for k = 1:numel(others)

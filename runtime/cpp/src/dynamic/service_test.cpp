@@ -148,9 +148,9 @@ TEST_P(DynamicService, NamesWhatIsNoMember) {
   EXPECT_EQ(error_text([&] { rig.store("sped", 1); }),
             "9: `example.rig.Rig` has no property `sped`");
   EXPECT_EQ(error_text([&] { rig.on_call("count", {}); }),
-            "10: member count: expected a plain function, it is a generator function");
+            "10: member count: expected plain function, got generator function");
   EXPECT_EQ(error_text([&] { (void)rig.wire("samples"); }),
-            "10: member samples: expected a wire, it is a pipe");
+            "10: member samples: expected wire, got pipe");
   EXPECT_EQ(error_text([] { ServedObject(rig_definitions(), "example.rig.Rug"); }),
             "30: no object `example.rig.Rug`");
   EXPECT_EQ(error_of([] { ServedObject().fire("changed"); }).code(), ErrorCode::invalid_operation);
