@@ -1,7 +1,8 @@
 function image = DrawText(image, left, top, text, color)
 %DRAWTEXT Puts letters of 3 x 5 pixels, doubled, into an image of rows x columns x 3.
-%   left and top are their upper left corner, counted from 0; color is red, green, blue. There are
-%   the letters of the examples in C++: digits, letters as capitals, blanks and . - + : / = ,
+%   left and top are their upper left corner, counted from 0; color is red, green, blue. What
+%   lies outside is left out. There are the letters of the examples in C++: digits, letters as
+%   capitals, blanks and . - + : / = ,
   persistent letters
   if isempty(letters)
     file = fullfile(fileparts(mfilename('fullpath')), '..', 'letters.inc');
@@ -15,8 +16,10 @@ function image = DrawText(image, left, top, text, color)
   for c = upper(text)
     if isKey(letters, c)
       [row, column] = find(letters(c));
-      for i = 1:numel(row)
-        image(top + row(i), left + column(i), :) = color;
+      row = top + row;
+      column = left + column;
+      for i = find(min(row, column) >= 1 & row <= size(image, 1) & column <= size(image, 2))'
+        image(row(i), column(i), :) = color;
       end
     end
     left = left + 8;

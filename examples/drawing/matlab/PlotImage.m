@@ -17,7 +17,9 @@ function image = PlotImage(rows, columns, label, x, y, names)
     row = top + height - round(i / 4 * height);
     image(top + 1:top + height + 1, column + 1, :) = 190;
     image(row + 1, left + 1:left + width + 1, :) = 190;
-    at = low + i / 4 * (high - low);
+    % No more digits than the range has a use for.
+    unit = 10 .^ (floor(log10(high - low)) - 2);
+    at = round((low + i / 4 * (high - low)) ./ unit) .* unit;
     text = sprintf('%.3g', at(1));
     image = DrawText(image, column - 4 * numel(text), top + height + 6, text, [0 0 0]);
     text = sprintf('%.3g', at(2));

@@ -24,8 +24,8 @@ function dual_arm_client(url, picture)
   off = max(max(abs(position(1:12, on_way) - wanted(1:12, :))));
   fprintf('%d looks: the arms swing by %.2f rad and are at most %.3f rad off the table\n', ...
           numel(seen), max(position(1, :)) - min(position(1, :)), off);
-  fprintf('right and left differ in sign only: %d\n', ...
-          max(max(abs(position(1:6, :) + position(7:12, :)))) < 1e-9);
+  fprintf('the right arm is the mirror image of the left one to %.4f rad\n', ...
+          max(max(abs(position(1:6, :) + position(7:12, :)))));
 
   % Both sticks forward for half a second of the robot's time, with what they do to both arms.
   before = robot.read_signal('state.position');
