@@ -13,27 +13,13 @@ namespace {
 
 constexpr int letter_width = 8;
 
-// Five rows of three pixels, from the top; the left pixel is worth 4.
 struct Letter {
   char letter;
   std::array<std::uint8_t, 5> rows;
 };
 constexpr std::array letters{
-    Letter{'0', {7, 5, 5, 5, 7}}, Letter{'1', {2, 6, 2, 2, 7}}, Letter{'2', {7, 1, 7, 4, 7}},
-    Letter{'3', {7, 1, 3, 1, 7}}, Letter{'4', {5, 5, 7, 1, 1}}, Letter{'5', {7, 4, 7, 1, 7}},
-    Letter{'6', {7, 4, 7, 5, 7}}, Letter{'7', {7, 1, 1, 2, 2}}, Letter{'8', {7, 5, 7, 5, 7}},
-    Letter{'9', {7, 5, 7, 1, 7}}, Letter{'A', {2, 5, 7, 5, 5}}, Letter{'B', {6, 5, 6, 5, 6}},
-    Letter{'C', {3, 4, 4, 4, 3}}, Letter{'D', {6, 5, 5, 5, 6}}, Letter{'E', {7, 4, 6, 4, 7}},
-    Letter{'F', {7, 4, 6, 4, 4}}, Letter{'G', {3, 4, 5, 5, 3}}, Letter{'H', {5, 5, 7, 5, 5}},
-    Letter{'I', {7, 2, 2, 2, 7}}, Letter{'J', {1, 1, 1, 5, 2}}, Letter{'K', {5, 5, 6, 5, 5}},
-    Letter{'L', {4, 4, 4, 4, 7}}, Letter{'M', {5, 7, 7, 5, 5}}, Letter{'N', {6, 5, 5, 5, 5}},
-    Letter{'O', {2, 5, 5, 5, 2}}, Letter{'P', {6, 5, 6, 4, 4}}, Letter{'Q', {2, 5, 5, 6, 3}},
-    Letter{'R', {6, 5, 6, 5, 5}}, Letter{'S', {3, 4, 2, 1, 6}}, Letter{'T', {7, 2, 2, 2, 2}},
-    Letter{'U', {5, 5, 5, 5, 7}}, Letter{'V', {5, 5, 5, 5, 2}}, Letter{'W', {5, 5, 7, 7, 5}},
-    Letter{'X', {5, 5, 2, 5, 5}}, Letter{'Y', {5, 5, 2, 2, 2}}, Letter{'Z', {7, 1, 2, 4, 7}},
-    Letter{'.', {0, 0, 0, 0, 2}}, Letter{'-', {0, 0, 7, 0, 0}}, Letter{'+', {0, 2, 7, 2, 0}},
-    Letter{':', {0, 2, 0, 2, 0}}, Letter{'/', {1, 1, 2, 4, 4}}, Letter{'=', {0, 7, 0, 7, 0}},
-    Letter{',', {0, 0, 0, 2, 4}}};
+#include "examples/drawing/letters.inc"
+};
 
 }  // namespace
 

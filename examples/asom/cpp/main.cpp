@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,13 +13,17 @@
 #include "examples/asom/cpp/instrument.hpp"
 #include "examples/asom/cpp/sharpen.hpp"
 #include "examples/drawing/canvas.hpp"
+#include "examples/serving/serving.hpp"
 #include "rr/node.hpp"
 
 namespace {
 
 constexpr const char* usage =
-    "usage: asom [--picture FILE.png] [--grid N]\n"
-    "Scans a grid of N x N places (3), each with a flat mirror and with one that was sharpened.\n";
+    "usage: asom [--picture FILE.png] [--grid N] | asom --serve SECONDS\n"
+    "Scans a grid of N x N places (3), each with a flat mirror and with one that was sharpened.\n"
+    "  --serve SECONDS  scans nothing by itself, and is there for clients for so long; 0 is until "
+    "it\n"
+    "                   is interrupted\n";
 
 /// A frame in shades of gray, its middle only.
 void put(drawing::Canvas& canvas, int left, int top, const asom::Frame& frame) {
@@ -36,12 +41,16 @@ void put(drawing::Canvas& canvas, int left, int top, const asom::Frame& frame) {
 int main(int argc, char** argv) try {
   std::string picture;
   int grid = 3;
+  std::optional<int> seconds;
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
     if (word == "--picture" && i + 1 < argc) {
       picture = argv[++i];
     } else if (word == "--grid" && i + 1 < argc) {
       grid = std::atoi(argv[++i]);
+    } else if (word == "--serve" && i + 1 < argc) {
+      seconds = serving::read_seconds(argv[++i]);
+      if (!seconds) grid = 0;
     } else {
       grid = 0;
     }
@@ -51,13 +60,20 @@ int main(int argc, char** argv) try {
     return 2;
   }
 
+  std::optional<serving::Stay> stay;
+  if (seconds) stay.emplace(*seconds);
   rr::Node server({.name = "experimental.asom_host"});
   const auto service =
       server.register_service("CameraHost", asom::make_host(std::make_shared<asom::Instrument>()));
   const auto port = server.listen_tcp(0, "127.0.0.1");
+  const std::string url = "rr+tcp://127.0.0.1:" + std::to_string(port) + "?service=CameraHost";
+  if (stay) {
+    serving::announce(url);
+    stay->wait_for_end();
+    return 0;
+  }
   rr::Node client;
-  const auto root = client.connect<asom::host::CameraHostStub>(
-      "rr+tcp://127.0.0.1:" + std::to_string(port) + "?service=CameraHost");
+  const auto root = client.connect<asom::host::CameraHostStub>(url);
   asom::Instruments instruments(*root);
 
   const int size = 2 * asom::tile_size * grid;

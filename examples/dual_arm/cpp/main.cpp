@@ -5,12 +5,14 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
 
 #include "examples/drawing/plot.hpp"
 #include "examples/dual_arm/cpp/host.hpp"
+#include "examples/serving/serving.hpp"
 #include "rr/node.hpp"
 
 namespace {
@@ -21,13 +23,15 @@ namespace wire = dual_arm::wire;
 constexpr const char* usage =
     "usage: dual_arm [--picture FILE.png] [--real-time] [--serve SECONDS]\n"
     "Moves both arms: first along a table, then by a scripted gamepad.\n"
-    "  --real-time      on the machine's clock, not on a simulated one\n"
-    "  --serve SECONDS  then stays there for clients\n";
+    "  --real-time      each node in a thread on the machine's clock, not all on a simulated one\n"
+    "  --serve SECONDS  moves nothing by itself, and is there for clients for so long; 0 is until "
+    "it\n"
+    "                   is interrupted\n";
 
 struct Options {
   std::string picture;
   bool is_timed = false;
-  int serve = 0;
+  std::optional<int> serve;  // seconds
 };
 
 bool read(int argc, char** argv, Options& options) {
@@ -38,7 +42,8 @@ bool read(int argc, char** argv, Options& options) {
     } else if (i + 1 < argc && word == "--picture") {
       options.picture = argv[++i];
     } else if (i + 1 < argc && word == "--serve") {
-      options.serve = std::atoi(argv[++i]);
+      options.serve = serving::read_seconds(argv[++i]);
+      if (!options.serve) return false;
     } else {
       return false;
     }
@@ -129,6 +134,8 @@ int main(int argc, char** argv) try {
     std::fputs(usage, stderr);
     return 2;
   }
+  std::optional<serving::Stay> stay;
+  if (options.serve) stay.emplace(*options.serve);
   dual_arm::Robot robot;
   const auto host = std::make_shared<dual_arm::Host>(robot);
   rr::Node server({.name = "experimental.dual_arm_host"});
@@ -139,6 +146,14 @@ int main(int argc, char** argv) try {
   host->join(bus);
 
   World world(robot, options.is_timed);
+  if (stay) {
+    serving::announce(url);
+    // The machine's clock paces the simulated one.
+    while (stay->wait(10ms)) {
+      if (!options.is_timed) world.wait(10ms);
+    }
+    return 0;
+  }
   rr::Node client;
   const auto stub = client.connect<wire::DualArmStub>(url);
   const Recording recording = use(*stub, world);
@@ -170,14 +185,6 @@ int main(int argc, char** argv) try {
   if (!options.picture.empty()) {
     draw(recording, options.picture);
     std::printf("written to %s\n", options.picture.c_str());
-  }
-  if (options.serve > 0) {
-    std::printf("ready: %s\n", url.c_str());
-    std::fflush(stdout);
-    for (int i = 0; i < options.serve * 100; ++i) {
-      world.wait(10ms);
-      if (!options.is_timed) std::this_thread::sleep_for(10ms);
-    }
   }
   return 0;
 } catch (const std::exception& error) {

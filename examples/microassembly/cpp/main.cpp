@@ -4,11 +4,13 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "examples/drawing/plot.hpp"
 #include "examples/microassembly/cpp/cell.hpp"
+#include "examples/serving/serving.hpp"
 #include "rr/node.hpp"
 #include "rr/realtime/lockstep.hpp"
 
@@ -18,8 +20,11 @@ using namespace std::chrono_literals;
 namespace wire = microassembly::wire;
 
 constexpr const char* usage =
-    "usage: microassembly [--picture FILE.png]\n"
-    "Has two probes take a part from the stage and carry it to the side.\n";
+    "usage: microassembly [--picture FILE.png] | microassembly --serve SECONDS\n"
+    "Has two probes take a part from the stage and carry it to the side.\n"
+    "  --serve SECONDS  moves nothing by itself, and is there for clients for so long; 0 is until "
+    "it\n"
+    "                   is interrupted\n";
 
 /// Both cameras at one moment, beside each other.
 void put_pictures(drawing::Canvas& canvas, wire::CellStub& cell, int top) {
@@ -38,13 +43,19 @@ void put_pictures(drawing::Canvas& canvas, wire::CellStub& cell, int top) {
 
 int main(int argc, char** argv) try {
   std::string file;
+  std::optional<int> seconds;
   if (argc == 3 && std::string_view(argv[1]) == "--picture") {
     file = argv[2];
-  } else if (argc != 1) {
+  } else if (argc == 3 && std::string_view(argv[1]) == "--serve") {
+    seconds = serving::read_seconds(argv[2]);
+  }
+  if (argc != 1 && file.empty() && !seconds) {
     std::fputs(usage, stderr);
     return 2;
   }
 
+  std::optional<serving::Stay> stay;
+  if (seconds) stay.emplace(*seconds);
   microassembly::Node node;
   rr::realtime::Lockstep world;
   world.add(1ms, [&node](const rr::realtime::Cycle& cycle) { node.step(cycle); });
@@ -55,9 +66,16 @@ int main(int argc, char** argv) try {
   rr::realtime::BusService bus(10ms);
   object->join(bus);
 
+  const std::string url = "rr+tcp://127.0.0.1:" + std::to_string(port) + "?service=Cell";
+  if (stay) {
+    serving::announce(url);
+    // The machine's clock paces the simulated one.
+    while (stay->wait(10ms)) world.run_until(world.clock().now() + 10ms);
+    return 0;
+  }
+
   rr::Node client;
-  const auto cell = client.connect<wire::CellStub>("rr+tcp://127.0.0.1:" + std::to_string(port) +
-                                                   "?service=Cell");
+  const auto cell = client.connect<wire::CellStub>(url);
   cell->get_auxiliary()->set_light(1);
   const auto rows = microassembly::assembly();
   cell->table().write(0, rows);

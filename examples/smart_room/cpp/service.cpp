@@ -3,7 +3,6 @@
 // sensors behind one general interface) and cameras.
 #include <charconv>
 #include <cmath>
-#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "RobotCameraHost_interface.hpp"
+#include "examples/serving/serving.hpp"
 #include "examples/smart_room/cpp/room.hpp"
 #include "rr/node.hpp"
 
@@ -204,27 +204,13 @@ int main(int argc, char** argv) try {
     std::fputs(usage, stderr);
     return 2;
   }
-  // Blocked before the node starts its threads, so that only the wait below takes them.
-  sigset_t stop;
-  sigemptyset(&stop);
-  sigaddset(&stop, SIGINT);
-  sigaddset(&stop, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &stop, nullptr);
-
+  serving::Stay stay(options.seconds);
   rr::Node node({.name = "RobotCameraHost"});
   const auto service =
       node.register_service("CameraHost", std::make_shared<Host>(std::make_shared<Room>()));
   const auto port = node.listen("rr+tcp://0.0.0.0:" + std::to_string(options.port));
-  std::printf("ready: tcp://localhost:%d/RobotCameraHost/CameraHost\n", static_cast<int>(port));
-  std::fflush(stdout);
-
-  if (options.seconds > 0) {
-    const timespec time{options.seconds, 0};
-    sigtimedwait(&stop, nullptr, &time);
-  } else {
-    int signal = 0;
-    sigwait(&stop, &signal);
-  }
+  serving::announce("tcp://localhost:" + std::to_string(port) + "/RobotCameraHost/CameraHost");
+  stay.wait_for_end();
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "smart_room_service: %s\n", error.what());
