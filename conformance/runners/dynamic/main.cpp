@@ -16,6 +16,6 @@ dynamic::Value passed(const dynamic::Definitions&, const dynamic::ValueType&,
 
 int main(int argc, char** argv) {
   if (argc == 3 && rr::conformance::answer_verb(argv[2], argv[1])) return 0;
-  std::cerr << "usage: conformance_dynamic_runner DEFINITIONS decode|encode|serve|call\n";
+  std::cerr << "usage: conformance_dynamic_runner DEFINITIONS decode|encode|serve|call|both\n";
   return 2;
 }

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/runners/dynamic/verbs.hpp"
 
-#include <exception>
 #include <filesystem>
 #include <fstream>
-#include <functional>
-#include <iostream>
 #include <iterator>
 #include <string>
 #include <vector>
 
 #include "conformance/runners/dynamic/binding.hpp"
 #include "conformance/runners/dynamic/codec.hpp"
-#include "conformance/runners/shared/call.hpp"
-#include "conformance/runners/shared/serve.hpp"
+#include "conformance/runners/shared/codec_verbs.hpp"
+#include "conformance/runners/shared/verbs.hpp"
 
 namespace rr::conformance {
 namespace {
@@ -27,29 +24,19 @@ std::vector<std::string> read_folder(const std::string& folder) {
   return texts;
 }
 
-void answer_lines(const std::function<Json(const Json&)>& answer) {
-  for (std::string line; std::getline(std::cin, line);) {
-    Json result;
-    try {
-      result = answer(Json::parse(line));
-    } catch (const std::exception& error) {
-      result = {{"error", error.what()}};
-    }
-    std::cout << result.dump(-1, ' ', false, Json::error_handler_t::replace) << "\n" << std::flush;
-  }
-}
-
 }  // namespace
 
 bool answer_verb(const std::string& verb, const std::string& folder) {
   if (verb == "serve") {
     DynamicBinding binding(read_folder(folder));
-    ServedNode node(binding);
-    answer_lines([&](const Json& request) { return node.answer(request); });
+    answer_serve(binding);
   } else if (verb == "call") {
     DynamicBinding binding;
-    CallingNode node(binding);
-    answer_lines([&](const Json& request) { return node.answer(request); });
+    answer_call(binding);
+  } else if (verb == "both") {
+    DynamicBinding service(read_folder(folder));
+    DynamicBinding client;
+    answer_both(service, client);
   } else if (verb == "decode" || verb == "encode") {
     const DynamicCodec codec(dynamic::Definitions(read_folder(folder)));
     answer_lines([&](const Json& request) {
