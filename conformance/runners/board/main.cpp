@@ -4,7 +4,6 @@
 // answered with the reason.
 //   conformance_board_runner PROGRAM.elf serve
 //   conformance_board_runner --refused REASON serve
-#include <exception>
 #include <iostream>
 #include <memory>
 #include <rr/node.hpp>
@@ -13,6 +12,7 @@
 #include <string>
 
 #include "conformance/harness/json.hpp"
+#include "conformance/runners/shared/answer_lines.hpp"
 #include "conformance/runners/shared/node_settings.hpp"
 #include "runtime/arduino/bench/plugged_board.hpp"
 
@@ -61,15 +61,9 @@ int main(int argc, char** argv) {
     return 2;
   }
   ServedBoard board(argv[1]);
-  for (std::string line; std::getline(std::cin, line);) {
-    Json result;
-    try {
-      if (is_refused) throw std::runtime_error(argv[2]);
-      result = board.answer(Json::parse(line));
-    } catch (const std::exception& error) {
-      result = {{"error", error.what()}};
-    }
-    std::cout << result.dump(-1, ' ', false, Json::error_handler_t::replace) << "\n" << std::flush;
-  }
+  rr::conformance::answer_lines([&](const Json& request) {
+    if (is_refused) throw std::runtime_error(argv[2]);
+    return board.answer(request);
+  });
   return 0;
 }

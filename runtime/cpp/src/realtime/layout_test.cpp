@@ -98,6 +98,23 @@ TEST(RealtimeBus, ReadsAndSetsSignalsByName) {
   EXPECT_FALSE(command.take());
 }
 
+// Called under a lock it could not use the group; what is set meanwhile would be lost without the
+// second call.
+TEST(CommandGroups, AChangeSeesWhatWasSetWhileItWasMade) {
+  CommandGroup<ArmPod> command;
+  int calls = 0;
+  command.update([&](ArmPod& value) {
+    if (++calls == 1) command.set({.temperature = 3});
+    value.mode = 2;
+  });
+  EXPECT_EQ(calls, 2);
+  EXPECT_EQ(command.newest().temperature, 3);
+  EXPECT_EQ(command.newest().mode, 2);
+  ASSERT_TRUE(command.take());
+  EXPECT_EQ(command.value().temperature, 3);
+  EXPECT_EQ(command.value().mode, 2);
+}
+
 TEST(RealtimeBus, RefusesWhatItCannotHold) {
   SignalGroup<ArmPod> state;
   CommandGroup<ArmPod> command;

@@ -26,21 +26,24 @@ class CommandGroup {
   void set(const T& value) {
     update([&](T& newest) { newest = value; });
   }
-  /// Changes the newest value by `function(T&)`, under a lock of this side only. What it throws
-  /// leaves the value as it was.
+  /// Changes the newest value by `function(T&)`, which is called under no lock, and again when
+  /// another thread has set a value meanwhile. What it throws leaves the value as it was.
   template <class Function>
   void update(Function function) {
-    const std::lock_guard lock(mutex_);
-    T value = newest_;
-    function(value);
-    newest_ = value;
-    mailbox_.put(value);
+    for (;;) {
+      const auto [before, count] = snapshot();
+      T value = before;
+      function(value);
+      const std::lock_guard lock(mutex_);
+      if (count != count_) continue;
+      ++count_;
+      newest_ = value;
+      mailbox_.put(value);
+      return;
+    }
   }
   /// What was set last, whether or not the loop has taken it.
-  [[nodiscard]] T newest() const {
-    const std::lock_guard lock(mutex_);
-    return newest_;
-  }
+  [[nodiscard]] T newest() const { return snapshot().value; }
 
   /// The loop's: takes the newest value, when there is one since the last time. Neither waits nor
   /// allocates.
@@ -49,8 +52,18 @@ class CommandGroup {
   [[nodiscard]] const T& value() const { return mailbox_.value(); }
 
  private:
+  struct Snapshot {
+    T value;
+    std::uint64_t count;
+  };
+  [[nodiscard]] Snapshot snapshot() const {
+    const std::lock_guard lock(mutex_);
+    return {newest_, count_};
+  }
+
   mutable std::mutex mutex_;
   T newest_;
+  std::uint64_t count_ = 0;  // of values that were set
   Mailbox<T> mailbox_;
 };
 
