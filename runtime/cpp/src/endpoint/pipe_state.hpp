@@ -52,7 +52,9 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
     std::int32_t index = 0;
     bool is_unreliable = false;
     bool is_client = false;
-    std::uint32_t client = 0;  // on the service's side
+    // On the service's side: the client's endpoint and node.
+    std::uint32_t client = 0;
+    NodeId node{};
   };
   State(std::shared_ptr<const endpoint::Core> core, std::shared_ptr<endpoint::PipeSide> side,
         Identity identity);

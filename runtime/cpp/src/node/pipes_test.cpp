@@ -10,8 +10,10 @@
 #include <chrono>
 #include <future>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "rr/async.hpp"
 #include "runtime/cpp/src/node/testing/pipe_boards.hpp"
@@ -59,6 +61,28 @@ TEST_P(PipesInFormat, PacketsGoBothWaysInOrder) {
   EXPECT_EQ(end.receive_for(10s), 8);
   EXPECT_EQ(end.try_receive(), std::nullopt);
   EXPECT_EQ(end.receive_for(20ms), std::nullopt);
+}
+
+// What goes to all wakes each process once.
+TEST_P(PipesInFormat, EndsOfOneNodeStandTogether) {
+  PipeBoards boards({}, options());
+  Node other(options());
+  const std::string url = "rr+tcp://127.0.0.1:" + std::to_string(boards.port) + "/?service=board";
+  std::vector<Client<PipeBoardStub>> clients;
+  std::vector<PipeEndpoint<double>> ends;
+  for (Node* node : {&boards.client, &other, &boards.client, &other}) {
+    clients.push_back(node->connect<PipeBoardStub>(url));
+    ends.push_back(clients.back()->numbers().connect());
+  }
+  std::map<std::uint32_t, NodeId> nodes;
+  for (const ServiceClient& one : boards.service->clients()) nodes[one.endpoint] = one.node;
+  std::vector<NodeId> order;
+  for (const auto& served : boards.board->numbers().endpoints()) {
+    order.push_back(nodes.at(served.client()));
+  }
+  EXPECT_THAT(order, ElementsAre(boards.client.id(), boards.client.id(), other.id(), other.id()));
+  boards.board->numbers().send(7);
+  for (auto& end : ends) EXPECT_EQ(end.receive_for(10s), 7);
 }
 
 TEST_P(PipesInFormat, PacketsMayBeAnyValue) {

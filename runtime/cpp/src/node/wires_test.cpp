@@ -7,6 +7,7 @@
 #include <boost/asio/use_future.hpp>
 #include <chrono>
 #include <future>
+#include <map>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -69,6 +70,31 @@ TEST(Wires, OfOneClientGetItsOwnValues) {
   ASSERT_TRUE(other_level.wait_in(plenty));
   EXPECT_NE(level.in(), other_level.in());
   EXPECT_EQ(pair.object->level().connection_count(), 2U);
+}
+
+// What goes to all wakes each process once.
+TEST(Wires, OfOneNodeStandTogether) {
+  WiredPair pair;
+  Node other;
+  const std::string url = "rr+tcp://127.0.0.1:" + std::to_string(pair.port) + "/?service=wired";
+  std::vector<Client<WiredStub>> clients;
+  std::vector<WireConnection<double>> wires;
+  for (Node* node : {&pair.client, &other, &pair.client, &other}) {
+    clients.push_back(node->connect<WiredStub>(url));
+    wires.push_back(clients.back()->level().connect());
+  }
+  std::map<std::uint32_t, NodeId> nodes;
+  for (const ServiceClient& one : pair.service->clients()) nodes[one.endpoint] = one.node;
+  std::vector<NodeId> order;
+  for (const auto& served : pair.object->level().connections()) {
+    order.push_back(nodes.at(served.client()));
+  }
+  EXPECT_THAT(order, ElementsAre(pair.client.id(), pair.client.id(), other.id(), other.id()));
+  pair.object->level().set_in(7);
+  for (auto& wire : wires) {
+    ASSERT_TRUE(wire.wait_in(plenty));
+    EXPECT_EQ(wire.in(), 7);
+  }
 }
 
 TEST(Wires, AClientThatConnectsGetsTheLastValueAtOnce) {

@@ -8,6 +8,7 @@
 #include "rr/error.hpp"
 #include "rr/writer.hpp"
 #include "runtime/cpp/src/endpoint/wire_values.hpp"
+#include "runtime/cpp/src/service/neighbours.hpp"
 #include "runtime/cpp/src/service/places.hpp"
 #include "runtime/cpp/src/service/served_wire_end.hpp"
 
@@ -74,7 +75,13 @@ void OfferedWire::send_all(const void* value) {
     time = times_.draw(ends->front()->clock());
   }
   const TimeSpec stamp = endpoint::as_time_spec(time);
-  for (const End& end : *ends) {
+  for (std::size_t i = 0; i < ends->size(); ++i) {
+    // What the next ones touch is in no cache when there are a thousand of them.
+    for (std::size_t step = 0; step < ServedWireEnd::fetch_steps; ++step) {
+      const std::size_t ahead = i + ServedWireEnd::fetch_steps - step;
+      if (ahead < ends->size()) (*ends)[ahead]->fetch(step);
+    }
+    const End& end = (*ends)[i];
     if (!end->is_open()) continue;
     end->send_common(kept, packet.finish(end->version(), stamp), time);
   }
@@ -87,9 +94,7 @@ void OfferedWire::join(const End& end) {
   {
     const std::lock_guard lock(mutex_);
     if (std::find(ends_->begin(), ends_->end(), end) == ends_->end()) {
-      auto ends = std::make_shared<Ends>(*ends_);
-      ends->push_back(end);
-      ends_ = std::move(ends);
+      ends_ = with_end(*ends_, end, [](const End& one) { return one->node(); });
     }
     last = in_;
     // Before the time of whatever is sent to all from now on.

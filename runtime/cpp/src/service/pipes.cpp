@@ -9,6 +9,7 @@
 #include "runtime/cpp/src/endpoint/pipe_arrival.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
 #include "runtime/cpp/src/service/directory.hpp"
+#include "runtime/cpp/src/service/neighbours.hpp"
 #include "runtime/cpp/src/service/places.hpp"
 #include "runtime/cpp/src/service/server_endpoint.hpp"
 
@@ -37,9 +38,8 @@ void PipePlace::set_backlog_limit(std::size_t packets) {
 
 void PipePlace::add(const End& end) {
   const std::lock_guard lock(mutex_);
-  auto ends = std::make_shared<Ends>(*audience_.ends);
-  ends->push_back(end);
-  audience_.ends = std::move(ends);
+  audience_.ends =
+      with_end(*audience_.ends, end, [](const End& one) { return one->identity.node; });
 }
 
 void PipePlace::remove(const PipeEnd::State& end) {
@@ -84,7 +84,7 @@ Pipes::End Pipes::open(const Question& question, const ServedObject& object, con
       endpoint_.directory_->core(),
       std::shared_ptr<endpoint::PipeSide>(endpoint_.shared_from_this(), this),
       PipeEnd::State::Identity{object.path, &member, member.holding, *index, is_unreliable, false,
-                               endpoint_.client().endpoint},
+                               endpoint_.client().endpoint, endpoint_.client().node},
       Skeleton::Places::of(*object.skeleton).pipe(member.name));
   ends_.add(end);
   end->place->add(end);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
@@ -24,11 +25,17 @@ class ServedWireEnd final : public WireEnd::State {
   void close() override;
   [[nodiscard]] std::uint32_t client() const override;
 
+  /// The client's node.
+  [[nodiscard]] const NodeId& node() const;
   [[nodiscard]] const endpoint::SenderClock& clock() const { return core().clock(); }
   [[nodiscard]] MessageVersion version() const { return connection().version(); }
   /// Sends what others get too: the elements of a packet, which stay in `elements`. Failures are
   /// ignored.
   void send_common(std::shared_ptr<const void> value, Writer& elements, endpoint::SenderTime time);
+  /// Begins to bring into the cache what sending will touch. The steps are to be taken in order,
+  /// with time between them: where the things of one are is read from those of the one before.
+  void fetch(std::size_t step) const;
+  static constexpr std::size_t fetch_steps = 3;
 
  private:
   [[nodiscard]] channel::Connection& connection() const override;
