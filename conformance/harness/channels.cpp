@@ -158,7 +158,7 @@ replay::Listener Channel::listen() {
 
 std::string Channel::place(const Scenario& scenario, int port) const {
   if (name_ == "local") return "rr+local://" + socket().string() + "?";
-  if (name_ == "intra") return "rr+intra:///?";
+  if (is_in_process()) return "rr+intra:///?";
   static const std::map<std::string, std::string> schemes = {{"tcp", "rr+tcp"},
                                                              {"ws", "rr+ws"},
                                                              {"tls", "rrs+tcp"},

@@ -23,6 +23,9 @@ class WebSockets;
 
 namespace rr::conformance {
 
+/// Both nodes in one process.
+inline constexpr std::string_view in_process = "intra";
+
 /// `tcp`, `local`, `ws`, `tls` (TCP with STARTTLS), `rrs+ws` (a web socket with STARTTLS inside),
 /// `wss` (a web socket inside of TLS), `intra` (both nodes in one process).
 const std::vector<std::string>& channel_names();
@@ -38,7 +41,7 @@ class Channel {
   Channel& operator=(const Channel&) = delete;
 
   [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] bool is_in_process() const { return name_ == "intra"; }
+  [[nodiscard]] bool is_in_process() const { return name_ == in_process; }
   /// The messages of recorded web sockets go by TCP as they were recorded.
   [[nodiscard]] bool plays_as_recorded() const { return name_ == "tcp"; }
 

@@ -2,6 +2,7 @@
 #include "conformance/harness/lists.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -60,7 +61,7 @@ const ListEntry* find_in(const std::vector<ListEntry>& entries, const Run& run,
                          std::string_view place) {
   for (const ListEntry& entry : entries) {
     if (entry.place() == place && entry.covers(run)) {
-      entry.met = true;
+      std::atomic_ref(entry.met) = true;  // by several threads
       return &entry;
     }
   }

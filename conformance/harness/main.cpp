@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view usage =
     R"(usage: conformance_harness play --captures DIR (--runner PROGRAM | --connect HOST:PORT | --listen PORT)
-                           [--language NAME] [--roles ROLES] [--only REGEX] [--before COMMAND]
+                           [--language NAME] [--roles ROLES] [--jobs N] [--only REGEX] [--before COMMAND]
                            [--channels NAMES] [--expected FILE] [--deviations FILE | --borrowed-deviations FILE]
                            [--json FILE]
        conformance_harness definitions --captures DIR --output DIR
@@ -30,6 +30,7 @@ play: plays a folder of captures. With --runner, a language's runner is the serv
   command) brings it to its first state before each scenario; with --listen, a client. Deviations are
   borrowed when the list was written for other captures: not each of them must occur.
   --channels are those that a runner is played over, tcp without it: tcp local ws tls rrs+ws wss intra.
+  --jobs scenarios are played with the runner at once (1).
   --roles leaves out what a language does not have: it plays these of decode, encode, service, client.
 definitions: writes the service definitions of the folder, for a compiler.
 record: plays a plan of the folder with a runner on both ends and writes it down as a scenario.
@@ -47,6 +48,15 @@ int port_of(std::string_view text) {
     throw UsageError("no port: " + std::string(text));
   }
   return port;
+}
+
+std::size_t count_of(std::string_view text) {
+  std::size_t count = 0;
+  const auto [end, error] = std::from_chars(text.begin(), text.end(), count);
+  if (error != std::errc{} || end != text.end() || count < 1 || count > 256) {
+    throw UsageError("no number of jobs: " + std::string(text));
+  }
+  return count;
 }
 
 rr::conformance::Address address_of(std::string_view text) {
@@ -102,6 +112,7 @@ void take_option(CommandLine& line, const std::string& name, const std::string& 
       {"--connect", [&] { options.connect = address_of(value); }},
       {"--before", [&] { options.before = value; }},
       {"--listen", [&] { options.listen = port_of(value); }},
+      {"--jobs", [&] { options.jobs = count_of(value); }},
       {"--only", [&] { options.only = value; }},
       {"--expected", [&] { options.expected = value; }},
       {"--deviations", [&] { options.deviations = value; }},

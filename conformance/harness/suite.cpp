@@ -2,20 +2,20 @@
 #include "conformance/harness/suite.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <iostream>
-#include <memory>
 #include <regex>
 #include <set>
+#include <thread>
 
 #include "conformance/harness/channels.hpp"
 #include "conformance/harness/client_replay.hpp"
 #include "conformance/harness/codec_check.hpp"
 #include "conformance/harness/in_process_replay.hpp"
 #include "conformance/harness/malformed.hpp"
+#include "conformance/harness/plays.hpp"
 #include "conformance/harness/runner_client.hpp"
 
 namespace rr::conformance {
@@ -45,6 +45,7 @@ class Suite {
       : options_(options),
         captures_(read_captures(options.captures)),
         comparison_(captures_),
+        elsewhere_(captures_),
         expected_(options.expected ? ExpectedFailures(*options.expected, options.language)
                                    : ExpectedFailures()),
         deviations_(options.deviations
@@ -52,7 +53,9 @@ class Suite {
                         : Deviations()),
         report_(options.language, expected_, deviations_,
                 options.only.empty() && options.roles.empty() && !options.connect &&
-                    !options.listen && options.channels.front() == "tcp") {}
+                    !options.listen && options.channels.front() == "tcp") {
+    elsewhere_.expect_other_urls(true);
+  }
 
   bool run() {
     if (captures_.scenarios.empty()) {
@@ -90,25 +93,6 @@ class Suite {
     }
   }
 
-  // A run that cannot even be carried out is a fault of the whole.
-  void add(const Run& run, const std::function<Result()>& play) {
-    const auto begun = std::chrono::steady_clock::now();
-    Result result;
-    try {
-      result = play();
-    } catch (const std::exception& error) {
-      result.run = run;
-      result.fail(std::string(whole_run), "", error.what());
-    }
-    const auto spent = std::chrono::steady_clock::now() - begun;
-    std::clog << name_of(run.role) << " " << run.channel << " " << run.scenario << " "
-              << run.version << ": "
-              << (result.faults.empty() ? "as recorded"
-                                        : std::to_string(result.faults.size()) + " faults")
-              << ", " << std::chrono::duration_cast<Milliseconds>(spent).count() << " ms\n";
-    report_.add(std::move(result));
-  }
-
   [[nodiscard]] std::set<int> versions_of_values() const {
     std::set<int> versions;
     for (const Value& value : captures_.values) versions.insert(value.message_version);
@@ -120,59 +104,77 @@ class Suite {
     return versions;
   }
 
-  void play_runner() {
-    for (const std::string& name : options_.channels) {
-      channel_ = std::make_unique<Channel>(name);
-      comparison_.expect_other_urls(!channel_->plays_as_recorded());
-      if (channel_->is_in_process()) {
-        play_in_process();
-      } else {
-        play_over_channel();
-      }
-    }
+  // What a recording is compared with depends on whether services are where they were.
+  [[nodiscard]] const Comparison& comparison_for(const Channel& channel) const {
+    return channel.plays_as_recorded() ? comparison_ : elsewhere_;
   }
 
-  void play_over_channel() {
-    // What messages and values mean is the same over all channels.
-    if (channel_->name() == "tcp" && has(Role::decode) && has(Role::encode)) check_codec();
+  void play_runner() {
+    const bool has_codec = is_played_over("tcp") && has(Role::decode) && has(Role::encode);
+    std::vector<Result> codec;
+    std::vector<Result> results;
+    {
+      std::jthread other;
+      if (has_codec) other = std::jthread([&] { codec = check_codec(); });
+      std::vector<Play> plays;
+      for (const std::string& channel : options_.channels) plan(plays, channel);
+      results = play_all(plays, options_.jobs);
+    }
+    for (Result& result : codec) report_.add(std::move(result));
+    for (Result& result : results) report_.add(std::move(result));
+  }
+
+  [[nodiscard]] bool is_played_over(const std::string& channel) const {
+    return std::ranges::find(options_.channels, channel) != options_.channels.end();
+  }
+
+  void plan(std::vector<Play>& plays, const std::string& channel) {
+    if (channel == in_process) return plan_in_process(plays);
     if (has(Role::service)) {
       for_each_scenario([&](const Scenario& scenario) {
-        add(run_of(scenario, Role::service), [&] { return serve(scenario); });
+        plays.push_back({run_of(scenario, Role::service, channel),
+                         [&](Channel& over) { return serve(scenario, over); }});
       });
     }
     if (has(Role::client)) {
       for_each_scenario([&](const Scenario& scenario) {
         if (scenario.hand_made) return;
-        add(run_of(scenario, Role::client), [&] { return call(scenario); });
+        plays.push_back({run_of(scenario, Role::client, channel),
+                         [&](Channel& over) { return call(scenario, over); }});
       });
     }
-    if (!has(Role::service)) return;
+    if (!has(Role::service) || !is_wanted("malformed")) return;
     for (const int version : versions_of_malformed()) {
-      if (!is_wanted("malformed")) continue;
-      add({"malformed", "v" + std::to_string(version), Role::service, channel_->name()},
-          [&] { return serve_malformed(version); });
+      plays.push_back({{"malformed", "v" + std::to_string(version), Role::service, channel},
+                       [this, version](Channel& over) { return serve_malformed(version, over); }});
     }
   }
 
   // The runner's client and its service in one process, where there are no bytes to look at.
-  void play_in_process() {
+  void plan_in_process(std::vector<Play>& plays) {
     if (!has(Role::service) || !has(Role::client)) return;
     for_each_scenario([&](const Scenario& scenario) {
       if (scenario.hand_made) return;
-      add(run_of(scenario, Role::client), [&] {
-        return InProcessReplay(captures_, comparison_, deviations_, *channel_)
-            .play(scenario, options_.runner);
-      });
+      plays.push_back({run_of(scenario, Role::client, std::string(in_process)), [&](Channel& over) {
+                         return InProcessReplay(captures_, comparison_for(over), deviations_, over)
+                             .play(scenario, options_.runner);
+                       }});
     });
   }
 
-  [[nodiscard]] Run run_of(const Scenario& scenario, Role role) const {
-    return {scenario.name, scenario.version, role, channel_->name()};
+  [[nodiscard]] static Run run_of(const Scenario& scenario, Role role, const std::string& channel) {
+    return {scenario.name, scenario.version, role, channel};
   }
 
-  void check_codec() {
+  // What messages and values mean is the same over all channels. One program decodes all, and one
+  // encodes.
+  std::vector<Result> check_codec() {
+    std::vector<Result> results;
     Runner decoder(options_.runner, "decode");
     Runner encoder(options_.runner, "encode");
+    const auto add = [&](const Run& run, const std::function<Result()>& play) {
+      results.push_back(result_of(run, play));
+    };
     for (const int version : versions_of_values()) {
       if (!is_wanted("values")) continue;
       const std::string name = "v" + std::to_string(version);
@@ -187,48 +189,48 @@ class Suite {
       add({scenario.name, scenario.version, Role::encode},
           [&] { return check_encoding(scenario, encoder); });
     });
+    return results;
   }
 
-  Result serve(const Scenario& scenario) {
-    channel_->renew();
+  Result serve(const Scenario& scenario, Channel& channel) const {
     Runner runner(options_.runner, "serve");
     const Json started =
-        runner.order(serve_request(captures_, scenario, channel_->settings(scenario.service)));
-    ServiceReplay replay(comparison_, deviations_, connect_to(scenario, started),
-                         [&](const std::string& service) {
+        runner.order(serve_request(captures_, scenario, channel.settings(scenario.service)));
+    ServiceReplay replay(comparison_for(channel), deviations_,
+                         connect_to(scenario, channel, started), [&](const std::string& service) {
                            runner.order({{"do", "close_service"}, {"service", service}});
                          });
-    return replay.play(scenario, is_expected_to_fail(scenario, Role::service));
+    return replay.play(scenario, is_expected_to_fail(scenario, Role::service, channel));
   }
 
-  Connect connect_to(const Scenario& scenario, const Json& started) {
+  static Connect connect_to(const Scenario& scenario, Channel& channel, const Json& started) {
     const int port = started.value("port", 0);
-    return {channel_->name(),
-            [this, &scenario, port] { return channel_->connect(scenario, "127.0.0.1", port); }};
+    return {channel.name(),
+            [&scenario, &channel, port] { return channel.connect(scenario, "127.0.0.1", port); }};
   }
 
-  Result call(const Scenario& scenario) {
-    channel_->renew();
+  Result call(const Scenario& scenario, Channel& channel) const {
     RunnerClient client(options_.runner);
-    Listener listener = channel_->listen();
-    Entrance entrance(*channel_, scenario, listener);
-    return ClientReplay(comparison_, deviations_, entrance, client)
-        .play(scenario, is_expected_to_fail(scenario, Role::client));
+    Listener listener = channel.listen();
+    Entrance entrance(channel, scenario, listener);
+    return ClientReplay(comparison_for(channel), deviations_, entrance, client)
+        .play(scenario, is_expected_to_fail(scenario, Role::client, channel));
   }
 
   // One fault is enough to know that it still does.
-  [[nodiscard]] bool is_expected_to_fail(const Scenario& scenario, Role role) const {
-    return expected_.find(run_of(scenario, role), whole_run) != nullptr;
+  [[nodiscard]] bool is_expected_to_fail(const Scenario& scenario, Role role,
+                                         const Channel& channel) const {
+    return expected_.find(run_of(scenario, role, channel.name()), whole_run) != nullptr;
   }
 
-  Result serve_malformed(int version) {
+  Result serve_malformed(int version, Channel& channel) const {
     const Scenario* scenario = captures_.find("connect", "v" + std::to_string(version));
     if (scenario == nullptr) throw std::runtime_error("no scenario connect to connect with");
-    channel_->renew();
     Runner runner(options_.runner, "serve");
     const Json started =
-        runner.order(serve_request(captures_, *scenario, channel_->settings(scenario->service)));
-    return check_malformed(captures_, version, deviations_, connect_to(*scenario, started));
+        runner.order(serve_request(captures_, *scenario, channel.settings(scenario->service)));
+    return check_malformed(captures_, version, deviations_,
+                           connect_to(*scenario, channel, started));
   }
 
   void reset_foreign_service(const std::string& scenario, const std::string& version) {
@@ -240,15 +242,20 @@ class Suite {
     }
   }
 
+  // One after the other: there is one service, or one client.
+  void add(const Run& run, const std::function<Result()>& play) {
+    report_.add(result_of(run, play));
+  }
+
   void play_foreign_service() {
-    channel_ = std::make_unique<Channel>("tcp");
+    Channel channel("tcp");
     const Address& address = *options_.connect;
     const auto connect_as = [&](const Scenario& scenario) -> Connect {
-      return {channel_->name(),
-              [&] { return channel_->connect(scenario, address.host, address.port); }};
+      return {channel.name(),
+              [&] { return channel.connect(scenario, address.host, address.port); }};
     };
     for_each_scenario([&](const Scenario& scenario) {
-      add(run_of(scenario, Role::service), [&] {
+      add(run_of(scenario, Role::service, channel.name()), [&] {
         reset_foreign_service(scenario.name, scenario.version);
         ServiceReplay replay(comparison_, deviations_, connect_as(scenario),
                              [](const std::string& service) {
@@ -260,7 +267,7 @@ class Suite {
     for (const int version : versions_of_malformed()) {
       const std::string name = "v" + std::to_string(version);
       if (!is_wanted("malformed")) continue;
-      add({"malformed", name, Role::service, channel_->name()}, [&] {
+      add({"malformed", name, Role::service, channel.name()}, [&] {
         const Scenario* const scenario = captures_.find("connect", name);
         if (scenario == nullptr) throw std::runtime_error("no scenario connect to connect with");
         reset_foreign_service("malformed", name);
@@ -270,13 +277,13 @@ class Suite {
   }
 
   void play_foreign_client() {
-    channel_ = std::make_unique<Channel>("tcp");
+    Channel channel("tcp");
     Listener listener(*options_.listen, true);
     for_each_scenario([&](const Scenario& scenario) {
       if (scenario.hand_made) return;
-      add(run_of(scenario, Role::client), [&] {
+      add(run_of(scenario, Role::client, channel.name()), [&] {
         ForeignClient client;
-        Entrance entrance(*channel_, scenario, listener);
+        Entrance entrance(channel, scenario, listener);
         return ClientReplay(comparison_, deviations_, entrance, client).play(scenario);
       });
     });
@@ -285,10 +292,10 @@ class Suite {
   const Options& options_;
   Captures captures_;
   Comparison comparison_;
+  Comparison elsewhere_;  // with other URLs than the recorded ones
   ExpectedFailures expected_;
   Deviations deviations_;
   Report report_;
-  std::unique_ptr<Channel> channel_;  // over which is played now
 };
 
 }  // namespace

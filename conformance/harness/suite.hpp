@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -23,6 +24,7 @@ struct Options {
   std::vector<std::string> runner;  ///< command of the language's runner
   std::optional<Address> connect;   ///< a foreign service
   std::vector<std::string> channels{"tcp"};
+  std::size_t jobs = 1;       ///< how many scenarios are played with a runner at once
   std::vector<Role> roles;    ///< those the language has; empty for all
   std::string before;         ///< shell command that resets it before a scenario
   std::optional<int> listen;  ///< port for a foreign client
