@@ -1,25 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/fuzz/codec_fuzz.hpp"
 
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <span>
 #include <vector>
 
 #include "rr/message_tree.hpp"
 #include "rr/reader.hpp"
+#include "runtime/cpp/fuzz/promise.hpp"
 
 namespace rr {
 namespace {
 
 using Bytes = std::vector<std::byte>;
-
-void promise(bool kept, const char* what) {
-  if (kept) return;
-  std::fprintf(stderr, "broken: %s\n", what);
-  std::abort();
-}
+using fuzz::promise;
 
 void walk(Decoder& decoder, std::span<const std::byte> bytes, std::uint32_t count) {
   ElementReader reader(decoder, bytes, count);

@@ -26,7 +26,6 @@ using testing::LineFaults;
 using testing::UdpProxy;
 
 TEST(StateFrame, StandsAsItIsDescribed) {
-  EXPECT_EQ(crc32(std::as_bytes(std::span("123456789", 9))), 0xCBF43926U);
   StateOutput output(arm_layout(), 0x1122);
   const ArmPod pod{.mode = 9};
   (void)output.make(&pod, 1ns);

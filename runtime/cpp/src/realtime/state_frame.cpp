@@ -4,22 +4,13 @@
 #include <array>
 #include <concepts>
 
+#include "rr/crc32.hpp"
+
 namespace rr::realtime {
 namespace {
 
 constexpr std::array magic{std::byte{'R'}, std::byte{'R'}, std::byte{'S'}, std::byte{'F'}};
 constexpr std::uint16_t version = 1;
-
-constexpr std::array<std::uint32_t, 256> make_crc_table() {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t i = 0; i < 256; ++i) {
-    std::uint32_t value = i;
-    for (int bit = 0; bit < 8; ++bit) value = (value >> 1U) ^ ((value & 1U) * 0xEDB88320U);
-    table[i] = value;
-  }
-  return table;
-}
-constexpr auto crc_table = make_crc_table();
 
 template <std::unsigned_integral Number>
 void put(std::span<std::byte> bytes, std::size_t place, Number number) {
@@ -39,14 +30,6 @@ Number get(std::span<const std::byte> bytes, std::size_t place) {
 }
 
 }  // namespace
-
-std::uint32_t crc32(std::span<const std::byte> bytes) {
-  std::uint32_t value = 0xFFFFFFFFU;
-  for (const std::byte byte : bytes) {
-    value = (value >> 8U) ^ crc_table[(value ^ std::to_integer<std::uint32_t>(byte)) & 0xFFU];
-  }
-  return ~value;
-}
 
 void seal_frame(const FrameHeader& header, std::span<std::byte> frame) {
   const std::size_t end = frame.size() - 4;

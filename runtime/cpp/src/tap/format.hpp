@@ -58,9 +58,7 @@ std::array<std::byte, RecordHeader::size> bytes_of(const RecordHeader& header);
 bool read(std::span<const std::byte> bytes, FileHeader& header);
 void read(std::span<const std::byte> bytes, RecordHeader& header);
 
-/// CRC-32 (the polynomial of IEEE 802.3, reflected), going on from `sum`.
-std::uint32_t checksum(std::span<const std::byte> bytes, std::uint32_t sum = 0);
-/// That of a record, over its header without the sum, then its body.
+/// The CRC-32 of a record, over its header without the sum, then its body.
 std::uint32_t record_sum(std::span<const std::byte> record);
 
 /// Collects the body of a record.

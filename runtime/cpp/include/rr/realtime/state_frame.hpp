@@ -34,9 +34,6 @@ inline constexpr std::size_t frame_header_size = 40;
 inline constexpr std::size_t frame_overhead = frame_header_size + 4;
 inline constexpr std::size_t largest_frame = largest_payload + frame_overhead;
 
-/// CRC-32 with the polynomial 0x04C11DB7, reflected, from and to all ones.
-[[nodiscard]] std::uint32_t crc32(std::span<const std::byte> bytes);
-
 /// Writes header and checksum around the payload, which stands at frame_header_size already.
 /// `frame` is as large as payload and frame_overhead. Allocates nothing.
 void seal_frame(const FrameHeader& header, std::span<std::byte> frame);
