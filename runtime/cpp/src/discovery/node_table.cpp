@@ -78,10 +78,14 @@ std::vector<KnownNode> NodeTable::clear() {
 
 KnownNode NodeTable::describe(const NodeId& id, const Row& row) {
   KnownNode known{{id, row.name, {}}, row.nonce, row.sender};
-  std::vector<HeardUrl> urls = row.urls;
-  std::stable_sort(urls.begin(), urls.end(),
-                   [](const HeardUrl& a, const HeardUrl& b) { return a.heard > b.heard; });
-  for (HeardUrl& url : urls) known.node.urls.push_back(std::move(url.url));
+  std::vector<const HeardUrl*> urls;
+  for (const HeardUrl& url : row.urls) urls.push_back(&url);
+  // Not std::stable_sort, which clang finds deprecated inside of this library's: those heard at the
+  // same time stay in their order.
+  std::sort(urls.begin(), urls.end(), [](const HeardUrl* a, const HeardUrl* b) {
+    return a->heard != b->heard ? a->heard > b->heard : a < b;
+  });
+  for (const HeardUrl* url : urls) known.node.urls.push_back(url->url);
   return known;
 }
 
