@@ -12,18 +12,9 @@ classdef RobotRaconteurMemory < handle
       obj.rr_object = object;
       obj.rr_name = name;
     end
-    function varargout = size(obj, dimension)
+    function varargout = size(obj, varargin)
       dims = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
-      dims(end + 1:2) = 1;
-      if nargin == 2
-        dims(end + 1:dimension) = 1;
-        varargout = {dims(dimension)};
-      elseif nargout < 2
-        varargout = {dims};
-      else
-        dims(end + 1:nargout) = 1;
-        varargout = num2cell([dims(1:nargout - 1), prod(dims(nargout:end))]);
-      end
+      varargout = rr_sizes(dims, max(nargout, 1), varargin{:});
     end
     function count = numel(obj, varargin)
       % Octave asks this for each index, where it means one result.
@@ -65,12 +56,12 @@ classdef RobotRaconteurMemory < handle
         obj = builtin('subsasgn', obj, s, items);
         return
       end
-      dims = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
+      [dims, has_dims] = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
       [first, count, picked] = rr_memory_ranges(s(1), dims);
       if numel(s) > 1 || any(~cellfun(@isempty, picked))
         error('RobotRaconteur:InvalidArgument', 'a memory is written without gaps');
       end
-      items = rr_memory_shape(items, count);
+      items = rr_memory_shape(items, count, has_dims);
       if prod(count) ~= 0
         rrmex('memory_write', obj.rr_object.rr_h, obj.rr_name, first - 1, items);
       end
