@@ -321,10 +321,8 @@ Value any_from_mex(const mxArray* given, const ReadContext& context) {
   if (!mxIsClass(given, "RobotRaconteurVarValue")) {
     return plain_value(given, [&](const mxArray* item) { return any_from_mex(item, context); });
   }
-  const mxArray* const data = mxGetProperty(given, 0, "data");
-  const mxArray* const type = mxGetProperty(given, 0, "datatype");
-  if (data == nullptr || type == nullptr) throw Misfit("a RobotRaconteurVarValue without data");
-  const std::string text = read_text(type);
+  const OwnedArray data = read_property(given, "data");
+  const std::string text = read_text(read_property(given, "datatype").get());
   if (text == "null" || text == "void") return {};
   const TypePlan* plan = nullptr;
   try {
@@ -332,7 +330,7 @@ Value any_from_mex(const mxArray* given, const ReadContext& context) {
   } catch (const Error& error) {
     throw Misfit(error.message());
   }
-  const Value value = from_mex(data, *plan, context);
+  const Value value = from_mex(data.get(), *plan, context);
   try {
     return plan->type.convert(value);
   } catch (const Error& error) {

@@ -146,6 +146,8 @@
 %!   check('m_bool', shaped(dims{1}, ones(1, count)), shaped(dims{1}, true(count, 1)));
 %!   check('m_cdouble', shaped(dims{1}, 1:count), shaped(dims{1}, complex(1:count, 0)));
 %! end
+%! huge = [4294967295 4294967295 4294967295 0];
+%! check('m_single', shaped(huge, []), shaped(huge, single([])));
 %! check('l_grid', {shaped([1 2 1], [5 6]), [1 2]}, {shaped([1 2 1], single([5 6])); single([1 2])});
 %! check('s_grid', struct('a', shaped(2, [5 6])), ...
 %!       containers.Map({'a'}, {shaped(2, single([5 6]))}, 'UniformValues', false));
@@ -402,3 +404,18 @@
 %! refused('any', RobotRaconteurVarValue(5, 'no.Type'), 'member any: no type: `no.Type`');
 %! refused('any', RobotRaconteurVarValue('x', 'int16'), 'member any: expected int16, got char');
 %! refused('any', @sin, 'member any: expected varvalue, got function_handle');
+
+%!function size = resident()
+%!  size = str2double(regexp(fileread('/proc/self/status'), 'VmRSS:\s+(\d+)', 'tokens'){1}{1}) / 1024;
+%!endfunction
+
+%!test % what objects of the toolbox's classes hold is let go of
+%! c = bench();
+%! for i = 1:60
+%!   if i == 10
+%!     before = resident();
+%!   end
+%!   c.m_single = RobotRaconteurMultiDimArray([2^18 1 1], i * ones(2^18, 1, 'single'));
+%!   c.any = RobotRaconteurVarValue(i * ones(2^17, 1), 'double[]');
+%! end
+%! assert(resident() - before < 40);

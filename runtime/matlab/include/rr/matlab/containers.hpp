@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -37,6 +38,20 @@ inline mxArray* call_function(const char* name, std::vector<mxArray*> arguments)
       mexCallMATLABWithTrap(1, &result, static_cast<int>(arguments.size()), arguments.data(), name);
   if (failure == nullptr && result != nullptr) return result;
   throw Misfit(std::string("the interpreter's function `") + name + "` has failed");
+}
+
+/// An array that is ours to destroy.
+struct ArrayDeleter {
+  void operator()(mxArray* array) const { mxDestroyArray(array); }
+};
+using OwnedArray = std::unique_ptr<mxArray, ArrayDeleter>;
+
+/// A property of an object of a class: a copy that the interpreter does not take back itself.
+/// Throws Misfit when there is none.
+inline OwnedArray read_property(const mxArray* object, const char* name) {
+  OwnedArray property(mxGetProperty(object, 0, name));
+  if (property) return property;
+  throw Misfit(std::string("a ") + mxGetClassName(object) + " without `" + name + "`");
 }
 
 /// The cells of a row or column. Throws Misfit.

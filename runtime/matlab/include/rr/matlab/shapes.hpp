@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "rr/matlab/containers.hpp"
@@ -63,6 +64,7 @@ inline mxArray* make_shaped(std::span<const std::uint32_t> dims, mxArray* array,
 struct Shaped {
   WireDims dims;
   const mxArray* array;
+  OwnedArray owned;  ///< what `array` is, unless it is the given value's
 };
 
 /// Whether records with these fields look like the struct that stands for an array with its sizes.
@@ -77,14 +79,13 @@ inline bool looks_shaped(std::span<const char* const> fields) {
 /// if `may_be_struct`, which it is not where it may be one of the items. Throws Misfit for one
 /// whose sizes are none.
 inline std::optional<Shaped> read_shaped(const mxArray* given, bool may_be_struct = true) {
-  const auto taken_apart = [](const mxArray* dims, const mxArray* array) {
-    return Shaped{in_field("dims", [&] { return read_vector<std::uint32_t>(dims); }), array};
+  const auto read_dims = [](const mxArray* dims) {
+    return in_field("dims", [&] { return read_vector<std::uint32_t>(dims); });
   };
   if (mxIsClass(given, shaped_class)) {
-    const mxArray* const dims = mxGetProperty(given, 0, "dims");
-    const mxArray* const array = mxGetProperty(given, 0, "array");
-    if (dims == nullptr || array == nullptr) throw Misfit("an array of sizes without items");
-    return taken_apart(dims, array);
+    OwnedArray array = read_property(given, "array");
+    const mxArray* const items = array.get();
+    return Shaped{read_dims(read_property(given, "dims").get()), items, std::move(array)};
   }
   if (!may_be_struct || !mxIsStruct(given) || count_of(given) != 1) return std::nullopt;
   std::vector<const char*> fields;
@@ -92,7 +93,7 @@ inline std::optional<Shaped> read_shaped(const mxArray* given, bool may_be_struc
     fields.push_back(mxGetFieldNameByNumber(given, i));
   }
   if (!looks_shaped(fields)) return std::nullopt;
-  return taken_apart(read_field(given, "dims"), read_field(given, "array"));
+  return Shaped{read_dims(read_field(given, "dims")), read_field(given, "array"), nullptr};
 }
 
 }  // namespace rr::matlab
