@@ -10,7 +10,7 @@ using dynamic::Value;
 // Positions and counts.
 Memory::Numbers numbers_of(const mxArray* given) { return read_vector<std::uint64_t>(given); }
 
-// memory_dims(object, name): a row of sizes; whether its items come with their dims
+// memory_dims(object, name): a row of sizes
 void dims(Runtime& runtime, Call& call) {
   const auto object = object_of(runtime, call);
   const Resolved& member = object->resolve(call.text(1));
@@ -18,7 +18,6 @@ void dims(Runtime& runtime, Call& call) {
   const Memory::Numbers sizes = runtime.call_directly([&] { return memory.dims(); });
   std::vector<double> row(sizes.begin(), sizes.end());
   call.give(make_numbers<double>(row, {1, static_cast<mwSize>(row.size())}));
-  call.give(mxCreateLogicalScalar(member.plan->has_dims));
 }
 
 // memory_read(object, name, position, count): array; positions count from 0

@@ -140,11 +140,12 @@ Value shaped_from_mex(const Shaped& shaped, const TypePlan& plan, const ReadCont
 
 Value array_from_mex(const mxArray* given, const TypePlan& plan, const ReadContext& context) {
   const bool is_of_records = plan.item != nullptr && plan.item->kind == Kind::record;
-  if (plan.has_dims) {
-    const bool may_be_struct = !is_of_records || !looks_shaped(plan.item->name_pointers);
-    if (const auto shaped = read_shaped(given, may_be_struct)) {
-      return shaped_from_mex(*shaped, plan, context);
-    }
+  const bool may_be_struct =
+      plan.has_dims && (!is_of_records || !looks_shaped(plan.item->name_pointers));
+  if (const auto shaped = read_shaped(given, may_be_struct)) {
+    if (plan.has_dims) return shaped_from_mex(*shaped, plan, context);
+    if (shaped->dims.size() > 1) refuse(given, plan);
+    return array_from_mex(shaped->array, plan, context);
   }
   if (is_of_records && !is_numeric(given)) return record_array_from_mex(given, plan, context);
   if (is_of_records && !plan.item->is_namedarray()) {

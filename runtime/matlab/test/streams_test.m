@@ -175,6 +175,17 @@
 %! assert(size(p(:)), [3 5]);
 %! r = c.records;
 %! assert(r(2).sequence, uint32(2));
+%! p(4) = [7; 8; 9];
+%! assert(p(3:4), [2 7; 4 8; 6 9]);
+
+%!test
+%! m = bench().path;
+%! try
+%!   m(1:2) = 1:5;
+%!   error('not thrown');
+%! catch err
+%!   assert(err.message, 'expected 2 items, got 5');
+%! end
 
 %!error id=RobotRaconteur:OutOfRange bench().line(11)
 %!error <index 1 of the memory goes from 1 to 10> bench().line(0)

@@ -157,6 +157,8 @@
 %! check('any', RobotRaconteurVarValue(shaped(2, [5 6]), 'int16[*]'), ...
 %!       RobotRaconteurVarValue(shaped(2, int16([5 6])), 'int16[*]'));
 %! check('m_fixed', shaped([2 3], 1:6), int32([1 3 5; 2 4 6]));
+%! check('a_double', shaped(2, [5 6]), [5; 6]);
+%! refused('a_double', shaped([2 1], [5 6]), 'member a_double: expected double[], got RobotRaconteurMultiDimArray');
 %! refused('m_fixed', shaped([2 3 1], 1:6), 'member m_fixed: expected int32[2,3], got 2x3x1');
 %! refused('m_single', struct('dims', [2 2 1], 'array', 1:3), 'member m_single: expected 4 items, got 3');
 %! refused('point_grid', struct('dims', [], 'array', 1:3), 'member point_grid: expected 0 items for dims , got 1');

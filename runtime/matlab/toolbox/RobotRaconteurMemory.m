@@ -12,9 +12,13 @@ classdef RobotRaconteurMemory < handle
       obj.rr_object = object;
       obj.rr_name = name;
     end
-    function varargout = size(obj, varargin)
+    function varargout = size(obj, dimension)
       dims = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
-      varargout = rr_sizes(dims, max(nargout, 1), varargin{:});
+      if nargin == 2
+        varargout = rr_sizes(dims, 1, dimension);
+      else
+        varargout = rr_sizes(dims, max(nargout, 1));
+      end
     end
     function count = numel(obj, varargin)
       % Octave asks this for each index, where it means one result.
@@ -56,12 +60,12 @@ classdef RobotRaconteurMemory < handle
         obj = builtin('subsasgn', obj, s, items);
         return
       end
-      [dims, has_dims] = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
+      dims = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
       [first, count, picked] = rr_memory_ranges(s(1), dims);
       if numel(s) > 1 || any(~cellfun(@isempty, picked))
         error('RobotRaconteur:InvalidArgument', 'a memory is written without gaps');
       end
-      items = rr_memory_shape(items, count, has_dims);
+      items = rr_memory_shape(items, count);
       if prod(count) ~= 0
         rrmex('memory_write', obj.rr_object.rr_h, obj.rr_name, first - 1, items);
       end
