@@ -218,6 +218,8 @@
 %! assert([h w], [2 12]);
 %! assert({numel(a), ndims(a), length(a), rows(a), columns(a)}, {6, 3, 3, 2, 3});
 %! assert({isempty(a), isempty(shaped([], []))}, {false, true});
+%! assert({size(shaped([], [])), size(shaped([], zeros(3, 0), 3)), size(shaped(0, []))}, {[0 0], [3 0], [0 1]});
+%! assert(isequal(shaped([], []), []));
 %! assert({isnumeric(a), isfloat(a), islogical(a), isreal(a)}, {true, true, false, true});
 %! assert(a(:, :, 1), [1 3 5; 2 4 6]);
 %! assert({a(2, 3), a(2, 3, 1), a(end), a(end, 1), a(end, end, end)}, {6, 6, 6, 2, 6});
@@ -243,6 +245,7 @@
 %! assert(~isempty(strfind(evalc('b'), '3x1 double')));
 %! c = bench();
 %! c.m_single = a;
+%! assert(~isempty(strfind(evalc('disp(c)'), 'm_single = [1 3 5 7;2 40 6 8]')));
 %! c.m_single(1, 1) = 9;
 %! assert(c.m_single(1), single(9));
 %! assert(c.m_single.dims, [2 4 1]);

@@ -202,11 +202,11 @@ classdef RobotRaconteurMultiDimArray
   methods (Access = private)
     function sizes = rr_all_sizes(obj)
       sizes = obj.dims;
-      if isempty(sizes)
-        sizes = 0;
-      end
       if obj.rr_numbers ~= 0
         sizes = [obj.rr_numbers, sizes];
+      end
+      if isempty(obj.dims)
+        sizes(end + 1:2) = 0;  % as []
       end
       sizes(end + 1:2) = 1;
     end
