@@ -252,6 +252,9 @@
 
 %!error <expected 4 items, got 3> RobotRaconteurMultiDimArray([2 2], 1:3)
 %!error id=RobotRaconteur:InvalidArgument RobotRaconteurMultiDimArray([2 2])
+%!error <make a new>
+%! a = RobotRaconteurMultiDimArray([1 1 1], 5);
+%! a.dims = [3 1];
 
 %!test % lists are columns of cells
 %! check('l_double', {1, int8(2)}, {1; 2});
@@ -309,10 +312,25 @@
 %! remove(m, '');
 %! assert(keys(m), {'b'});
 %! assert(~isempty(strfind(evalc('m'), 'RobotRaconteurMap')));
+%! assert(isequal(m, RobotRaconteurMap('b', int32(2))));
+%! assert(~isequal(m, RobotRaconteurMap('b', int32(3))));
 %! m('') = 3;
 %! other = m;
 %! other('') = 4;
 %! assert(m(''), 4);
+
+%!test % keys of all kinds
+%! c = bench();
+%! for more = {{}, {''}}
+%!   all = [{' ', 'a ', "a\0", "\n", char([255 254]), "\0", '1', 'for', 'a', 'A', repmat('x', 1, 300)}, more{1}];
+%!   c.s_int32 = RobotRaconteurMap(all, num2cell(1:numel(all)));
+%!   c.s_int32 = c.s_int32;
+%!   m = c.s_int32;
+%!   assert(numel(keys(m)), numel(all));
+%!   for i = 1:numel(all)
+%!     assert(m(all{i}), int32(i));
+%!   end
+%! end
 
 %!error <does not exist> RobotRaconteurMap({'a'}, {1})('')
 %!error id=RobotRaconteur:InvalidArgument RobotRaconteurMap({'a'}, {1})(5)

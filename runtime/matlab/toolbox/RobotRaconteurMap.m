@@ -99,6 +99,10 @@ classdef RobotRaconteurMap < handle
       end
       obj.rr_items(key) = value;
     end
+    function answer = isequal(a, b)
+      %ISEQUAL The same keys and values.
+      answer = rr_isequal(a, b);
+    end
     function disp(obj)
       fprintf('  RobotRaconteurMap with %d keys\n', obj.rr_items.Count);
     end

@@ -95,8 +95,8 @@ classdef RobotRaconteurMultiDimArray
     end
     function obj = subsasgn(obj, s, items)
       if strcmp(s(1).type, '.')
-        obj = builtin('subsasgn', obj, s, items);
-        return
+        error('RobotRaconteur:InvalidOperation', ...
+              'sizes and items fit each other: make a new RobotRaconteurMultiDimArray');
       end
       changed = subsasgn(to_array(obj), s, rr_plain(items));
       sizes = size(changed);
