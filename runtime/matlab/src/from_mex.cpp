@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rr/error.hpp"
+#include "rr/matlab/shapes.hpp"
 #include "runtime/matlab/src/number_types.hpp"
 #include "runtime/matlab/src/values.hpp"
 
@@ -51,20 +52,24 @@ Value numbers_from_mex(const mxArray* given, ElementType number, bool has_dims, 
   });
 }
 
-// struct('dims', [...], 'array', [...]), for shapes that the interpreter has not: one dimension,
-// ones at the end.
-bool is_shaped(const mxArray* given) {
-  return mxIsStruct(given) && count_of(given) == 1 && mxGetNumberOfFields(given) == 2 &&
-         mxGetFieldNumber(given, "dims") >= 0 && mxGetFieldNumber(given, "array") >= 0;
+// The items of `shaped`, with its sizes before the one of the numbers of a namedarray, if it is of
+// such.
+template <class T>
+Value shaped_items(const Shaped& shaped, std::size_t numbers = 0) {
+  WireDims dims = shaped.dims;
+  if (numbers != 0) dims.insert(dims.begin(), static_cast<std::uint32_t>(numbers));
+  Array<T> items = in_field("array", [&] { return items_of<T>(shaped.array); });
+  const std::size_t count = item_count_of(dims);
+  if (items.size() != count) {
+    throw Misfit("expected " + std::to_string(count) + " items, got " +
+                 std::to_string(items.size()));
+  }
+  return MultiArray<T>{std::move(dims), std::move(items)};
 }
 
-Value shaped_from_mex(const mxArray* given, ElementType number) {
-  const auto dims =
-      in_field("dims", [&] { return read_vector<std::uint32_t>(read_field(given, "dims")); });
-  const mxArray* const array = read_field(given, "array");
-  return with_number(number, [&]<class T>(std::type_identity<T>) {
-    return Value(MultiArray<T>{dims, in_field("array", [&] { return items_of<T>(array); })});
-  });
+Value shaped_numbers(const Shaped& shaped, ElementType number, std::size_t numbers = 0) {
+  return with_number(
+      number, [&]<class T>(std::type_identity<T>) { return shaped_items<T>(shaped, numbers); });
 }
 
 Value record_from_mex(const mxArray* given, std::size_t index, const TypePlan& plan,
@@ -107,32 +112,46 @@ List records_from_mex(const mxArray* given, const TypePlan& item, const ReadCont
   return records;
 }
 
-// Pods: struct arrays, or cells of structs. With dims, the runtime wants them as {dims, array}.
+// With dims, the runtime wants records as {dims, array}.
+Value with_dims(const WireDims& dims, List&& records) {
+  return StringMap{{"dims", Value(Array<std::uint32_t>(dims))}, {"array", std::move(records)}};
+}
+
+// Structs, or cells of them.
 Value record_array_from_mex(const mxArray* given, const TypePlan& plan,
                             const ReadContext& context) {
-  const bool has_records = mxIsStruct(given) || mxIsCell(given);
-  if (!has_records) refuse(given, plan);
-  if (!plan.has_dims) {
-    if (!is_vector(given)) refuse(given, plan);
-    return records_from_mex(given, *plan.item, context);
+  if (!mxIsStruct(given) && !mxIsCell(given)) refuse(given, plan);
+  if (!plan.has_dims && !is_vector(given)) refuse(given, plan);
+  List records = records_from_mex(given, *plan.item, context);
+  if (!plan.has_dims) return records;
+  return with_dims(wire_dims(given, plan.rank), std::move(records));
+}
+
+Value shaped_from_mex(const Shaped& shaped, const TypePlan& plan, const ReadContext& context) {
+  const bool is_of_records = plan.item != nullptr && plan.item->kind == Kind::record;
+  if (!is_of_records) return shaped_numbers(shaped, plan.number);
+  if (count_of(shaped.array) == 0) return with_dims(shaped.dims, {});
+  if (plan.item->is_namedarray() && is_numeric(shaped.array)) {
+    return shaped_numbers(shaped, plan.item->number, plan.item->numbers);
   }
-  const bool is_given_shaped = is_shaped(given);
-  const mxArray* const items = is_given_shaped ? read_field(given, "array") : given;
-  if (!mxIsStruct(items) && !mxIsCell(items)) refuse(items, plan);
-  const auto dims = is_given_shaped ? read_vector<std::uint32_t>(read_field(given, "dims"))
-                                    : wire_dims(given, plan.rank);
-  return StringMap{{"dims", Value(Array<std::uint32_t>(dims))},
-                   {"array", records_from_mex(items, *plan.item, context)}};
+  if (!mxIsStruct(shaped.array) && !mxIsCell(shaped.array)) refuse(shaped.array, plan);
+  return with_dims(shaped.dims, records_from_mex(shaped.array, *plan.item, context));
 }
 
 Value array_from_mex(const mxArray* given, const TypePlan& plan, const ReadContext& context) {
   const bool is_of_records = plan.item != nullptr && plan.item->kind == Kind::record;
+  const bool may_be_struct =
+      plan.has_dims && (!is_of_records || !looks_shaped(plan.item->name_pointers));
+  if (const auto shaped = read_shaped(given, may_be_struct)) {
+    if (plan.has_dims) return shaped_from_mex(*shaped, plan, context);
+    if (shaped->dims.size() > 1) refuse(given, plan);
+    return array_from_mex(shaped->array, plan, context);
+  }
   if (is_of_records && !is_numeric(given)) return record_array_from_mex(given, plan, context);
   if (is_of_records && !plan.item->is_namedarray()) {
     if (count_of(given) == 0) return Value(List());
     refuse(given, plan);
   }
-  if (plan.has_dims && is_shaped(given)) return shaped_from_mex(given, plan.number);
   if (!is_numeric(given)) refuse(given, plan);
   if (is_of_records) {  // one more dimension, the first, for the numbers of each
     if (count_of(given) == 0 && !plan.has_dims) return Value(List());
@@ -201,31 +220,43 @@ Value enum_from_mex(const mxArray* given, const TypePlan& plan) {
   return read_number<std::int32_t>(given);
 }
 
-// Numbers, by their class: one is a number, a row or column an array, everything else has dims.
-Value plain_numbers(const mxArray* given) {
+// Calls `use` with std::type_identity of the C++ type that the class of these numbers means.
+template <class Use>
+Value with_numbers(const mxArray* given, const Use& use) {
   Value value;
   with_class(given, [&]<class T>(const T*) {
-    const auto read = [&]<class N>(std::type_identity<N>) {
-      if (count_of(given) == 1) {
-        value = read_number<N>(given);
-      } else if (is_vector(given)) {
-        value = items_of<N>(given);
-      } else {
-        value = MultiArray<N>{wire_dims(given, 0), items_of<N>(given)};
-      }
-    };
     if constexpr (std::is_floating_point_v<T>) {
-      if (mxIsComplex(given)) return read(std::type_identity<std::complex<T>>());
+      if (mxIsComplex(given)) {
+        value = use(std::type_identity<std::complex<T>>());
+        return;
+      }
     }
-    read(std::type_identity<T>());
+    value = use(std::type_identity<T>());
   });
   return value;
+}
+
+// Numbers, by their class: one is a number, a row or column an array, everything else has dims.
+Value plain_numbers(const mxArray* given) {
+  return with_numbers(given, [&]<class N>(std::type_identity<N>) -> Value {
+    if (count_of(given) == 1) return read_number<N>(given);
+    if (is_vector(given)) return items_of<N>(given);
+    return MultiArray<N>{wire_dims(given, 0), items_of<N>(given)};
+  });
+}
+
+Value plain_shaped(const mxArray* given) {
+  const Shaped shaped = *read_shaped(given);
+  if (!is_numeric(shaped.array)) throw Misfit("expected varvalue, got " + described(shaped.array));
+  return with_numbers(shaped.array,
+                      [&]<class N>(std::type_identity<N>) { return shaped_items<N>(shaped); });
 }
 
 template <class Convert>
 Value plain_value(const mxArray* given, const Convert& convert) {
   if (is_null(given)) return {};
   if (is_numeric(given)) return plain_numbers(given);
+  if (mxIsClass(given, shaped_class)) return plain_shaped(given);
   if (mxIsChar(given) || mxIsClass(given, "string")) return read_text(given);
   if (mxIsCell(given)) {
     List items;
@@ -291,10 +322,8 @@ Value any_from_mex(const mxArray* given, const ReadContext& context) {
   if (!mxIsClass(given, "RobotRaconteurVarValue")) {
     return plain_value(given, [&](const mxArray* item) { return any_from_mex(item, context); });
   }
-  const mxArray* const data = mxGetProperty(given, 0, "data");
-  const mxArray* const type = mxGetProperty(given, 0, "datatype");
-  if (data == nullptr || type == nullptr) throw Misfit("a RobotRaconteurVarValue without data");
-  const std::string text = read_text(type);
+  const OwnedArray data = read_property(given, "data");
+  const std::string text = read_text(read_property(given, "datatype").get());
   if (text == "null" || text == "void") return {};
   const TypePlan* plan = nullptr;
   try {
@@ -302,7 +331,7 @@ Value any_from_mex(const mxArray* given, const ReadContext& context) {
   } catch (const Error& error) {
     throw Misfit(error.message());
   }
-  const Value value = from_mex(data, *plan, context);
+  const Value value = from_mex(data.get(), *plan, context);
   try {
     return plan->type.convert(value);
   } catch (const Error& error) {

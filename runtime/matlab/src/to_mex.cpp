@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "rr/matlab/shapes.hpp"
 #include "runtime/matlab/src/number_types.hpp"
 #include "runtime/matlab/src/values.hpp"
 
@@ -11,12 +12,6 @@ namespace {
 
 using dynamic::Kind;
 using dynamic::Value;
-
-Dims dims_of(const Value& array) {
-  Dims dims;
-  for (const std::uint32_t dim : array.dims()) dims.push_back(static_cast<mwSize>(dim));
-  return full_dims(std::move(dims));
-}
 
 mxArray* number_to_mex(const Value& value) {
   return with_number(value.number_type(),
@@ -67,17 +62,7 @@ mxArray* record_to_mex(const Value& value, const TypePlan& plan, Plans& plans) {
   return record;
 }
 
-mxArray* array_to_mex(const Value& value, const TypePlan& plan, Plans& plans) {
-  Dims dims = dims_of(value);
-  if (plan.item == nullptr || plan.item->kind != Kind::record) {
-    return numbers_to_mex(value, value.number_type(), dims);
-  }
-  const TypePlan& item = *plan.item;
-  if (item.is_namedarray()) {
-    dims.insert(dims.begin(), static_cast<mwSize>(item.numbers));
-    if (!value.has_dims()) dims.pop_back();  // no column of columns
-    return numbers_to_mex(value, item.number, dims);
-  }
+mxArray* records_to_mex(const Value& value, const TypePlan& item, const Dims& dims, Plans& plans) {
   auto names = item.name_pointers;
   mxArray* const records = mxCreateStructArray(static_cast<mwSize>(dims.size()), dims.data(),
                                                static_cast<int>(names.size()), names.data());
@@ -85,6 +70,34 @@ mxArray* array_to_mex(const Value& value, const TypePlan& plan, Plans& plans) {
     fill_record(records, static_cast<mwIndex>(i), value.at(i), item, plans);
   }
   return records;
+}
+
+// The items in an array of these sizes, two at least.
+mxArray* items_to_mex(const Value& value, const TypePlan& plan, const Dims& dims, Plans& plans) {
+  if (plan.item == nullptr || plan.item->kind != Kind::record) {
+    return numbers_to_mex(value, value.number_type(), dims);
+  }
+  if (plan.item->is_namedarray()) return numbers_to_mex(value, plan.item->number, dims);
+  return records_to_mex(value, *plan.item, dims, plans);
+}
+
+// With the numbers of a namedarray as first dimension. Sizes that the definition fixes are not lost
+// where the interpreter changes them.
+mxArray* array_to_mex(const Value& value, const TypePlan& plan, Plans& plans) {
+  const bool is_of_namedarrays = plan.item != nullptr && plan.item->is_namedarray();
+  const std::size_t numbers = is_of_namedarrays ? plan.item->numbers : 0;
+  const auto whole = [&](Dims dims) {
+    if (is_of_namedarrays) dims.insert(dims.begin(), static_cast<mwSize>(numbers));
+    return dims;
+  };
+  const Dims column = full_dims(whole({static_cast<mwSize>(value.size())}));
+  if (!value.has_dims()) return items_to_mex(value, plan, column, plans);
+  const WireDims wire_dims = value.dims();
+  const Dims dims = whole({wire_dims.begin(), wire_dims.end()});
+  if (plan.rank != 0 || keeps_dims(dims)) {
+    return items_to_mex(value, plan, full_dims(dims), plans);
+  }
+  return make_shaped(wire_dims, items_to_mex(value, plan, column, plans), numbers);
 }
 
 mxArray* list_to_mex(const Value& value, const TypePlan& plan, Plans& plans) {

@@ -68,6 +68,19 @@
 %! assert(experimental.bench.Vector3('x', 1, 'y', 2, 'z', 3), [1; 2; 3]);
 %! assert(experimental.bench.Vector3([4 5 6]), [4; 5; 6]);
 
+%!test % values that need classes of their own
+%! s = experimental.bench.Shapes('picture', struct('dims', [2 3 1], 'array', 1:6), 'gain', 1, ...
+%!   'limits', RobotRaconteurMap('', 5));
+%! assert(rr_isequal(s.picture, RobotRaconteurMultiDimArray([2 3 1], uint8(1:6))));
+%! assert(iscomplex(s.gain));
+%! assert(s.limits(''), 5);
+%! c = bench();
+%! c.shapes = s;
+%! assert(rr_isequal(c.shapes, s));
+%! c.shapes.picture(2, 3) = 60;
+%! assert(c.shapes.picture.dims, [2 3 1]);
+%! assert(c.shapes.picture(end), uint8(60));
+
 %!error <experimental.bench.Report.count: int32 cannot hold 1.5> experimental.bench.Report('count', 1.5)
 %!error id=RobotRaconteur:DataTypeMismatch experimental.bench.Sample('acceleration', [1 2])
 %!error id=RobotRaconteur:DataTypeMismatch experimental.bench.Vector3([1 2])

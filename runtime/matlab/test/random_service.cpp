@@ -20,9 +20,8 @@ struct Boards {
     const std::uint64_t seed = given != nullptr ? std::strtoull(given, nullptr, 10) : 20'260'201;
     for (int i = 0; i < count; ++i) {
       const std::uint64_t own = seed + static_cast<std::uint64_t>(i);
-      rr::dynamic::register_service(
-          node, "board" + std::to_string(i),
-          testing::random_board(testing::RandomDefinition(own), own, {.matlab_only = true}));
+      rr::dynamic::register_service(node, "board" + std::to_string(i),
+                                    testing::random_board(testing::RandomDefinition(own), own));
     }
     port = node.listen_tcp(static_cast<std::uint16_t>(wanted), "127.0.0.1");
   }

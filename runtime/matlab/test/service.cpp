@@ -45,6 +45,13 @@ class Bench final : public bench::BenchDefault {
         std::make_shared<rr::StoredArrayMemory<bench::Vector3>>(rr::Array<bench::Vector3>(5));
     rr_memory_records = std::make_shared<rr::StoredArrayMemory<bench::Sample>>(
         rr::Array<bench::Sample>{bench::Sample{.sequence = 1}, bench::Sample{.sequence = 2}});
+    // Of sizes that arrays in Octave do not keep.
+    rr_memory_strip = std::make_shared<rr::StoredMultiMemory<std::uint8_t>>(
+        rr::MultiArray<std::uint8_t>{{4}, {1, 2, 3, 4}});
+    rr_memory_slab = std::make_shared<rr::StoredMultiMemory<double>>(
+        rr::MultiArray<double>{{2, 3, 1}, {1, 2, 3, 4, 5, 6}});
+    rr_memory_shelf = std::make_shared<rr::StoredMultiMemory<bench::Vector3>>(
+        rr::MultiArray<bench::Vector3>{{2, 1}, rr::Array<bench::Vector3>(2)});
     numbers().on_connect([](rr::PipeEndpoint<double> end) {
       // Sends back the double of what comes.
       end.on_packet([end](double packet) mutable { end.send(2 * packet); }).detach();
@@ -54,6 +61,9 @@ class Bench final : public bench::BenchDefault {
   std::int32_t get_fixed() override { return 17; }
   std::int32_t add(std::int32_t a, std::int32_t b) override { return a + b; }
   void stop() override {}
+  rr::MultiArray<std::uint8_t> same(const rr::MultiArray<std::uint8_t>& picture) override {
+    return picture;
+  }
   void lose_tool(const std::string& where) override {
     throw bench::ToolLost("the tool is lost", "where", rr::VarStringMap{{"place", where}});
   }

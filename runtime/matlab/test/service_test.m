@@ -160,6 +160,13 @@
 %! assert(m(4:5), [4; 5]);
 %! g = c.grid;
 %! assert(g(:, 2:3), int16([2 3; 5 6]));
+%! whole = RobotRaconteurMultiDimArray([2 2 1], int16(1:4));
+%! service.Root.SetMemory('grid', whole);
+%! assert(rr_isequal(service.Root.Memory('grid'), whole));
+%! assert(size(g), [2 2 1]);
+%! g(2, :, 1) = [20 40];
+%! assert(service.Root.Memory('grid').array, int16([1; 20; 3; 40]));
+%! service.Root.SetMemory('grid', [1 2 3; 4 5 6]);
 
 %!test % a struct of function handles
 %! [~, ~, url] = offered();

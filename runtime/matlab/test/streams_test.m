@@ -142,6 +142,30 @@
 %! whole(1:2, 1, 2) = [100; 101];
 %! assert(m(:, :, :), whole);
 
+%!test % memories of sizes that the interpreter does not keep: what is indexed is an array
+%! c = bench();
+%! m = c.slab;
+%! assert(size(m), [2 3 1]);
+%! assert(m(:, :, 1), [1 3 5; 2 4 6]);
+%! assert(m(:, [1 3], 1), [1 5; 2 6]);
+%! assert(m(:), (1:6)');
+%! m(:, 2, 1) = [30; 40];
+%! m(1, 1, 1) = 10;
+%! assert(m(:, :, 1), [10 30 5; 2 40 6]);
+%! whole = RobotRaconteurMultiDimArray([2 3 1], 1:6);
+%! m(:, :, :) = whole;
+%! assert(m(:, :, :), [1 3 5; 2 4 6]);
+%! m = c.strip;
+%! assert(size(m), [4 1]);
+%! m(2:3) = [20 30];
+%! assert(m(:), uint8([1; 20; 30; 4]));
+%! assert(m(end), uint8(4));
+%! m = c.shelf;
+%! assert(size(m), [2 1]);
+%! m(:, 1) = [1 4; 2 5; 3 6];
+%! assert(m(:, 1), [1 4; 2 5; 3 6]);
+%! assert(m(2, 1), [4; 5; 6]);
+
 %!test % memories of pods and namedarrays
 %! c = bench();
 %! p = c.path;
@@ -151,6 +175,17 @@
 %! assert(size(p(:)), [3 5]);
 %! r = c.records;
 %! assert(r(2).sequence, uint32(2));
+%! p(4) = [7; 8; 9];
+%! assert(p(3:4), [2 7; 4 8; 6 9]);
+
+%!test
+%! m = bench().path;
+%! try
+%!   m(1:2) = 1:5;
+%!   error('not thrown');
+%! catch err
+%!   assert(err.message, 'expected 2 items, got 5');
+%! end
 
 %!error id=RobotRaconteur:OutOfRange bench().line(11)
 %!error <index 1 of the memory goes from 1 to 10> bench().line(0)

@@ -9,24 +9,11 @@
 %!endfunction
 
 %!function check(name, given, wanted)
-%!  c = bench();
-%!  c.(name) = given;
-%!  got = c.(name);
-%!  assert(rr_isequal(got, wanted), 'as %s', evalc('display(got)'));
-%!  c.(name) = got;
-%!  assert(rr_isequal(c.(name), wanted));
+%!  rr_check(bench(), name, given, wanted);
 %!endfunction
 
 %!function refused(name, given, text)
-%!  c = bench();
-%!  try
-%!    c.(name) = given;
-%!  catch err
-%!    assert(err.identifier, 'RobotRaconteur:DataTypeMismatch');
-%!    assert(strcmp(err.message, text), 'says %s', err.message);
-%!    return
-%!  end
-%!  error('taken');
+%!  rr_refused(bench(), name, given, text);
 %!endfunction
 
 %!test % numbers: any class that fits
@@ -67,9 +54,15 @@
 %! check('v_cdouble', 1 + 2i, 1 + 2i);
 %! check('v_csingle', single(1 - 2i), single(1 - 2i));
 %! check('a_cdouble', [1i; 2], [1i; 2]);
-%! c = bench();
-%! c.v_cdouble = 3;
-%! assert(c.v_cdouble, 3);
+%! check('v_cdouble', 3, complex(3, 0));
+%! check('v_csingle', 0, complex(single(0), 0));
+%! check('a_cdouble', [1 2], complex([1; 2], 0));
+%! check('a_cdouble', [], complex(zeros(0, 1), 0));
+%! check('m_cdouble', [1 2; 3 4], complex([1 2; 3 4], 0));
+%! check('l_cdouble', {1, 2i}, {complex(1, 0); 2i});
+%! check('s_cdouble', struct('a', 5), containers.Map({'a'}, {complex(5, 0)}, 'UniformValues', false));
+%! check('any', RobotRaconteurVarValue(7, 'cdouble[]'), RobotRaconteurVarValue(complex(7, 0), 'cdouble[]'));
+%! check('v_cdouble', complex(NaN, -Inf), complex(NaN, -Inf));
 
 %!test % strings
 %! check('v_string', 'some text', 'some text');
@@ -108,9 +101,8 @@
 %! check('m_fixed', [1 2 3; 4 5 6], int32([1 2 3; 4 5 6]));
 %! check('m_bool', [true false; false true], [true false; false true]);
 %! refused('m_fixed', eye(2), 'member m_fixed: expected int32[2,3], got 2x2');
-%! c = bench();
-%! c.m_single = struct('dims', [2 2 1], 'array', [1 2 3 4]);
-%! assert(c.m_single, single([1 3; 2 4]));
+%! check('m_column', [1 2 3]', int32([1; 2; 3]));
+%! check('m_single', zeros(0, 3), zeros(0, 3, 'single'));
 
 %!test % lists are columns of cells
 %! check('l_double', {1, int8(2)}, {1; 2});

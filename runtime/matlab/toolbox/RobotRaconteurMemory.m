@@ -14,15 +14,10 @@ classdef RobotRaconteurMemory < handle
     end
     function varargout = size(obj, dimension)
       dims = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
-      dims(end + 1:2) = 1;
       if nargin == 2
-        dims(end + 1:dimension) = 1;
-        varargout = {dims(dimension)};
-      elseif nargout < 2
-        varargout = {dims};
+        varargout = rr_sizes(dims, 1, dimension);
       else
-        dims(end + 1:nargout) = 1;
-        varargout = num2cell([dims(1:nargout - 1), prod(dims(nargout:end))]);
+        varargout = rr_sizes(dims, max(nargout, 1));
       end
     end
     function count = numel(obj, varargin)

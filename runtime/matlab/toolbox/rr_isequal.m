@@ -6,7 +6,9 @@ if ~answer
 end
 if isa(a, 'RobotRaconteurVarValue')
   answer = strcmp(a.datatype, b.datatype) && rr_isequal(a.data, b.data);
-elseif isa(a, 'containers.Map')
+elseif isa(a, 'RobotRaconteurMultiDimArray')
+  answer = isequal(a.dims, b.dims) && rr_isequal(a.array, b.array);
+elseif isa(a, 'containers.Map') || isa(a, 'RobotRaconteurMap')
   answer = strcmp(a.KeyType, b.KeyType) && rr_isequal(a.keys(), b.keys()) && ...
            rr_isequal(a.values(), b.values());
 elseif ~isequal(size(a), size(b))
@@ -17,12 +19,13 @@ elseif isstruct(a)
   answer = isequal(fieldnames(a), fieldnames(b)) && ...
            rr_isequal(struct2cell(a(:)), struct2cell(b(:)));
 elseif isfloat(a)
-  answer = iscomplex_or_real(a, b) && all((a(:) == b(:)) | (isnan(a(:)) & isnan(b(:))));
+  answer = isreal(a) == isreal(b) && has_same(real(a), real(b)) && ...
+           (isreal(a) || has_same(imag(a), imag(b)));
 else
   answer = isequal(a, b);
 end
 end
 
-function answer = iscomplex_or_real(a, b)
-answer = isreal(a) == isreal(b);
+function answer = has_same(a, b)
+answer = all((a(:) == b(:)) | (isnan(a(:)) & isnan(b(:))));
 end

@@ -1,5 +1,8 @@
 function items = rr_memory_pick(items, count, picked, given)
-%RR_MEMORY_PICK What was asked for of a box that was read.
+%RR_MEMORY_PICK What was asked for of a box that was read: an array, as indexing gives.
+if isa(items, 'RobotRaconteurMultiDimArray')
+  items = to_array(items);
+end
 extra = ndims_of_item(items, count);
 if any(~cellfun(@isempty, picked))
   subs = repmat({':'}, 1, numel(count));

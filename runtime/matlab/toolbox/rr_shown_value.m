@@ -13,6 +13,9 @@ try
 catch
   return
 end
+if isa(value, 'RobotRaconteurMultiDimArray')
+  value = to_array(value);
+end
 if ischar(value)
   text = [' = ''', value, ''''];
 elseif (isnumeric(value) || islogical(value)) && numel(value) <= 16 && ndims(value) == 2

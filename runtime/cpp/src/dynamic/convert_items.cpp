@@ -202,10 +202,12 @@ void ArrayNode::check(const Value& array, const Place& place) const {
     place.fail("expected " + text() + ", got " + counted(count));
   }
   const auto& dims = content_of<ArrayContent>(array).data.dims;
+  constexpr std::uint64_t too_many = ~std::uint64_t{0};
   std::uint64_t product = dims.empty() ? 0 : 1;
-  for (const std::uint32_t dim : dims) {
-    if (__builtin_mul_overflow(product, dim, &product)) place.fail("too many items");
+  for (const std::uint32_t dim : dims) {  // a 0 may come last
+    if (__builtin_mul_overflow(product, dim, &product)) product = too_many;
   }
+  if (product == too_many) place.fail("too many items");
   if (product != count) {
     place.fail("expected " + std::to_string(product) + " items for dims " + text_of(dims) +
                ", got " + std::to_string(count));

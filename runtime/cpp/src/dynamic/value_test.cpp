@@ -86,6 +86,7 @@ TEST(DynamicValue, ArraysOfEveryFormTravel) {
   expect_round_trip("cdouble[2,1]", "[[[1,2]],[[3,4]]]");
   expect_round_trip("double[*]", "[[[1,2]],[[3,4]]]");
   expect_round_trip("double[*]", R"({"array":[],"dims":[0,3]})");
+  expect_round_trip("double[*]", R"({"array":[],"dims":[4294967295,4294967295,4294967295,0]})");
 }
 
 TEST(DynamicValue, TheFirstIndexIsTheOuterList) {

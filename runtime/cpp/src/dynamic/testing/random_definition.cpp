@@ -114,10 +114,10 @@ void RandomDefinition::add_fields(std::size_t count, std::string (RandomDefiniti
   text_ += "end\n";
 }
 
-ServedObject random_board(const RandomDefinition& definition, std::uint64_t seed, Shapes shapes) {
+ServedObject random_board(const RandomDefinition& definition, std::uint64_t seed) {
   const Definitions definitions({definition.text()});
   ServedObject board(definitions, definition.name() + ".Board");
-  RandomValues values(seed, definitions, shapes);
+  RandomValues values(seed, definitions);
   std::vector<std::pair<std::string, Value>> given;
   for (const MemberDescription& member : board.members()) {
     if (member.kind == MemberKind::property) {

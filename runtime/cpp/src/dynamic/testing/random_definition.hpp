@@ -28,13 +28,6 @@ class Chance {
   std::mt19937_64 engine_;
 };
 
-/// What some languages cannot hold.
-struct Shapes {
-  /// Arrays with dimensions have two or three, none of the last is 1: MATLAB drops it. No key of
-  /// a map is empty, which Octave's do not take; no imaginary part is -0, which Octave drops.
-  bool matlab_only = false;
-};
-
 /// A definition with an enum, namedarrays, pods and structs of random fields, and an object
 /// `Board`, which has for each of its types, by number: `property T pN`, what the service gives;
 /// `property T qN`, where the client leaves what it got; `function T echoN(T value)`. It also has a
@@ -68,8 +61,8 @@ class RandomDefinition {
 /// Values of any type by chance, limits and what is no number among them.
 class RandomValues {
  public:
-  RandomValues(std::uint64_t seed, const Definitions& definitions, Shapes shapes = {})
-      : chance_(seed), definitions_(definitions), shapes_(shapes) {}
+  RandomValues(std::uint64_t seed, const Definitions& definitions)
+      : chance_(seed), definitions_(definitions) {}
   Value value(const ValueType& type, int depth = 0);
 
  private:
@@ -82,11 +75,9 @@ class RandomValues {
 
   Chance chance_;
   const Definitions definitions_;
-  const Shapes shapes_;
 };
 
 /// The object `Board` of a random definition, with values by chance.
-ServedObject random_board(const RandomDefinition& definition, std::uint64_t seed,
-                          Shapes shapes = {});
+ServedObject random_board(const RandomDefinition& definition, std::uint64_t seed);
 
 }  // namespace rr::dynamic::testing

@@ -49,11 +49,7 @@ T random_number(Chance& chance) {
 Value RandomValues::number(ElementType type) {
   return with_number(type, [&](auto tag) -> Value {
     using T = typename decltype(tag)::type;
-    T value = random_number<T>(chance_);
-    if constexpr (!std::is_arithmetic_v<T>) {
-      if (shapes_.matlab_only) value.imag(value.imag() + 0);
-    }
-    return value;
+    return random_number<T>(chance_);
   });
 }
 
@@ -71,10 +67,8 @@ std::string RandomValues::text() {
 }
 
 std::vector<std::uint32_t> RandomValues::dims() {
-  std::vector<std::uint32_t> dims(shapes_.matlab_only ? chance_.below(2) + 2
-                                                      : chance_.below(3) + 1);
+  std::vector<std::uint32_t> dims(chance_.below(3) + 1);
   for (std::uint32_t& one : dims) one = static_cast<std::uint32_t>(chance_.below(4));
-  if (shapes_.matlab_only && dims.back() == 1) dims.back() = 2;
   return dims;
 }
 
@@ -147,7 +141,7 @@ Value RandomValues::value(const ValueType& type, int depth) {
     return type.convert(map);
   }
   StringMap map;
-  for (const Value& item : items) map.emplace((shapes_.matlab_only ? "k" : "") + text(), item);
+  for (const Value& item : items) map.emplace(text(), item);
   return type.convert(map);
 }
 

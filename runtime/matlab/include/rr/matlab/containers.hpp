@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -23,7 +24,12 @@ inline bool is_null(const mxArray* value) {
 }
 inline mxArray* make_null() { return mxCreateDoubleMatrix(0, 0, mxREAL); }
 
-inline bool is_map(const mxArray* value) { return mxIsClass(value, "containers.Map"); }
+/// The toolbox's class for maps with an empty key, which Octave's containers.Map does not take.
+inline constexpr const char* map_with_empty_key = "RobotRaconteurMap";
+
+inline bool is_map(const mxArray* value) {
+  return mxIsClass(value, "containers.Map") || mxIsClass(value, map_with_empty_key);
+}
 
 /// Calls a function of the interpreter that gives one result. Throws Misfit where it fails.
 inline mxArray* call_function(const char* name, std::vector<mxArray*> arguments) {
@@ -32,6 +38,20 @@ inline mxArray* call_function(const char* name, std::vector<mxArray*> arguments)
       mexCallMATLABWithTrap(1, &result, static_cast<int>(arguments.size()), arguments.data(), name);
   if (failure == nullptr && result != nullptr) return result;
   throw Misfit(std::string("the interpreter's function `") + name + "` has failed");
+}
+
+/// An array that is ours to destroy.
+struct ArrayDeleter {
+  void operator()(mxArray* array) const { mxDestroyArray(array); }
+};
+using OwnedArray = std::unique_ptr<mxArray, ArrayDeleter>;
+
+/// A property of an object of a class: a copy that the interpreter does not take back itself.
+/// Throws Misfit when there is none.
+inline OwnedArray read_property(const mxArray* object, const char* name) {
+  OwnedArray property(mxGetProperty(object, 0, name));
+  if (property) return property;
+  throw Misfit(std::string("a ") + mxGetClassName(object) + " without `" + name + "`");
 }
 
 /// The cells of a row or column. Throws Misfit.
@@ -55,7 +75,7 @@ inline mxArray* make_cells(std::span<mxArray* const> items) {
   return cells;
 }
 
-/// Keys and values of a containers.Map. Throws Misfit.
+/// Keys and values of a map. Throws Misfit.
 inline std::vector<std::pair<const mxArray*, const mxArray*>> read_map(const mxArray* map) {
   auto* const given = const_cast<mxArray*>(map);
   const auto keys = read_cells(call_function("keys", {given}));
@@ -91,13 +111,16 @@ inline mxArray* make_map(const std::map<std::int32_t, mxArray*>& items) {
   return containers::make_map(keys, values, "int32");
 }
 
-/// A containers.Map with texts as keys.
+/// A containers.Map with texts as keys; with an empty one among them a RobotRaconteurMap.
 inline mxArray* make_map(const std::map<std::string, mxArray*>& items) {
   std::vector<mxArray*> keys;
   std::vector<mxArray*> values;
   for (const auto& [key, value] : items) {
     keys.push_back(make_text(key));
     values.push_back(value);
+  }
+  if (items.contains("")) {
+    return call_function(map_with_empty_key, {make_cells(keys), make_cells(values)});
   }
   return containers::make_map(keys, values, "char");
 }

@@ -227,23 +227,45 @@ mxArray* make_room(const Dims& dims) {
                               is_complex_number<T> ? mxCOMPLEX : mxREAL);
 }
 
+/// Octave makes arrays of MEX files real whose imaginary parts are all 0, or -0. Those that its own
+/// function has made stay complex. Takes both parts over.
+inline mxArray* make_complex(mxArray* real, mxArray* imaginary) {
+  mxArray* parts[] = {real, imaginary};
+  mxArray* array = nullptr;
+  mxArray* const failure = mexCallMATLABWithTrap(1, &array, 2, parts, "complex");
+  for (mxArray* const part : parts) mxDestroyArray(part);
+  if (failure == nullptr) return array;
+  mxDestroyArray(failure);
+  throw Error(ErrorCode::out_of_system_resource, "the interpreter has no room for complex numbers");
+}
+
+template <class Part>
+mxArray* make_complex_numbers(std::span<const std::complex<Part>> items, const Dims& dims) {
+  bool is_kept = false;
+  for (const auto& item : items) is_kept = is_kept || item.imag() != Part{};
+  mxArray* const whole = is_kept ? make_room<std::complex<Part>>(dims) : nullptr;
+  mxArray* const real_part = is_kept ? whole : make_room<Part>(dims);
+  mxArray* const imaginary_part = is_kept ? whole : make_room<Part>(dims);
+  auto* const real = static_cast<Part*>(mxGetData(real_part));
+  auto* const imaginary =
+      static_cast<Part*>(is_kept ? mxGetImagData(whole) : mxGetData(imaginary_part));
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    real[i] = items[i].real();
+    imaginary[i] = items[i].imag();
+  }
+  return is_kept ? whole : make_complex(real_part, imaginary_part);
+}
+
 /// An array of these sizes, whose product is the number of items; see full_dims().
 template <class T>
 mxArray* make_numbers(std::span<const T> items, const Dims& dims) {
-  mxArray* const array = make_room<T>(dims);
-  if (items.empty()) return array;
   if constexpr (is_complex_number<T>) {
-    using Part = typename T::value_type;
-    auto* const real = static_cast<Part*>(mxGetData(array));
-    auto* const imaginary = static_cast<Part*>(mxGetImagData(array));
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      real[i] = items[i].real();
-      imaginary[i] = items[i].imag();
-    }
+    return make_complex_numbers<typename T::value_type>(items, dims);
   } else {
-    std::memcpy(mxGetData(array), items.data(), items.size_bytes());
+    mxArray* const array = make_room<T>(dims);
+    if (!items.empty()) std::memcpy(mxGetData(array), items.data(), items.size_bytes());
+    return array;
   }
-  return array;
 }
 
 /// A column.

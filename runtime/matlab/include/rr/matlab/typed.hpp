@@ -95,13 +95,17 @@ template <class T>
 requires requires { Fields<T>::list; } &&(!NamedArray<T>)struct Typed<T> {
   static constexpr std::size_t field_count = std::tuple_size_v<decltype(Fields<T>::list)>;
 
-  /// The elements of a struct array of these sizes.
-  static mxArray* make_array(const Dims& dims) {
-    auto names = std::apply(
+  /// Names of the fields; the last one is null.
+  static std::array<const char*, field_count + 1> names() {
+    return std::apply(
         [](const auto&... field) {
           return std::array<const char*, field_count + 1>{field.name..., nullptr};
         },
         Fields<T>::list);
+  }
+  /// The elements of a struct array of these sizes.
+  static mxArray* make_array(const Dims& dims) {
+    auto names = Typed::names();
     return mxCreateStructArray(static_cast<mwSize>(dims.size()), dims.data(),
                                static_cast<int>(field_count), names.data());
   }

@@ -7,13 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "rr/matlab/shapes.hpp"
 #include "rr/matlab/typed.hpp"
 
 /// Arrays of numbers, pods and namedarrays. Part of rr/matlab/typed.hpp.
 namespace rr::matlab {
-
-/// Sizes as they travel, first index fastest.
-using WireDims = std::vector<std::uint32_t>;
 
 /// Items of these sizes, which stand before the one that all have in the interpreter. Those of a
 /// namedarray have their numbers as first dimension.
@@ -131,18 +129,43 @@ struct Typed<BoundedArray<T, Maximum>> {
   }
 };
 
+/// How many numbers each T has, in a dimension of their own; 0 for what is no namedarray.
+template <class T>
+constexpr std::size_t numbers_in() {
+  if constexpr (NamedArray<T>) return Typed<T>::count;
+  return 0;
+}
+
 template <class T>
 struct Typed<MultiArray<T>> {
   static mxArray* make(const MultiArray<T>& value) {
-    return make_items<T>({value.items.data(), value.items.size()},
-                         Dims(value.dims.begin(), value.dims.end()), true);
+    const std::span<const T> items{value.items.data(), value.items.size()};
+    Dims dims(value.dims.begin(), value.dims.end());
+    Dims whole = dims;
+    if (numbers_in<T>() != 0) whole.insert(whole.begin(), static_cast<mwSize>(numbers_in<T>()));
+    if (keeps_dims(whole)) return make_items<T>(items, std::move(dims), true);
+    return make_shaped(value.dims, make_items<T>(items), numbers_in<T>());
   }
   static void read(const mxArray* given, MultiArray<T>& value) {
-    value.dims = item_dims<T>(given, 0);
-    std::size_t count = 1;
-    for (const std::uint32_t dim : value.dims) count *= dim;
-    Array<T> items(count);
-    if (count != 0) read_items<T>(given, items.mutate());
+    if (const auto shaped = read_shaped(given, !has_shaped_look())) {
+      need_form(item_count<T>(shaped->array) == item_count_of(shaped->dims));
+      take(shaped->array, shaped->dims, value);
+    } else {
+      take(given, item_dims<T>(given, 0), value);
+    }
+  }
+
+ private:
+  static bool has_shaped_look() {
+    if constexpr (Number<T> || NamedArray<T>)
+      return false;
+    else
+      return looks_shaped({Typed<T>::names().data(), Typed<T>::field_count});
+  }
+  static void take(const mxArray* given, WireDims dims, MultiArray<T>& value) {
+    Array<T> items(item_count_of(dims));
+    if (items.size() != 0) read_items<T>(given, items.mutate());
+    value.dims = std::move(dims);
     value.items = std::move(items);
   }
 };
