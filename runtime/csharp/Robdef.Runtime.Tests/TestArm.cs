@@ -141,7 +141,7 @@ internal sealed class TestArm : ArmDefault
         {
             // Whatever is to be done in order may take its time.
             await Task.Delay(20, CancellationToken.None);
-            GeneratorEnds.Add(brokenOff.IsCancellationRequested ? "broken off" : "closed");
+            GeneratorEnds.Add(brokenOff.IsCancellationRequested ? "broken off" : "closed", CancellationToken.None);
         }
     }
 }
