@@ -86,6 +86,34 @@ public sealed class GeneratorEndTests
     }
 
     [Fact]
+    public void What_throws_when_a_sequence_is_cancelled_is_reported_and_hinders_nothing()
+    {
+        using var unhandled = new BlockingCollection<Exception>();
+        Action<Exception> listener = exception =>
+        {
+            if (exception is AggregateException { InnerException: Stuck })
+            {
+                unhandled.Add(exception);
+            }
+        };
+        Unhandled.Thrown += listener;
+        try
+        {
+            using var pair = new Pair();
+            pair.Arm.CountBrokenOff = () => throw new Stuck("when cancelled");
+            using Generator<int> count = pair.Stub.Count(9);
+            Assert.True(count.TryNext(out _));
+            count.Abort();
+            Assert.Equal("broken off", NextEnd(pair));
+            Assert.True(unhandled.TryTake(out _, s_limit));
+        }
+        finally
+        {
+            Unhandled.Thrown -= listener;
+        }
+    }
+
+    [Fact]
     public void The_fault_of_a_step_is_told_to_the_client_alone()
     {
         using var unhandled = new BlockingCollection<Exception>();

@@ -26,6 +26,9 @@ internal sealed class TestArm : ArmDefault
 
     private readonly List<int> _collected = [];
 
+    /// <summary>Called when counting is broken off.</summary>
+    public Action? CountBrokenOff { get; set; }
+
     /// <summary>How generators have ended: `closed`, `broken off`, or `failed`.</summary>
     public BlockingCollection<string> GeneratorEnds { get; } = [];
 
@@ -129,6 +132,7 @@ internal sealed class TestArm : ArmDefault
 
     private async IAsyncEnumerable<int> Count(int limit, [EnumeratorCancellation] CancellationToken brokenOff = default)
     {
+        using CancellationTokenRegistration told = brokenOff.Register(() => CountBrokenOff?.Invoke());
         try
         {
             for (int i = 0; i < limit; ++i)

@@ -57,21 +57,34 @@ internal abstract class GeneratorSteps(KnownTypes types)
 
     private void Stop(bool isBrokenOff)
     {
-        if (Interlocked.Exchange(ref _isReleased, 1) == 0)
+        if (Interlocked.Exchange(ref _isReleased, 1) != 0)
         {
-            _ = ReleaseQuietlyAsync(isBrokenOff);
+            return;
         }
+        if (isBrokenOff)
+        {
+            CancelQuietly();
+        }
+        _ = ReleaseQuietlyAsync();
     }
 
-    private async Task ReleaseQuietlyAsync(bool isBrokenOff)
+    private void CancelQuietly()
     {
         try
         {
-            if (isBrokenOff)
-            {
-                // Runs what the program has registered, which may throw.
-                BrokenOff.Cancel();
-            }
+            BrokenOff.Cancel();
+        }
+        catch (AggregateException exception)
+        {
+            // Of what the program has registered.
+            Unhandled.Report(exception);
+        }
+    }
+
+    private async Task ReleaseQuietlyAsync()
+    {
+        try
+        {
             await ReleaseAsync().ConfigureAwait(false);
         }
         catch (OperationCanceledException)
