@@ -250,13 +250,9 @@ internal sealed class Script(Adapters adapters, JsonNode? node)
 
     private static async ValueTask Take<T>(ScriptedSteps steps, IAsyncEnumerable<T> values)
     {
-        if (steps.IsAtEnd)
-        {
-            return;
-        }
         await foreach (T _ in values)
         {
-            if (steps.Take() is null || steps.IsAtEnd)
+            if (steps.Take() is null)
             {
                 return;
             }
@@ -282,9 +278,6 @@ internal sealed class ScriptedSteps(Adapters adapters, JsonNode? script)
 {
     private readonly int _count = (Json.Part(script, "yield") as JsonArray)?.Count ?? Json.Part(script, "accept")?.GetValue<int>() ?? 0;
     private int _step;
-
-    /// <summary>No step is left, and no error either.</summary>
-    public bool IsAtEnd => _step == _count && Json.Part(script, "end") is null;
 
     /// <summary>The number of the next step; null at the end.</summary>
     public int? Take()

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+using System;
+using System.Collections.Concurrent;
 using System.Collections.Generic;
+using System.Runtime.CompilerServices;
 using System.Threading;
 using System.Threading.Tasks;
 using Experimental.Arm;
@@ -22,6 +25,12 @@ internal sealed class TestArm : ArmDefault
     }
 
     private readonly List<int> _collected = [];
+
+    /// <summary>Called when counting is broken off.</summary>
+    public Action? CountBrokenOff { get; set; }
+
+    /// <summary>How generators have ended: `closed`, `broken off`, or `failed`.</summary>
+    public BlockingCollection<string> GeneratorEnds { get; } = [];
 
     public override ValueTask<int[]> GetCollectedAsync()
     {
@@ -71,31 +80,72 @@ internal sealed class TestArm : ArmDefault
 
     public override async ValueTask<int> AskBackAsync(int question) => await AskAsync(RrCurrentClient, question) + 1;
 
-    public override async IAsyncEnumerable<int> CountAsync(int limit)
-    {
-        for (int i = 0; i < limit; ++i)
-        {
-            await Task.Yield();
-            yield return i;
-        }
-    }
+    public override IAsyncEnumerable<int> CountAsync(int limit) => Count(limit);
 
+    /// <summary>Takes values until a negative one; -2 is a fault.</summary>
     public override async ValueTask CollectAsync(IAsyncEnumerable<int> values)
     {
-        await foreach (int value in values)
+        try
         {
-            lock (_collected)
+            await foreach (int value in values)
             {
-                _collected.Add(value);
+                if (value < 0)
+                {
+                    if (value == -2)
+                    {
+                        throw new Stuck("-2 is not collected");
+                    }
+                    return;
+                }
+                lock (_collected)
+                {
+                    _collected.Add(value);
+                }
             }
+            GeneratorEnds.Add("closed");
+        }
+        catch (OperationCanceledException)
+        {
+            GeneratorEnds.Add("broken off");
+            throw;
         }
     }
 
     public override async IAsyncEnumerable<int> TwiceAsync(IAsyncEnumerable<int> values)
     {
-        await foreach (int value in values)
+        string end = "broken off";
+        try
         {
-            yield return 2 * value;
+            await foreach (int value in values)
+            {
+                end = "left early";
+                yield return 2 * value;
+                end = "broken off";
+            }
+            end = "closed";
+        }
+        finally
+        {
+            GeneratorEnds.Add(end);
+        }
+    }
+
+    private async IAsyncEnumerable<int> Count(int limit, [EnumeratorCancellation] CancellationToken brokenOff = default)
+    {
+        using CancellationTokenRegistration told = brokenOff.Register(() => CountBrokenOff?.Invoke());
+        try
+        {
+            for (int i = 0; i < limit; ++i)
+            {
+                await Task.Yield();
+                yield return i;
+            }
+        }
+        finally
+        {
+            // Whatever is to be done in order may take its time.
+            await Task.Delay(20, CancellationToken.None);
+            GeneratorEnds.Add(brokenOff.IsCancellationRequested ? "broken off" : "closed", CancellationToken.None);
         }
     }
 }

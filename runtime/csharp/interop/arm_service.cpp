@@ -73,6 +73,8 @@ class Arm final : public a::ArmDefault {
   rr::Sequence<void, std::int32_t> collect() override {
     while (true) {
       const std::int32_t value = co_await rr::taken<std::int32_t>;
+      if (value == -2) throw a::Stuck("-2 is not collected");
+      if (value < 0) co_return;
       const std::lock_guard lock(mutex_);
       std::vector<std::int32_t> all(collected_.begin(), collected_.end());
       all.push_back(value);

@@ -27,12 +27,15 @@ public sealed class Node : IDisposable
         {
             Size = (nuint)sizeof(RrNodeOptions),
             Name = name.Value,
-            ClientWithout = (options.ClientWithoutVersion4 ? 1u : 0) | (options.ClientWithoutStringTable ? 2u : 0),
+            ClientWithout = (options.ClientWithoutVersion4 ? 1u : 0) | (options.ClientWithoutStringTable ? 2u : 0)
+                | (options.ClientWithoutCombinedConnect ? 4u : 0),
             ServerWithout = (uint)options.ServerWithout,
             ServerStringTable = options.ServerStringTable ? 1u : 0,
             RequestTimeoutMs = options.RequestTimeout is { } request ? Times.Milliseconds(request) : 0,
             ConnectTimeoutMs = options.ConnectTimeout is { } connect ? Times.Milliseconds(connect) : 0,
             HeartbeatPeriodMs = options.HeartbeatPeriod is { } period ? Times.Milliseconds(period) : 0,
+            KeepAlivePeriodMs = options.KeepAlivePeriod is { } keep ? Times.Milliseconds(keep) : 0,
+            ClientTimeoutMs = options.ClientTimeout is { } silence ? Times.Milliseconds(silence) : 0,
             MessageSize = (uint)options.MessageSize,
             MemoryTransferLimit = (uint)options.MemoryTransferLimit,
         };

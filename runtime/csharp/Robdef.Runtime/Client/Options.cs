@@ -25,6 +25,9 @@ public sealed record NodeOptions
     /// <summary>Clients of this node do not offer codes for names.</summary>
     public bool ClientWithoutStringTable { get; init; }
 
+    /// <summary>Clients of this node connect in four steps, as with services that cannot do it in one.</summary>
+    public bool ClientWithoutCombinedConnect { get; init; }
+
     /// <summary>Capabilities that services do not offer: 1 version 4, 2 string table, 4 connecting in one step.</summary>
     public int ServerWithout { get; init; }
 
@@ -33,6 +36,12 @@ public sealed record NodeOptions
 
     /// <summary>How often silent connections are tested.</summary>
     public TimeSpan? HeartbeatPeriod { get; init; }
+
+    /// <summary>How long a client says nothing before it asks its service to keep the session.</summary>
+    public TimeSpan? KeepAlivePeriod { get; init; }
+
+    /// <summary>How long a client may say nothing before its service ends the session.</summary>
+    public TimeSpan? ClientTimeout { get; init; }
 
     /// <summary>The largest message, in bytes.</summary>
     public int MessageSize { get; init; }

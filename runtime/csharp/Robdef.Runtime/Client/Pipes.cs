@@ -30,10 +30,11 @@ public sealed class Pipe<T>
 
     /// <summary>Connects an endpoint, in the thread of the caller.</summary>
     /// <param name="index">Wanted; the service decides. -1 leaves it to it.</param>
-    public unsafe PipeEndpoint<T> Connect(int index = -1)
+    /// <param name="isReliable">No packet may be lost or come in another order, although the definition lets them.</param>
+    public unsafe PipeEndpoint<T> Connect(int index = -1, bool isReliable = false)
     {
         using var name = new NativeText(_member);
-        RrPipeOptions pipe = Options(index);
+        RrPipeOptions pipe = Options(index, isReliable);
         nint error;
         int status = Functions.rr_pipe_connect(_object.Native, name.Value, &pipe, null, out nint end, &error);
         Failure.Check(status, error, _object.Types);
@@ -42,8 +43,9 @@ public sealed class Pipe<T>
 
     /// <summary>Connects an endpoint.</summary>
     /// <param name="index">Wanted; the service decides. -1 leaves it to it.</param>
+    /// <param name="isReliable">No packet may be lost or come in another order, although the definition lets them.</param>
     /// <param name="cancel">Ends the waiting.</param>
-    public unsafe Task<PipeEndpoint<T>> ConnectAsync(int index = -1, CancellationToken cancel = default)
+    public unsafe Task<PipeEndpoint<T>> ConnectAsync(int index = -1, bool isReliable = false, CancellationToken cancel = default)
     {
         if (cancel.IsCancellationRequested)
         {
@@ -53,7 +55,7 @@ public sealed class Pipe<T>
         MessageVersion version = _object.Version;
         var completion = new TaskCompletion<PipeEndpoint<T>>(types, end => new PipeEndpoint<T>(new PipeHandle(end), types, version, _codec), cancel);
         using var name = new NativeText(_member);
-        RrPipeOptions pipe = Options(index);
+        RrPipeOptions pipe = Options(index, isReliable);
         var options = new RrCallOptions { Size = (nuint)sizeof(RrCallOptions), Cancellation = completion.Cancellation };
         RrCompletion native = completion.Native;
         nint error;
@@ -61,8 +63,8 @@ public sealed class Pipe<T>
         return status == 0 ? completion.Task : Task.FromException<PipeEndpoint<T>>(completion.Abandon(native, status, error));
     }
 
-    private unsafe RrPipeOptions Options(int index) =>
-        new() { Size = (nuint)sizeof(RrPipeOptions), Access = (uint)_access, Index = index };
+    private unsafe RrPipeOptions Options(int index, bool isReliable) =>
+        new() { Size = (nuint)sizeof(RrPipeOptions), Access = (uint)_access, Index = index, Reliable = isReliable ? 1u : 0 };
 }
 
 /// <summary>
@@ -99,6 +101,9 @@ public sealed class PipeEndpoint<T> : IAsyncEnumerable<T>, IDisposable
 
     /// <summary>Whether packets that are sent from now on are acknowledged. Off at first.</summary>
     public void AskForAcknowledgements(bool on) => Functions.rr_pipe_ask_for_acknowledgements(_handle, on ? 1 : 0);
+
+    /// <summary>How many sent packets the other side has not acknowledged yet, of those that are acknowledged.</summary>
+    public int Unacknowledged => (int)Functions.rr_pipe_unacknowledged(_handle);
 
     /// <summary>How many packets can be received now.</summary>
     public int Available => (int)Functions.rr_pipe_available(_handle);

@@ -186,6 +186,8 @@ internal static unsafe partial class Functions
     [LibraryImport(Library)]
     public static partial void rr_pipe_ask_for_acknowledgements(SafeHandle pipe, int on);
     [LibraryImport(Library)]
+    public static partial nuint rr_pipe_unacknowledged(SafeHandle pipe);
+    [LibraryImport(Library)]
     public static partial int rr_pipe_set_handler(SafeHandle pipe, RrPipeHandler* handler, nint* error);
 
     [LibraryImport(Library)]

@@ -10,10 +10,16 @@ using Robdef.Runtime.Native;
 
 namespace Robdef.Runtime;
 
-/// <summary>The steps of one generator that a service gives. One at a time, by the native runtime's promise.</summary>
+/// <summary>
+/// The steps of one generator that a service gives. One at a time, by the native runtime's promise, which brings the
+/// end behind the step that runs.
+/// </summary>
 internal abstract class GeneratorSteps(KnownTypes types)
 {
-    protected CancellationTokenSource Ended { get; } = new();
+    private int _isReleased;
+
+    /// <summary>Cancelled when the client breaks off or has left, not when it closes the generator.</summary>
+    protected CancellationTokenSource BrokenOff { get; } = new();
 
     protected KnownTypes Types { get; } = types;
 
@@ -33,14 +39,14 @@ internal abstract class GeneratorSteps(KnownTypes types)
     }
 
     [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
-    public static void OnEnd(nint context, int aborts) => Context.Get<GeneratorSteps>(context).Stop();
+    public static void OnEnd(nint context, int aborts) => Context.Get<GeneratorSteps>(context).Stop(aborts != 0);
 
     [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
     public static void OnDrop(nint context)
     {
         GeneratorSteps steps = Context.Get<GeneratorSteps>(context);
         Context.Free(context);
-        steps.Stop();
+        steps.Stop(isBrokenOff: true);
     }
 
     /// <summary>Answers or fails the request, whatever happens.</summary>
@@ -49,12 +55,29 @@ internal abstract class GeneratorSteps(KnownTypes types)
     /// <summary>Lets go of what the program gave, once no step runs.</summary>
     protected abstract ValueTask ReleaseAsync();
 
-    private void Stop()
+    private void Stop(bool isBrokenOff)
     {
-        if (!Ended.IsCancellationRequested)
+        if (Interlocked.Exchange(ref _isReleased, 1) != 0)
         {
-            Ended.Cancel();
-            _ = ReleaseQuietlyAsync();
+            return;
+        }
+        if (isBrokenOff)
+        {
+            CancelQuietly();
+        }
+        _ = ReleaseQuietlyAsync();
+    }
+
+    private void CancelQuietly()
+    {
+        try
+        {
+            BrokenOff.Cancel();
+        }
+        catch (AggregateException exception)
+        {
+            // Of what the program has registered.
+            Unhandled.Report(exception);
         }
     }
 
@@ -87,7 +110,7 @@ internal sealed class SourceSteps<T>(KnownTypes types, IAsyncEnumerable<T> value
         await _turn.WaitAsync().ConfigureAwait(false);
         try
         {
-            _values ??= values.GetAsyncEnumerator(Ended.Token);
+            _values ??= values.GetAsyncEnumerator(BrokenOff.Token);
             if (await _values.MoveNextAsync().ConfigureAwait(false))
             {
                 request.Answer(_values.Current, codec);
@@ -128,7 +151,9 @@ internal sealed class Parameters<T>
     private readonly Channel<T> _values = Channel.CreateUnbounded<T>();
     private TaskCompletionSource? _dealtWith;
 
-    public void End() => _values.Writer.TryComplete();
+    /// <summary>No more values come: the sequence ends, or breaks off with an OperationCanceledException.</summary>
+    public void End(CancellationToken brokenOff) =>
+        _values.Writer.TryComplete(brokenOff.IsCancellationRequested ? new OperationCanceledException(brokenOff) : null);
 
     /// <summary>Hands over a value; the task ends when the next is asked for.</summary>
     public Task Give(T value)
@@ -154,6 +179,7 @@ internal sealed class SinkSteps<T>(KnownTypes types, Func<IAsyncEnumerable<T>, V
 {
     private readonly Parameters<T> _parameters = new();
     private Task? _work;
+    private bool _isTold;
 
     /// <summary>Begins the work, which may refuse at once: then the function of the service fails.</summary>
     public void Begin()
@@ -173,8 +199,8 @@ internal sealed class SinkSteps<T>(KnownTypes types, Func<IAsyncEnumerable<T>, V
 
     protected override async ValueTask ReleaseAsync()
     {
-        _parameters.End();
-        if (_work is not null)
+        _parameters.End(BrokenOff.Token);
+        if (_work is not null && !_isTold)
         {
             await _work.ConfigureAwait(false);
         }
@@ -185,17 +211,13 @@ internal sealed class SinkSteps<T>(KnownTypes types, Func<IAsyncEnumerable<T>, V
         try
         {
             Task running = _work!;
-            if (running.IsCompleted)
+            if (running.IsCompleted || await Task.WhenAny(_parameters.Give(value), running).ConfigureAwait(false) == running)
             {
+                // The end, or the fault, is this step's, as it is where other languages end in the middle of one.
+                _isTold = true;
                 await running.ConfigureAwait(false);
                 request.AnswerEnd();
                 return;
-            }
-            Task dealtWith = _parameters.Give(value);
-            if (await Task.WhenAny(dealtWith, running).ConfigureAwait(false) == running)
-            {
-                // A fault is this step's; work that ends by itself has dealt with its last value.
-                await running.ConfigureAwait(false);
             }
             request.AnswerNothing();
         }
@@ -227,7 +249,7 @@ internal sealed class FilterSteps<TIn, TOut>(KnownTypes types, Func<IAsyncEnumer
 
     protected override async ValueTask ReleaseAsync()
     {
-        _parameters.End();
+        _parameters.End(BrokenOff.Token);
         await _turn.WaitAsync().ConfigureAwait(false);
         if (_values is not null)
         {
@@ -240,7 +262,7 @@ internal sealed class FilterSteps<TIn, TOut>(KnownTypes types, Func<IAsyncEnumer
         await _turn.WaitAsync().ConfigureAwait(false);
         try
         {
-            _values ??= _made!.GetAsyncEnumerator(Ended.Token);
+            _values ??= _made!.GetAsyncEnumerator(BrokenOff.Token);
             _ = _parameters.Give(value);
             if (await _values.MoveNextAsync().ConfigureAwait(false))
             {
