@@ -100,9 +100,11 @@ struct Listening {
   // `dispatch(kind, member, ...)`: among the requests, in the order in which all has come.
   void push(const char* kind, std::function<std::vector<mxArray*>()> make) const {
     queue->push_request([self = *this, kind, make = std::move(make)] {
-      std::vector<mxArray*> given{make_text(kind), make_text(self.member.name)};
-      for (mxArray* const one : make()) given.push_back(one);
       try {
+        std::vector<mxArray*> given{make_text(kind), make_text(self.member.name)};
+        as_subject("member " + self.member.name, [&] {
+          for (mxArray* const one : make()) given.push_back(one);
+        });
         self.answerer->call(std::move(given));
       } catch (const Error& error) {
         mexWarnMsgIdAndTxt("RobotRaconteur:HandlerFailed", "a handler has failed: %s",

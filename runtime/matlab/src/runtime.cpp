@@ -121,6 +121,8 @@ void Runtime::run_calls() {
       call->finish(run_callback(*this, *call));
     } catch (const Error&) {
       call->fail(std::current_exception());
+    } catch (const Misfit& misfit) {
+      call->fail(std::make_exception_ptr(misfit.error("")));
     }
   }
   while (const Queue::Work request = queue_->pop_request()) {

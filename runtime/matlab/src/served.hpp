@@ -88,6 +88,8 @@ Result Answerer::ask(std::function<Result(Runtime&)> work) const {
       promise->set_value(work(runtime));
     } catch (const Error&) {
       promise->set_exception(std::current_exception());
+    } catch (const Misfit& misfit) {
+      promise->set_exception(std::make_exception_ptr(misfit.error("")));
     }
   });
   try {
