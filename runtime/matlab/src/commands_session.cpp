@@ -112,6 +112,31 @@ std::string spelled_index(const std::string& index) {
   return spelled;
 }
 
+// Waits as wait_connected() does: a service of this interpreter's answers on this thread.
+std::string ask_object_type(Runtime& runtime, const dynamic::Client& client,
+                            const std::string& path) {
+  struct Answer {
+    std::atomic<bool> has_come{false};
+    std::exception_ptr error;
+    std::string type;
+  };
+  const auto answer = std::make_shared<Answer>();
+  runtime.node().run_aside([answer, path, session = client.rr_session(), queue = runtime.queue()] {
+    ClientBase asking(session);
+    try {
+      answer->type = asking.find_object_type(path);
+    } catch (const Error&) {
+      answer->error = std::current_exception();
+    }
+    (void)asking.rr_release();  // it is not to end with this
+    answer->has_come = true;
+    queue->wake();
+  });
+  runtime.wait_until([&] { return answer->has_come.load(); }, std::chrono::milliseconds::max());
+  if (answer->error) std::rethrow_exception(answer->error);
+  return answer->type;
+}
+
 // find_object_type(object, objref [, index]): the type of the object there, as the service says
 void find_object_type(Runtime& runtime, Call& call) {
   const auto object = object_of(runtime, call);
@@ -124,7 +149,7 @@ void find_object_type(Runtime& runtime, Call& call) {
   } else if (!index.is_null()) {
     path += "[" + spelled_index(std::to_string(index.as<std::int32_t>())) + "]";
   }
-  call.give(make_text(runtime.call_directly([&] { return client.find_object_type(path); })));
+  call.give(make_text(ask_object_type(runtime, client, path)));
 }
 
 // close(number): gives an object, wire, ... back

@@ -24,13 +24,23 @@ rr::NodeOptions next_options;  // of nodes that are made
 std::uint32_t generation = 0;
 int depth = 0;  // handlers call this again
 
-// Of commands that run in each other.
+// Of commands that run in each other: whose command runs is again the outer one's behind the inner.
 class Entered {
  public:
-  Entered() { ++depth; }
-  ~Entered() { --depth; }
+  Entered() : in_(runtime) {
+    ++depth;
+    if (in_ != nullptr) current_ = in_->current;
+  }
+  ~Entered() {
+    --depth;
+    if (depth != 0 && in_ != nullptr && in_ == runtime) in_->current = current_;
+  }
   Entered(const Entered&) = delete;
   Entered& operator=(const Entered&) = delete;
+
+ private:
+  rr::matlab::Runtime* const in_;
+  std::shared_ptr<rr::matlab::Connection> current_;
 };
 
 // Objects that functions of the user hold come back here to be closed, so there is none any more.

@@ -260,11 +260,13 @@ classdef RobotRaconteur
       number = rrmex('current_client');
     end
 
-    function ThrowError(err)
+    function varargout = ThrowError(err)
       %THROWERROR Throw an error that a service's client, or a callback's service, gets as it is,
       %   with what an identifier cannot say: a struct like that of GetLastError, of which name or
       %   code is enough. ThrowError(struct('name', 'example.arm.Jam', 'message', 'stuck', ...
-      %   'subname', 'joint', 'parameter', RobotRaconteurVarValue(3, 'int32')))
+      %   'subname', 'joint', 'parameter', RobotRaconteurVarValue(3, 'int32'))). It gives nothing,
+      %   but may stand where a result is expected: @(a, b) RobotRaconteur.ThrowError(...).
+      varargout = {};
       rrmex('throw', err);
     end
     function SetNodeOptions(options)
