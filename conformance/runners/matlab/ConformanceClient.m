@@ -5,7 +5,7 @@ classdef ConformanceClient < handle
   end
   properties
     IsStarted = false;
-    UsesAsync = false;  % for calls and properties, in plans of version 2
+    UsesAsync = false;  % for calls and properties: in plans of version 2
     Objects   % by the plan's names: struct with object, members
     Handles   % what steps hold by a name: pipes, wires, generators
     Types     % of these, the type that is sent, and that is received
@@ -25,7 +25,7 @@ classdef ConformanceClient < handle
         case 'start'
           RobotRaconteur.Shutdown();
           RobotRaconteur.SetNodeOptions(conformance_node_options(request));
-          obj.UsesAsync = false;
+          obj.UsesAsync = request.message_version == 2;
           for name = {'Objects', 'Handles', 'Types', 'Closing', 'Calls'}
             obj.(name{1}) = containers.Map();
           end

@@ -5,10 +5,13 @@ start(@(parameter, value, err) finish(ended, value, err));
 while ended.Count == 0
   RobotRaconteur.Poll(20);
 end
-value = ended('value');
+outcome = ended('outcome');
+value = outcome.value{1};
+if ~isempty(outcome.error)
+  error(outcome.error);
+end
 end
 
 function finish(ended, value, err)
-ended('error') = err;
-ended('value') = value;
+ended('outcome') = struct('value', {{value}}, 'error', err);
 end
