@@ -96,8 +96,8 @@ void session_listen(Runtime& runtime, Call& call) {
   call.give(make_number(number));
 }
 
-// As paths spell an index: other bytes than letters and digits of ASCII by two digits (06, section
-// 3).
+// As paths spell an index: other bytes than letters and digits of ASCII by two digits (07,
+// section 3).
 std::string spelled_index(const std::string& index) {
   static constexpr char digits[] = "0123456789abcdef";
   std::string spelled;

@@ -251,8 +251,8 @@ classdef RobotRaconteur
       rrmex('listen_url', url);
     end
     function count = ServeFor(seconds)
-      %SERVEFOR Answer requests, and call handlers, for so long; returns how many requests. Ctrl-C
-      %   ends it.
+      %SERVEFOR Answer requests, and call handlers, for so long; returns how many requests, and
+      %   values and packets that an object was told. Ctrl-C ends it.
       count = rrmex('serve_for', seconds);
     end
     function number = CurrentClient()
