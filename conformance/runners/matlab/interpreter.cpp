@@ -22,6 +22,7 @@ void Interpreter::push(std::function<void()> work) {
 
 bool Interpreter::run(const std::string& verb, const std::string& folder) {
   bool is_known = false;
+  is_running_ = true;
   std::thread thread([&] {
     is_known = answer_verb(verb, folder);
     push([this] { has_ended_ = true; });
@@ -37,6 +38,7 @@ bool Interpreter::run(const std::string& verb, const std::string& folder) {
     work();
   }
   thread.join();
+  is_running_ = false;
   return is_known;
 }
 

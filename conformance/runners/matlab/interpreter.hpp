@@ -20,6 +20,7 @@ class Interpreter {
   /// Runs the verb on a thread of its own, and what that asks for on this one, until it has ended.
   /// False for an unknown verb.
   bool run(const std::string& verb, const std::string& folder);
+  [[nodiscard]] bool is_running() const { return is_running_; }
 
   /// A value as it is after the interpreter has had it: in its own form, through a function of
   /// its own. On any thread. Throws rr::Error.
@@ -35,6 +36,7 @@ class Interpreter {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::function<void()>> work_;
+  bool is_running_ = false;
   bool has_ended_ = false;
   // By the definitions' tables, which the plans keep. For the interpreter's thread.
   std::map<std::shared_ptr<const dynamic::Tables>, std::unique_ptr<matlab::Plans>> plans_;

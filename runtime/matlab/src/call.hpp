@@ -84,6 +84,7 @@ std::vector<Command> node_commands();
 std::vector<Command> typed_commands();
 std::vector<Command> record_commands();
 std::vector<Command> service_commands();
+std::vector<Command> served_commands();
 
 /// Runs the command of this name. Throws rr::Error (invalid_argument) when there is none.
 void run_command(Runtime& runtime, const std::string& name, Call& call);

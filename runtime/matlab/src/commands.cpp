@@ -28,7 +28,7 @@ void run_command(Runtime& runtime, const std::string& name, Call& call) {
           wire_commands(), pipe_commands(), memory_commands(), generator_commands(),
           lock_commands(), definition_commands(), subscription_commands(),
           member_subscription_commands(), discovery_commands(), node_commands(), typed_commands(),
-          record_commands(), service_commands()}) {
+          record_commands(), service_commands(), served_commands()}) {
       for (const Command& command : list) all.emplace(command.name, command.run);
     }
     return all;

@@ -9,12 +9,6 @@ namespace {
 using dynamic::List;
 using dynamic::Value;
 
-const mxArray* need_function(const mxArray* given, const std::string& subject) {
-  if (mxIsClass(given, "function_handle") || mxIsChar(given)) return given;
-  throw Error(ErrorCode::data_type_mismatch,
-              subject + ": expected a function handle, got " + described(given));
-}
-
 // On the interpreter's thread.
 void deliver(Runtime& runtime, std::uint64_t number, const List& arguments) {
   const UserFunction* const function = runtime.functions().find(number);

@@ -20,6 +20,26 @@ void dims(Runtime& runtime, Call& call) {
   call.give(make_numbers<double>(row, {1, static_cast<mwSize>(row.size())}));
 }
 
+// memory_length(object, name), memory_dim_count(object, name): as the service says
+void length(Runtime& runtime, Call& call) {
+  const auto object = object_of(runtime, call);
+  const dynamic::Memory memory = object->object().memory(object->resolve(call.text(1)).member.name);
+  const std::uint64_t items = runtime.call_directly([&] { return memory.length(); });
+  call.give(mxCreateDoubleScalar(static_cast<double>(items)));
+}
+void dim_count(Runtime& runtime, Call& call) {
+  const auto object = object_of(runtime, call);
+  const dynamic::Memory memory = object->object().memory(object->resolve(call.text(1)).member.name);
+  const std::uint64_t count = runtime.call_directly([&] { return memory.dim_count(); });
+  call.give(mxCreateDoubleScalar(static_cast<double>(count)));
+}
+
+// memory_is_flat(object, name): whether it is declared with one dimension
+void is_flat(Runtime& runtime, Call& call) {
+  const auto object = object_of(runtime, call);
+  call.give(mxCreateLogicalScalar(!object->resolve(call.text(1)).plan->has_dims));
+}
+
 // memory_read(object, name, position, count): array; positions count from 0
 void read(Runtime& runtime, Call& call) {
   const auto object = object_of(runtime, call);
@@ -47,7 +67,8 @@ void write(Runtime& runtime, Call& call) {
 }  // namespace
 
 std::vector<Command> memory_commands() {
-  return {{"memory_dims", dims}, {"memory_read", read}, {"memory_write", write}};
+  return {{"memory_dims", dims},       {"memory_length", length}, {"memory_dim_count", dim_count},
+          {"memory_is_flat", is_flat}, {"memory_read", read},     {"memory_write", write}};
 }
 
 }  // namespace rr::matlab

@@ -3,7 +3,7 @@
 
 #include "rr/error.hpp"
 #include "rr/node_id.hpp"
-#include "runtime/matlab/src/objects.hpp"
+#include "runtime/matlab/src/served.hpp"
 
 namespace rr::matlab {
 namespace {
@@ -17,6 +17,34 @@ void log_close(Runtime& runtime, Call&) { runtime.log().close(); }
 
 // request_timeout(seconds)
 void request_timeout(Runtime& runtime, Call& call) { runtime.request_timeout = call.seconds(0); }
+
+// throw(struct): an error as last_error() tells it, of which a name or a code is enough
+void throw_error(Runtime& runtime, Call& call) {
+  const mxArray* const given = call[0];
+  const auto text = [&](const char* field) {
+    return mxGetFieldNumber(given, field) < 0 ? std::string() : read_text(read_field(given, field));
+  };
+  if (!mxIsStruct(given)) throw Misfit("expected a struct, got " + described(given));
+  std::string name = text("name");
+  auto code = code_of_name(name);
+  if (mxGetFieldNumber(given, "code") >= 0) {
+    code = static_cast<ErrorCode>(read_number<std::uint16_t>(read_field(given, "code")));
+  }
+  // A code that the protocol has tells the name, but for one that leaves it open.
+  const std::string_view known = error_name(code);
+  if (name.empty() || (!known.empty() && code != ErrorCode::remote_error)) name = known;
+  if (name.empty()) name = error_name(ErrorCode::remote_error);
+  VarValue parameter;
+  if (mxGetFieldNumber(given, "parameter") >= 0) {
+    const mxArray* const value = read_field(given, "parameter");
+    parameter = dynamic::to_varvalue(as_subject("parameter", [&] {
+      if (!runtime.served_types) return plain_from_mex(value);
+      return any_from_mex(value, {runtime.served_types->plans, runtime.served_types->definitions});
+    }));
+  }
+  runtime.current.reset();
+  throw Error(code, name, text("message"), text("subname"), parameter);
+}
 
 // now(): struct as of wires
 void now(Runtime&, Call& call) {
@@ -37,21 +65,26 @@ void node(Runtime& runtime, Call& call) {
                    {"held", mxCreateDoubleScalar(static_cast<double>(runtime.handles().size()))}}));
 }
 
-// last_error(): struct with code, name, subname, message, identifier, parameter; [] for none
+// last_error(): struct with code, name, subname, message, identifier, parameter, varvalue;
+// [] for none
 void last_error(Runtime& runtime, Call& call) {
   if (!runtime.last_error) return call.give(make_null());
   const Error& error = runtime.last_error->error;
   mxArray* parameter = make_null();
+  mxArray* varvalue = make_null();
   const auto& connection = runtime.last_error->connection;
   if (!error.parameter().is_null() && connection && connection->client().rr_session()) {
-    parameter = plain_to_mex(connection->client().value(error.parameter()));
+    const dynamic::Value value = connection->client().value(error.parameter());
+    parameter = plain_to_mex(value);
+    varvalue = varvalue_to_mex(value, *connection);
   }
   call.give(make_struct({{"code", mxCreateDoubleScalar(static_cast<double>(error.code()))},
                          {"name", make_text(error.name())},
                          {"subname", make_text(error.subname())},
                          {"message", make_text(error.message())},
                          {"identifier", make_text(failure_of(error).identifier)},
-                         {"parameter", parameter}}));
+                         {"parameter", parameter},
+                         {"varvalue", varvalue}}));
 }
 
 }  // namespace
@@ -64,7 +97,8 @@ std::vector<Command> node_commands() {
           {"now", now},
           {"sleep", sleep},
           {"node", node},
-          {"last_error", last_error}};
+          {"last_error", last_error},
+          {"throw", throw_error}};
 }
 
 }  // namespace rr::matlab

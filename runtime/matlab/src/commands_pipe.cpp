@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rr/error.hpp"
+#include "runtime/matlab/src/listeners.hpp"
 #include "runtime/matlab/src/members.hpp"
 
 namespace rr::matlab {
@@ -10,7 +11,17 @@ using dynamic::Value;
 
 struct PipeHandle final : MemberHandle {
   PipeHandle(const ObjectHandle& object, const Resolved& of, PipeEndpoint given)
-      : MemberHandle(object, of), end(std::move(given)) {}
+      : MemberHandle(object, of), end(std::move(given)) {
+    end.on_closed(
+        [heard = closed] { Listeners::tell(heard, [] { return std::vector<mxArray*>(); }); });
+    end.on_acknowledged([heard = acknowledged](std::uint32_t number) {
+      Listeners::tell(heard, [number] { return std::vector<mxArray*>{make_number(number)}; });
+    });
+  }
+  const std::shared_ptr<Listeners> closed = std::make_shared<Listeners>(connection->runtime());
+  const std::shared_ptr<Listeners> acknowledged =
+      std::make_shared<Listeners>(connection->runtime());
+  bool wants_acks = false;
   PipeEndpoint end;
 };
 
@@ -22,7 +33,8 @@ std::shared_ptr<PipeHandle> pipe_of(Runtime& runtime, Call& call) {
 void connect(Runtime& runtime, Call& call) {
   const auto object = object_of(runtime, call);
   const Resolved& member = object->resolve(call.text(1));
-  const PipeOptions options{.index = call.has(2) ? read_number<std::int32_t>(call[2]) : -1};
+  const PipeOptions options{.index = call.has(2) ? read_number<std::int32_t>(call[2]) : -1,
+                            .unreliable = (member.member.access & unreliable) != 0};
   const dynamic::Pipe pipe = object->object().pipe(member.member.name);
   auto end = runtime.call<PipeEndpoint>([&] { return pipe.connect(options); },
                                         [&](auto done) { pipe.async_connect(done, options); });
@@ -64,6 +76,7 @@ void about(Runtime& runtime, Call& call) {
       {{"index", make_number(pipe->end.index())},
        {"is_open", mxCreateLogicalScalar(pipe->end.is_open())},
        {"is_unreliable", mxCreateLogicalScalar(pipe->end.is_unreliable())},
+       {"wants_acks", mxCreateLogicalScalar(pipe->wants_acks)},
        {"lost_count", mxCreateDoubleScalar(static_cast<double>(pipe->end.lost_count()))}}));
 }
 
@@ -77,6 +90,22 @@ void listen(Runtime& runtime, Call& call) {
       });
   keep_listener(runtime, number, std::move(subscription));
   call.give(make_number(number));
+}
+
+// pipe_hear(endpoint, 'closed' | 'acknowledged', function): number of the listener; the second gets
+// the number of each packet
+void hear(Runtime& runtime, Call& call) {
+  const auto pipe = pipe_of(runtime, call);
+  const std::uint64_t number = add_listener(*pipe, call[2]);
+  (call.text(1) == "closed" ? pipe->closed : pipe->acknowledged)->add(number);
+  call.give(make_number(number));
+}
+
+// pipe_ask_acks(endpoint, on): whether packets are acknowledged from now on
+void ask_acks(Runtime& runtime, Call& call) {
+  const auto pipe = pipe_of(runtime, call);
+  pipe->wants_acks = read_number<bool>(call[1]);
+  pipe->end.ask_for_acknowledgements(pipe->wants_acks);
 }
 
 // pipe_queue_limit(endpoint, packets, 'oldest' | 'newest' | 'close'): what is lost when it is full
@@ -103,6 +132,7 @@ std::vector<Command> pipe_commands() {
           {"pipe_receive", receive},     {"pipe_receive_wait", receive_wait},
           {"pipe_available", available}, {"pipe_about", about},
           {"pipe_listen", listen},       {"pipe_queue_limit", queue_limit},
+          {"pipe_hear", hear},           {"pipe_ask_acks", ask_acks},
           {"pipe_close", close}};
 }
 

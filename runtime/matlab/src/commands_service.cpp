@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Services that the interpreter offers.
+#include <optional>
+#include <set>
+
 #include "rr/error.hpp"
 #include "rr/users.hpp"
 #include "runtime/matlab/src/credentials.hpp"
@@ -16,10 +19,6 @@ struct ServiceHandle final : Handled {
   explicit ServiceHandle(Service given) : service(std::move(given)) {}
   const Service service;
 };
-
-std::shared_ptr<ServedHandle> served_of(Runtime& runtime, Call& call) {
-  return runtime.handles().get<ServedHandle>(call.handle(0));
-}
 
 List read_parameters(const ServedHandle& served, const MemberDescription& member, Call& call,
                      std::size_t first) {
@@ -74,7 +73,8 @@ void served_members(Runtime& runtime, Call& call) {
   call.give(make_cells(declarations));
 }
 
-// register_service(name, object, attributes, users): number
+// register_service(name, object, attributes, users, require_user, extra_imports): number;
+// the last is [] for all definitions, or a cell array of names
 void register_service(Runtime& runtime, Call& call) {
   const auto served = runtime.handles().get<ServedHandle>(call.handle(1));
   ServiceOptions options;
@@ -82,8 +82,14 @@ void register_service(Runtime& runtime, Call& call) {
   if (call.has(3) && !call.text(3).empty()) {
     options.users = std::make_shared<PasswordUsers>(call.text(3));
   }
-  const Service service =
-      dynamic::register_service(runtime.node(), call.text(0), served->object, std::move(options));
+  if (call.has(4)) options.require_user = read_number<bool>(call[4]);
+  std::optional<std::set<std::string>> extra;
+  if (call.has(5) && mxIsCell(call[5])) {
+    const std::vector<std::string> names = read_texts(call[5]);
+    extra.emplace(names.begin(), names.end());
+  }
+  const Service service = dynamic::register_service(runtime.node(), call.text(0), served->object,
+                                                    std::move(options), extra);
   call.give(give_handle(runtime, std::make_shared<ServiceHandle>(service)));
 }
 
@@ -124,6 +130,9 @@ void listen_tcp(Runtime& runtime, Call& call) {
   call.give(mxCreateDoubleScalar(given));
 }
 
+// listen_url(url): listens there, as at `rr+local:///path`
+void listen_url(Runtime& runtime, Call& call) { runtime.node().listen(call.text(0)); }
+
 // serve_for(seconds): answers requests and runs handlers so long; how many requests
 void serve_for(Runtime& runtime, Call& call) {
   const std::uint64_t before = runtime.served_count;
@@ -161,81 +170,6 @@ void call_back(Runtime& runtime, Call& call) {
   call.give(served->write(member.type, result));
 }
 
-// served_in(object, wire, value)
-void served_in(Runtime& runtime, Call& call) {
-  const auto served = served_of(runtime, call);
-  const MemberDescription member = served->object.member(call.text(1));
-  served->object.wire(member.name).set_in(served->read(call[2], member.type, member.name));
-}
-
-// served_out(object, wire): the newest value of any client and its time; [] and [] for none
-void served_out(Runtime& runtime, Call& call) {
-  const auto served = served_of(runtime, call);
-  const MemberDescription member = served->object.member(call.text(1));
-  const auto value = served->object.wire(member.name).out();
-  call.give(value ? served->write(member.type, value->value) : make_null());
-  call.give(value ? time_to_mex(value->time) : make_null());
-}
-
-// served_send(object, pipe, packet): to all endpoints
-void served_send(Runtime& runtime, Call& call) {
-  const auto served = served_of(runtime, call);
-  const MemberDescription member = served->object.member(call.text(1));
-  served->object.pipe(member.name).send(served->read(call[2], member.type, member.name));
-}
-
-// What comes, for `dispatch('on', member, value, client)`. Of a wire the newest only.
-struct Listening {
-  std::shared_ptr<Answerer> answerer;
-  std::shared_ptr<ServedTypes> types;
-  MemberDescription member;
-  std::shared_ptr<Queue> queue;
-
-  void push(const Value& value, std::uint32_t client) const {
-    queue->push([self = *this, value, client] {
-      try {
-        self.answerer->call(
-            {make_text("on"), make_text(self.member.name),
-             to_mex(value, *self.types->plans.plan(self.member.type), self.types->plans),
-             make_number<std::uint32_t>(client)});
-      } catch (const Error& error) {
-        mexWarnMsgIdAndTxt("RobotRaconteur:HandlerFailed", "a handler has failed: %s",
-                           error.what());
-      }
-    });
-  }
-};
-
-// served_listen(object, wire or pipe)
-void served_listen(Runtime& runtime, Call& call) {
-  const auto served = served_of(runtime, call);
-  const MemberDescription member = served->object.member(call.text(1));
-  const Listening listening{served->answerer, served->types, member, runtime.queue()};
-  if (member.kind == MemberKind::wire) {
-    served->object.wire(member.name)
-        .on_out([listening](const Value& value, const TimeSpec&, std::uint32_t client) {
-          listening.push(value, client);
-        });
-    return;
-  }
-  served->object.pipe(member.name).on_connect([listening](dynamic::PipeEndpoint end) {
-    const std::uint32_t client = end.client();
-    end.on_packet([listening, client](const Value& packet) { listening.push(packet, client); })
-        .detach();
-  });
-}
-
-// served_memory(object, memory [, content]): its content
-void served_memory(Runtime& runtime, Call& call) {
-  const auto served = served_of(runtime, call);
-  const MemberDescription member = served->object.member(call.text(1));
-  if (call.has(2)) {
-    served->object.store_memory(member.name, served->read(call[2], member.type, member.name));
-    return;
-  }
-  call.give(served->write(member.type, served->object.stored_memory(member.name)));
-}
-
 }  // namespace
 
 std::vector<Command> service_commands() {
@@ -247,15 +181,11 @@ std::vector<Command> service_commands() {
           {"service_clients", service_clients},
           {"release_path", release_path},
           {"listen_tcp", listen_tcp},
+          {"listen_url", listen_url},
           {"serve_for", serve_for},
           {"current_client", current_client},
           {"fire", fire},
-          {"call_back", call_back},
-          {"served_in", served_in},
-          {"served_out", served_out},
-          {"served_send", served_send},
-          {"served_listen", served_listen},
-          {"served_memory", served_memory}};
+          {"call_back", call_back}};
 }
 
 }  // namespace rr::matlab

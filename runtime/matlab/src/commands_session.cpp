@@ -2,6 +2,7 @@
 // Connecting, and what concerns a session as a whole.
 #include "rr/error.hpp"
 #include "runtime/matlab/src/credentials.hpp"
+#include "runtime/matlab/src/listeners.hpp"
 #include "runtime/matlab/src/objects.hpp"
 
 namespace rr::matlab {
@@ -28,6 +29,19 @@ dynamic::Client wait_connected(Runtime& runtime, const std::string& url, Connect
   return std::move(answer->client);
 }
 
+const dynamic::Client& own_client(const ObjectHandle& object) {
+  const dynamic::Client& client = object.connection()->client();
+  if (!client.rr_session()) {
+    throw Error(ErrorCode::invalid_operation, "the client belongs to a subscription");
+  }
+  return client;
+}
+
+// The arguments of who listens to a session.
+std::function<std::vector<mxArray*>()> session_news(const char* what, const std::string& detail) {
+  return [what, detail]() -> std::vector<mxArray*> { return {make_text(what), make_text(detail)}; };
+}
+
 // connect(urls [, username, credentials, object type]): number of the root object; of several URLs
 // the first that answers
 void connect(Runtime& runtime, Call& call) {
@@ -35,13 +49,20 @@ void connect(Runtime& runtime, Call& call) {
   if (call.has(1)) options.username = call.text(1);
   if (call.has(2)) options.credentials = read_credentials(call[2]);
   if (call.has(3)) options.object_type = call.text(3);
+  const auto listeners = std::make_shared<Listeners>(runtime);
+  options.on_closed = [listeners](const Error& why) {
+    Listeners::tell_last(listeners, session_news("ClientClosed", why.message()));
+  };
+  options.on_path_released = [listeners](const std::string& path) {
+    Listeners::tell(listeners, session_news("ServicePathReleased", path));
+  };
   const std::vector<std::string> urls = read_texts(call[0]);
   if (urls.empty()) throw Error(ErrorCode::invalid_argument, "there is no URL");
   for (std::size_t i = 0;; ++i) {
     try {
       auto client = wait_connected(runtime, urls[i], options);
       const dynamic::Object root = client.root();
-      auto connection = std::make_shared<Connection>(runtime, std::move(client));
+      auto connection = std::make_shared<Connection>(runtime, std::move(client), listeners);
       call.give(give_object(runtime, std::move(connection), root));
       return;
     } catch (const Error& error) {
@@ -57,20 +78,99 @@ void disconnect(Runtime& runtime, Call& call) {
   object->connection()->close();
 }
 
+// session_listen(object, function): number of the listener, function(what, detail)
+void session_listen(Runtime& runtime, Call& call) {
+  const auto object = object_of(runtime, call);
+  const auto& connection = object->connection();
+  if (!own_client(*object).is_open()) {
+    throw Error(ErrorCode::invalid_operation, "the session has ended");
+  }
+  // Not one of the connection's: it hears of its end, too.
+  const std::uint64_t number =
+      runtime.functions().add({.function = Kept(need_function(call[1], "listener")),
+                               .parameter = {},
+                               .member = {},
+                               .connection = connection,
+                               .subscription = nullptr});
+  connection->session_listeners->add(number);
+  call.give(make_number(number));
+}
+
+// As paths spell an index: other bytes than letters and digits of ASCII by two digits (07,
+// section 3).
+std::string spelled_index(const std::string& index) {
+  static constexpr char digits[] = "0123456789abcdef";
+  std::string spelled;
+  for (const char c : index) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80 && std::isalnum(byte) != 0) {
+      spelled += c;
+    } else {
+      spelled += {'%', digits[byte >> 4], digits[byte & 15]};
+    }
+  }
+  return spelled;
+}
+
+// Waits as wait_connected() does: a service of this interpreter's answers on this thread.
+std::string ask_object_type(Runtime& runtime, const dynamic::Client& client,
+                            const std::string& path) {
+  struct Answer {
+    std::atomic<bool> has_come{false};
+    std::exception_ptr error;
+    std::string type;
+  };
+  const auto answer = std::make_shared<Answer>();
+  runtime.node().run_aside([answer, path, session = client.rr_session(), queue = runtime.queue()] {
+    ClientBase asking(session);
+    try {
+      answer->type = asking.find_object_type(path);
+    } catch (const Error&) {
+      answer->error = std::current_exception();
+    }
+    (void)asking.rr_release();  // it is not to end with this
+    answer->has_come = true;
+    queue->wake();
+  });
+  runtime.wait_until([&] { return answer->has_come.load(); }, std::chrono::milliseconds::max());
+  if (answer->error) std::rethrow_exception(answer->error);
+  return answer->type;
+}
+
+// find_object_type(object, objref [, index]): the type of the object there, as the service says
+void find_object_type(Runtime& runtime, Call& call) {
+  const auto object = object_of(runtime, call);
+  const auto& client = own_client(*object);
+  const Resolved& member = object->resolve(call.text(1));
+  std::string path = object->object().path() + "." + member.member.name;
+  const dynamic::Value index = read_index(member, call.has(2) ? call[2] : nullptr);
+  if (index.kind() == dynamic::Kind::text) {
+    path += "[" + spelled_index(index.text()) + "]";
+  } else if (!index.is_null()) {
+    path += "[" + spelled_index(std::to_string(index.as<std::int32_t>())) + "]";
+  }
+  call.give(make_text(ask_object_type(runtime, client, path)));
+}
+
 // close(number): gives an object, wire, ... back
 void close(Runtime& runtime, Call& call) {
   runtime.current.reset();
   runtime.handles().remove(call.handle(0));
 }
 
-// attributes(object): containers.Map
+// attributes(object): containers.Map of plain values, and of values with their types, as the
+// service gave them when connecting
 void attributes(Runtime& runtime, Call& call) {
   const auto object = object_of(runtime, call);
-  const auto found =
-      runtime.call_directly([&] { return object->connection()->client().fetch_attributes(); });
+  Connection& connection = *object->connection();
   std::map<std::string, mxArray*> items;
-  for (const auto& [name, value] : found) items.emplace(name, plain_to_mex(value));
+  std::map<std::string, mxArray*> varvalues;
+  for (const auto& [name, value] : own_client(*object).attributes()) {
+    items.emplace(name, plain_to_mex(value));
+    varvalues.emplace(name, varvalue_to_mex(value, connection));
+  }
   call.give(make_map(items));
+  call.give(make_map(varvalues));
 }
 
 // authenticate(object, username, credentials)
@@ -91,10 +191,7 @@ void logout(Runtime& runtime, Call& call) {
 // service(object): struct with node_id, node_name, object_type
 void service(Runtime& runtime, Call& call) {
   const auto object = object_of(runtime, call);
-  const auto& client = object->connection()->client();
-  if (!client.rr_session()) {
-    throw Error(ErrorCode::invalid_operation, "the client belongs to a subscription");
-  }
+  const auto& client = own_client(*object);
   call.give(make_struct({{"node_id", make_text(client.remote_node().text())},
                          {"node_name", make_text(client.remote_name())},
                          {"object_type", make_text(client.object_type())}}));
@@ -127,9 +224,15 @@ std::vector<std::string> read_texts(const mxArray* given) {
 }
 
 std::vector<Command> session_commands() {
-  return {{"connect", connect},       {"disconnect", disconnect},     {"close", close},
-          {"attributes", attributes}, {"authenticate", authenticate}, {"logout", logout},
-          {"service", service}};
+  return {{"connect", connect},
+          {"disconnect", disconnect},
+          {"close", close},
+          {"attributes", attributes},
+          {"authenticate", authenticate},
+          {"logout", logout},
+          {"service", service},
+          {"session_listen", session_listen},
+          {"find_object_type", find_object_type}};
 }
 
 }  // namespace rr::matlab

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rr/error.hpp"
+#include "runtime/matlab/src/listeners.hpp"
 #include "runtime/matlab/src/members.hpp"
 
 namespace rr::matlab {
@@ -10,7 +11,11 @@ using dynamic::WireConnection;
 
 struct WireHandle final : MemberHandle {
   WireHandle(const ObjectHandle& object, const Resolved& of, WireConnection given)
-      : MemberHandle(object, of), end(std::move(given)) {}
+      : MemberHandle(object, of), end(std::move(given)) {
+    end.on_closed(
+        [heard = closed] { Listeners::tell(heard, [] { return std::vector<mxArray*>(); }); });
+  }
+  const std::shared_ptr<Listeners> closed = std::make_shared<Listeners>(connection->runtime());
   WireConnection end;
   std::chrono::milliseconds lifespan{0};
 };
@@ -104,6 +109,14 @@ void listen(Runtime& runtime, Call& call) {
   call.give(make_number(number));
 }
 
+// wire_hear(wire, function): number of the listener, which is called when the wire is closed
+void hear(Runtime& runtime, Call& call) {
+  const auto wire = wire_of(runtime, call);
+  const std::uint64_t number = add_listener(*wire, call[1]);
+  wire->closed->add(number);
+  call.give(make_number(number));
+}
+
 // wire_peek(object, name, of_out): [value, time]
 void peek(Runtime& runtime, Call& call) {
   const auto object = object_of(runtime, call);
@@ -143,7 +156,7 @@ std::vector<Command> wire_commands() {
           {"wire_wait", wait},       {"wire_lifespan", lifespan},
           {"wire_listen", listen},   {"wire_peek", peek},
           {"wire_poke", poke},       {"wire_close", close},
-          {"wire_is_open", is_open}};
+          {"wire_is_open", is_open}, {"wire_hear", hear}};
 }
 
 }  // namespace rr::matlab

@@ -6,8 +6,11 @@
 namespace rr::matlab {
 namespace {
 
-mxArray* error_to_mex(const std::exception_ptr& error) {
-  const auto failure = run([&] { std::rethrow_exception(error); }, [](const Error&) {});
+// The rest of what it has is there for who asks in the handler.
+mxArray* error_to_mex(const std::exception_ptr& error, Runtime& runtime,
+                      const std::shared_ptr<Connection>& connection) {
+  const auto failure = run([&] { std::rethrow_exception(error); },
+                           [&](const Error& one) { runtime.last_error.emplace(one, connection); });
   return make_struct(
       {{"identifier", make_text(failure->identifier)}, {"message", make_text(failure->message)}});
 }
@@ -26,7 +29,7 @@ void Completions::end(std::exception_ptr error, Function<mxArray*()> make) const
         if (!function) return;
         std::vector<mxArray*> arguments{parameter, make_null(), make_null()};
         if (error) {
-          arguments[2] = error_to_mex(error);
+          arguments[2] = error_to_mex(error, *runtime, connection);
         } else {
           arguments[1] = make();
         }

@@ -6,11 +6,7 @@
 namespace rr::matlab {
 
 std::uint64_t add_listener(const MemberHandle& member, const mxArray* function) {
-  if (!mxIsClass(function, "function_handle") && !mxIsChar(function)) {
-    throw Error(ErrorCode::data_type_mismatch,
-                member.subject + ": expected a function handle, got " + described(function));
-  }
-  return member.connection->add({.function = Kept(function),
+  return member.connection->add({.function = Kept(need_function(function, member.subject)),
                                  .parameter = {},
                                  .member = member.member,
                                  .connection = member.connection,

@@ -9,6 +9,7 @@
 
 #include "rr/matlab/failure.hpp"
 #include "rr/matlab/module.hpp"
+#include "runtime/matlab/src/node_options.hpp"
 #include "runtime/matlab/src/objects.hpp"
 
 namespace {
@@ -17,18 +18,29 @@ namespace {
 // interpreter is gone then.
 rr::matlab::Runtime* runtime = nullptr;
 std::span<const rr::matlab::Module* const> compiled_in;
+rr::NodeOptions next_options;  // of nodes that are made
 // Of the last handle that was given, by this or an earlier one: what the user still holds of an
 // earlier one must not mean anything here.
 std::uint32_t generation = 0;
 int depth = 0;  // handlers call this again
 
-// Of commands that run in each other.
+// Of commands that run in each other: whose command runs is again the outer one's behind the inner.
 class Entered {
  public:
-  Entered() { ++depth; }
-  ~Entered() { --depth; }
+  Entered() : in_(runtime) {
+    ++depth;
+    if (in_ != nullptr) current_ = in_->current;
+  }
+  ~Entered() {
+    --depth;
+    if (depth != 0 && in_ != nullptr && in_ == runtime) in_->current = current_;
+  }
   Entered(const Entered&) = delete;
   Entered& operator=(const Entered&) = delete;
+
+ private:
+  rr::matlab::Runtime* const in_;
+  std::shared_ptr<rr::matlab::Connection> current_;
 };
 
 // Objects that functions of the user hold come back here to be closed, so there is none any more.
@@ -52,10 +64,19 @@ void shut_down() {
   mexUnlock();
 }
 
+// node_options(struct): for the next node, and those after it
+void set_options(const mxArray* given) {
+  if (runtime != nullptr) {
+    throw rr::Error(rr::ErrorCode::invalid_operation,
+                    "there is a node already; RobotRaconteur.Shutdown() ends it");
+  }
+  next_options = rr::matlab::read_node_options(given);
+}
+
 // The file stays loaded while there is a node: `clear all` takes away what the user holds only.
 rr::matlab::Runtime& need_runtime() {
   if (runtime == nullptr) {
-    runtime = new rr::matlab::Runtime(generation);
+    runtime = new rr::matlab::Runtime(generation, next_options);
     runtime->modules = compiled_in;
     mexLock();
     mexAtExit(at_exit);
@@ -67,6 +88,7 @@ void run_named(int result_count, mxArray** results, int argument_count, const mx
   if (argument_count < 1) throw rr::matlab::Misfit("expected the name of a command");
   const std::string name = rr::matlab::read_text(arguments[0]);
   if (name == "shutdown") return shut_down();
+  if (name == "node_options" && argument_count == 2) return set_options(arguments[1]);
   // An object that goes when there is no node any more must not make another one.
   if (name == "close" && runtime == nullptr) return;
   rr::matlab::Call call(result_count, results, argument_count - 1, arguments + 1);

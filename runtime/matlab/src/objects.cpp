@@ -9,8 +9,9 @@ namespace rr::matlab {
 
 using dynamic::Value;
 
-Connection::Connection(Runtime& runtime, dynamic::Client client)
-    : runtime_(runtime), client_(std::move(client)) {}
+Connection::Connection(Runtime& runtime, dynamic::Client client,
+                       std::shared_ptr<Listeners> listeners)
+    : session_listeners(std::move(listeners)), runtime_(runtime), client_(std::move(client)) {}
 
 Connection::~Connection() { close(); }
 
@@ -137,6 +138,17 @@ dynamic::List read_arguments(const ObjectHandle& object, const Resolved& member,
   return arguments;
 }
 
+mxArray* varvalue_to_mex(const Value& value, Connection& connection) {
+  const dynamic::ValueType type = connection.types().type("varvalue");
+  return to_mex(value, *connection.plans.plan(type), connection.plans);
+}
+
+const mxArray* need_function(const mxArray* given, const std::string& subject) {
+  if (mxIsClass(given, "function_handle") || mxIsChar(given)) return given;
+  throw Error(ErrorCode::data_type_mismatch,
+              subject + ": expected a function handle, got " + described(given));
+}
+
 mxArray* give_handle(Runtime& runtime, std::shared_ptr<Handled> handled) {
   return make_number<std::uint64_t>(runtime.handles().add(std::move(handled)));
 }
@@ -167,7 +179,7 @@ Value run_callback(Runtime& runtime, const PendingCall& call) {
   const TypePlan* const plan = connection->plans.plan(member.type);
   const auto outcome = UserFunctions::run(
       function->function, write_arguments(member, call.arguments(), *connection), plan != nullptr);
-  if (outcome.failure) throw error_of(*outcome.failure);
+  if (outcome.failure) throw runtime.error_of_failure(*outcome.failure);
   if (plan == nullptr) return {};
   const std::string subject = "member " + member.name + ", result";
   if (outcome.result == nullptr) {

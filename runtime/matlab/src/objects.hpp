@@ -17,11 +17,14 @@
 
 namespace rr::matlab {
 
+class Listeners;
+
 /// A session with a service, and what the interpreter's user has asked for in it. It ends with the
 /// last object, wire, ... that is held, or by close().
 class Connection {
  public:
-  Connection(Runtime& runtime, dynamic::Client client);
+  Connection(Runtime& runtime, dynamic::Client client,
+             std::shared_ptr<Listeners> session_listeners = nullptr);
   /// Of a subscription, which ends the sessions itself.
   explicit Connection(Runtime& runtime) : runtime_(runtime) {}
   ~Connection();
@@ -39,6 +42,8 @@ class Connection {
   /// Any object, by which the types are known when there is no session of its own.
   std::optional<dynamic::Object> any_object;
   Plans plans;
+  /// Who hears that the session has ended, or a path was released; null for a subscription's.
+  const std::shared_ptr<Listeners> session_listeners;
   /// Whether events are put into the queue.
   const std::shared_ptr<std::atomic<bool>> has_events = std::make_shared<std::atomic<bool>>(true);
 
@@ -109,6 +114,10 @@ dynamic::Value read_value(const ObjectHandle& object, const mxArray* given, cons
 /// Arguments of a function. Throws rr::Error when they are too many or too few.
 dynamic::List read_arguments(const ObjectHandle& object, const Resolved& member,
                              const std::vector<const mxArray*>& given);
+/// A function that the user gives for a thing. Throws rr::Error that names the thing.
+const mxArray* need_function(const mxArray* given, const std::string& subject);
+/// A value with its type, as those of type varvalue are received.
+mxArray* varvalue_to_mex(const dynamic::Value& value, Connection& connection);
 /// The number of an object for the interpreter.
 mxArray* give_object(Runtime& runtime, std::shared_ptr<Connection> connection,
                      dynamic::Object object);

@@ -10,12 +10,11 @@ namespace rr::matlab {
 
 using Clock = std::chrono::steady_clock;
 
-Runtime::Runtime(std::uint32_t generation)
+Runtime::Runtime(std::uint32_t generation, NodeOptions options)
     : queue_(std::make_shared<Queue>()),
       log_(std::make_shared<Log>()),
       handles_(generation),
       interrupts_(std::make_unique<Interrupts>([this] { interrupted(); })) {
-  NodeOptions options;
   options.log = [log = log_](LogLevel level, std::string_view text) { log->write(level, text); };
   node_ = std::make_unique<Node>(std::move(options));
 }
@@ -49,6 +48,18 @@ std::unique_ptr<CallScope> Runtime::make_scope(
   const std::chrono::milliseconds timeout = limit.value_or(request_timeout);
   if (timeout.count() == 0) return std::make_unique<CallScope>(waiting.cancellation);
   return std::make_unique<CallScope>(timeout, waiting.cancellation);
+}
+
+// The parameter of a service's error is of that service's types, which another one need not know.
+Error Runtime::error_of_failure(const Failure& failure) const {
+  if (!last_error) return error_of(failure);
+  const Error& error = last_error->error;
+  const Failure known = failure_of(error);
+  if (known.identifier != failure.identifier || known.message != failure.message) {
+    return error_of(failure);
+  }
+  if (!last_error->connection) return error;
+  return {error.code(), error.name(), error.message(), error.subname()};
 }
 
 void Runtime::interrupted() {
@@ -110,6 +121,8 @@ void Runtime::run_calls() {
       call->finish(run_callback(*this, *call));
     } catch (const Error&) {
       call->fail(std::current_exception());
+    } catch (const Misfit& misfit) {
+      call->fail(std::make_exception_ptr(misfit.error("")));
     }
   }
   while (const Queue::Work request = queue_->pop_request()) {

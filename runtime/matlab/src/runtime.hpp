@@ -45,7 +45,7 @@ struct RecordTypes {
 class Runtime {
  public:
   /// `generation`: see Handles.
-  explicit Runtime(std::uint32_t generation);
+  Runtime(std::uint32_t generation, NodeOptions options);
   ~Runtime();
   Runtime(const Runtime&) = delete;
   Runtime& operator=(const Runtime&) = delete;
@@ -102,6 +102,9 @@ class Runtime {
     std::shared_ptr<Connection> connection;
   };
   std::optional<LastError> last_error;
+  /// What a failure of a function of the user's is told to a service as: an error that came from
+  /// elsewhere, or that RobotRaconteur.ThrowError has made, as it is.
+  [[nodiscard]] Error error_of_failure(const Failure& failure) const;
   /// Whose command runs, so that a parameter of its error can be read.
   std::shared_ptr<Connection> current;
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/matlab/src/served.hpp"
 
+#include <semaphore>
+
 #include "rr/error.hpp"
 
 namespace rr::matlab {
@@ -42,7 +44,7 @@ mxArray* Answerer::call(std::vector<mxArray*> arguments) const {
     throw Error(ErrorCode::operation_aborted, "the service does not answer any more");
   }
   const auto outcome = UserFunctions::run(function->function, std::move(arguments), true);
-  if (outcome.failure) throw error_of(*outcome.failure);
+  if (outcome.failure) throw runtime_.error_of_failure(*outcome.failure);
   return outcome.result != nullptr ? outcome.result : make_null();
 }
 
@@ -54,6 +56,12 @@ ServedHandle::ServedHandle(Runtime& runtime, std::shared_ptr<ServedTypes> served
   serve_members(runtime, *this);
 }
 
+void ServedHandle::enable_monitor() const {
+  const auto is_free = std::make_shared<std::binary_semaphore>(1);
+  object.set_monitor([is_free](auto limit) { return is_free->try_acquire_for(limit); },
+                     [is_free] { is_free->release(); });
+}
+
 mxArray* ServedHandle::write(const dynamic::ValueType& type, const Value& value) const {
   return to_mex(value, *types->plans.plan(type), types->plans);
 }
@@ -61,6 +69,10 @@ mxArray* ServedHandle::write(const dynamic::ValueType& type, const Value& value)
 Value ServedHandle::read(const mxArray* given, const dynamic::ValueType& type,
                          const std::string& member) const {
   return read_served(*types, given, type, "member " + member);
+}
+
+std::shared_ptr<ServedHandle> served_of(Runtime& runtime, Call& call) {
+  return runtime.handles().get<ServedHandle>(call.handle(0));
 }
 
 Value read_served(ServedTypes& types, const mxArray* given, const dynamic::ValueType& type,

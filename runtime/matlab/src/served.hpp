@@ -61,10 +61,15 @@ class ServedHandle final : public Handled {
   const std::shared_ptr<Answerer> answerer;
 
   [[nodiscard]] mxArray* write(const dynamic::ValueType& type, const dynamic::Value& value) const;
+  /// A monitor, by which clients can have the object to themselves. Before it is offered.
+  void enable_monitor() const;
   /// Throws rr::Error that begins with the member.
   [[nodiscard]] dynamic::Value read(const mxArray* given, const dynamic::ValueType& type,
                                     const std::string& member) const;
 };
+
+/// The object whose number is the first argument.
+std::shared_ptr<ServedHandle> served_of(Runtime& runtime, Call& call);
 
 /// A value of the interpreter's as one of a member's type. Throws rr::Error that names it.
 dynamic::Value read_served(ServedTypes& types, const mxArray* given, const dynamic::ValueType& type,
@@ -83,6 +88,8 @@ Result Answerer::ask(std::function<Result(Runtime&)> work) const {
       promise->set_value(work(runtime));
     } catch (const Error&) {
       promise->set_exception(std::current_exception());
+    } catch (const Misfit& misfit) {
+      promise->set_exception(std::make_exception_ptr(misfit.error("")));
     }
   });
   try {

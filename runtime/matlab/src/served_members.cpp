@@ -41,6 +41,8 @@ void answer(const dynamic::Reply& reply, const std::function<Value()>& work) {
     reply(work());
   } catch (const Error&) {
     reply.fail(std::current_exception());
+  } catch (const Misfit& misfit) {
+    reply.fail(std::make_exception_ptr(misfit.error("")));
   }
 }
 

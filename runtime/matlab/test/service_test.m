@@ -201,9 +201,165 @@
 %! assert(text, sprintf('as expected\nend\n'));
 %! assert(count > 20);
 
+%!test % errors with what an identifier cannot say, and errors that are passed on
+%! [~, ~, url] = offered();
+%! served.add = @(a, b) RobotRaconteur.ThrowError(struct('name', 'experimental.rig.Jam', ...
+%!   'message', 'stuck', 'subname', 'joint', 'parameter', ...
+%!   RobotRaconteurVarValue(int16([a; b]), 'int16[]')));
+%! served.stop = @() RobotRaconteur.ThrowError(struct('code', 999, 'name', 'some.Name'));
+%! other = client();
+%! served.jam = @(text) other.jam(text);
+%! served.title = @() RobotRaconteur.ThrowError(struct('name', 'RobotRaconteur.OutOfRange', ...
+%!                                                     'message', '100% over'));
+%! service = RobotRaconteur.RegisterService('errors', 'experimental.rig.Rig', served);
+%! c = RobotRaconteur.ConnectService([url, 'errors']);
+%! fails(@() c.add(1, 2), 'experimental.rig:Jam', 'stuck (joint)');
+%! last = RobotRaconteur.GetLastError();
+%! assert(last.code, 100);
+%! assert(last.name, 'experimental.rig.Jam');
+%! assert(last.message, 'stuck');
+%! assert(last.subname, 'joint');
+%! assert(last.parameter, int16([1; 2]));
+%! assert(isequal(last.varvalue, RobotRaconteurVarValue(int16([1; 2]), 'int16[]')));
+%! fails(@() c.stop(), 'some:Name', 'some.Name');
+%! assert(RobotRaconteur.GetLastError().code, 999);
+%! fails(@() c.jam('far away'), 'experimental.rig:Jam', 'far away');
+%! fails(@() c.title, 'RobotRaconteur:OutOfRange', '100% over');
+%! assert(RobotRaconteur.GetLastError().code, 29);
+%! fails(@() RobotRaconteur.ThrowError(5), 'RobotRaconteur:DataTypeMismatch', ...
+%!   'expected a struct, got double');
+%! service.Close();
+
+%!test % what happens to a session, and types of objects
+%! [~, ~, url] = offered();
+%! service = RobotRaconteur.RegisterService('short', 'experimental.rig.Rig', rr_rig());
+%! c = RobotRaconteur.ConnectService([url, 'short']);
+%! rr_log_call('clear');
+%! l = RobotRaconteur.AddClientServiceListener(c, @(what, detail) rr_log_call(what, detail));
+%! assert(RobotRaconteur.FindObjectType(c, 'child'), 'experimental.rig.Child');
+%! assert(RobotRaconteur.FindObjectType(c, 'children', 3), 'experimental.rig.Child');
+%! assert(RobotRaconteur.FindObjectType(c, 'by_name', 'left arm'), 'experimental.rig.Child');
+%! c.get_children(7);
+%! service.ReleasePath('short.children[7]');
+%! assert(rr_eventually(@() numel(rr_log_call()) == 1));
+%! assert(rr_log_call(){1}, {'ServicePathReleased', 'short.children[7]'});
+%! service.Close();
+%! assert(rr_eventually(@() numel(rr_log_call()) == 2));
+%! assert(rr_log_call(){2}{1}, 'ClientClosed');
+%! fails(@() RobotRaconteur.AddClientServiceListener(c, @(what, detail) 0), ...
+%!   'RobotRaconteur:InvalidOperation', 'the session has ended');
+%! other = client();
+%! l = RobotRaconteur.AddClientServiceListener(other, @(what, detail) rr_log_call('deleted'));
+%! delete(l);
+
+%!test % a client that ends the session hears of it, too
+%! [~, ~, url] = offered();
+%! c = RobotRaconteur.ConnectService([url, 'rig']);
+%! rr_log_call('clear');
+%! RobotRaconteur.AddClientServiceListener(c, @(what, detail) rr_log_call(what));
+%! RobotRaconteur.DisconnectService(c);
+%! assert(rr_eventually(@() numel(rr_log_call()) == 1));
+%! assert(rr_log_call(), {{'ClientClosed'}});
+
+%!test % what is peeked, who has connected, and ending connections
+%! [~, ~, url] = offered();
+%! rr_log_call('clear');
+%! served.peek_in_force = @() [7; 8; 9];
+%! served.peek_out_force = @() error('RobotRaconteur:ValueNotSet', 'nothing yet');
+%! served.connected_force = @(number) rr_log_call('wire', number);
+%! served.connected_samples = @(number) rr_log_call('pipe', number);
+%! service = RobotRaconteur.RegisterService('streams', 'experimental.rig.Rig', served);
+%! c = RobotRaconteur.ConnectService([url, 'streams']);
+%! assert(c.force.PeekInValue(), [7; 8; 9]);
+%! fails(@() c.force.PeekOutValue(), 'RobotRaconteur:ValueNotSet', 'nothing yet');
+%! w = c.force.Connect();
+%! first = c.samples.Connect();
+%! second = c.samples.Connect();
+%! assert(rr_eventually(@() numel(rr_log_call()) == 3));
+%! calls = rr_log_call();
+%! assert({calls{1}{1}, calls{2}{1}, calls{3}{1}}, {'wire', 'pipe', 'pipe'});
+%! assert(calls{1}{2}, service.Clients());
+%! ends = service.Root.Endpoints('samples');
+%! assert(size(ends), [2 1]);
+%! to_second = ends([ends.index] == second.Index);
+%! service.Root.SendPacketTo('samples', to_second, struct('id', 5, 'at', [0; 0; 0]), true);
+%! service.Root.SendPacket('samples', struct('id', 6, 'at', [0; 0; 0]), true);
+%! service.Root.SendPacket('samples', struct('id', 7, 'at', [0; 0; 0]));
+%! assert(second.ReceivePacketWait(20).id, int16(5));
+%! assert(second.ReceivePacketWait(20).id, int16(6));
+%! assert(first.ReceivePacketWait(20).id, int16(6));
+%! rr_log_call('clear');
+%! addlistener(w, 'WireConnectionClosed', @() rr_log_call('wire'));
+%! addlistener(first, 'PipeEndpointClosed', @() rr_log_call('pipe'));
+%! service.Root.Disconnect('force');
+%! service.Root.Disconnect('samples');
+%! assert(rr_eventually(@() numel(rr_log_call()) == 2));
+%! assert(rr_eventually(@() ~w.IsOpen && ~first.IsOpen && ~second.IsOpen));
+%! fails(@() service.Root.SendPacketTo('samples', to_second, struct('id', 5, 'at', [0; 0; 0])), ...
+%!   'RobotRaconteur:InvalidOperation', 'member samples: the endpoint is closed');
+%! service.Close();
+
+%!test % packets are told to the object before a request that was sent after them
+%! [~, rig] = offered();
+%! c = client();
+%! p = c.samples.Connect();
+%! rig.packets = [];
+%! for i = 1:5
+%!   p.SendPacket(struct('id', i, 'at', [0; 0; 0]));
+%! end
+%! c.add(1, 2);
+%! assert(numel(rig.packets), 5);
+%! p.Close();
+
+%!test % monitors, users who need not be, attributes with their types, definitions that are offered
+%! [~, ~, url] = offered();
+%! RobotRaconteur.RegisterServiceType(sprintf('service experimental.other\nstdver 0.10\nobject Thing\nend\n'));
+%! root = RobotRaconteurServed('experimental.rig.Rig', struct('add', @(a, b) a + b));
+%! root.EnableMonitor();
+%! options = struct('Users', 'ann 5f4dcc3b5aa765d61d8327deb882cf99 objectlock', 'RequireUser', false);
+%! options.Attributes = struct('gain', RobotRaconteurVarValue(0.5, 'double[]'), 'place', 'roof');
+%! options.ExtraImports = {};
+%! service = RobotRaconteur.RegisterService('monitored', 'experimental.rig.Rig', root, options);
+%! a = RobotRaconteur.ConnectService([url, 'monitored']);
+%! b = RobotRaconteur.ConnectService([url, 'monitored']);
+%! [values, varvalues] = RobotRaconteur.GetServiceAttributes(a);
+%! assert(values('gain'), 0.5);
+%! assert(varvalues('gain').datatype, 'double[]');
+%! assert(varvalues('place').data, 'roof');
+%! assert(RobotRaconteur.GetPulledServiceTypes(a), {'experimental.rig'});
+%! RobotRaconteur.MonitorEnter(a, 5);
+%! fails(@() RobotRaconteur.MonitorEnter(b, 0.1), 'RobotRaconteur:OperationTimeout', ...
+%!   'the monitor is in use');
+%! RobotRaconteur.MonitorExit(a);
+%! RobotRaconteur.MonitorEnter(b, 5);
+%! RobotRaconteur.MonitorExit(b);
+%! service.Close();
+
 %!test % definitions with mistakes
 %! fails(@() RobotRaconteurServed('experimental.rig.Rug', struct()), 'RobotRaconteur:KeyNotFound', ...
 %!   'no object `experimental.rig.Rug`');
 
 %!test % the interpreter ends while a service is offered, and clients are connected
 %! RobotRaconteur.Shutdown();
+
+%!test % options of the node, which come before it
+%! fails(@() RobotRaconteur.SetNodeOptions(struct('Nodename', 'x')), ...
+%!   'RobotRaconteur:InvalidArgument', 'node options: there is no `Nodename`');
+%! fails(@() RobotRaconteur.SetNodeOptions(struct('ClientOffer', 5)), ...
+%!   'RobotRaconteur:DataTypeMismatch', 'what the node offers: expected a struct, got double');
+%! id = '{a1b2c3d4-1111-4222-8333-444455556666}';
+%! RobotRaconteur.SetNodeOptions(struct('NodeName', 'example.rig', 'NodeID', id, ...
+%!   'HeartbeatPeriod', 2, 'ClientOffer', struct('MessageV4', false)));
+%! RobotRaconteur.RegisterServiceType(fullfile(getenv('RR_TEST_FILES'), 'experimental.rig.robdef'));
+%! assert(rrmex('node').id, id(2:end - 1));
+%! fails(@() RobotRaconteur.SetNodeOptions(struct()), 'RobotRaconteur:InvalidOperation', ...
+%!   'there is a node already; RobotRaconteur.Shutdown() ends it');
+%! folder = fullfile(getenv('RR_TEST_FOLDER'), 'socket');
+%! service = RobotRaconteur.RegisterService('rig', 'experimental.rig.Rig', rr_rig());
+%! RobotRaconteur.Listen(['rr+local://', folder]);
+%! port = RobotRaconteur.StartServer(0, '127.0.0.1');
+%! c = RobotRaconteur.ConnectService(sprintf('rr+tcp://127.0.0.1:%d/?service=rig', port));
+%! assert(rrmex('service', c.rr_h).node_name, 'example.rig');
+%! assert(c.add(1, 2), 3);
+%! RobotRaconteur.Shutdown();
+%! RobotRaconteur.SetNodeOptions(struct());

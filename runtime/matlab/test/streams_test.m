@@ -92,6 +92,30 @@
 %! p.Close();
 %! assert(~p.IsOpen);
 
+%!test % packets that are acknowledged, and ends that are closed
+%! c = rr_bench();
+%! p = c.numbers.Connect();
+%! w = c.level.Connect();
+%! rr_log_call('clear');
+%! addlistener(p, 'PacketAckReceived', @(number) rr_log_call('ack', number));
+%! addlistener(p, 'PipeEndpointClosed', @() rr_log_call('pipe'));
+%! closed = addlistener(w, 'WireConnectionClosed', @() rr_log_call('wire'));
+%! assert(~p.RequestPacketAck && ~p.IsUnreliable);
+%! p.SendPacket(1);
+%! p.RequestPacketAck = true;
+%! assert(p.RequestPacketAck);
+%! number = p.SendPacket(2);
+%! assert(rr_eventually(@() numel(rr_log_call()) == 1));
+%! assert(rr_log_call(), {{'ack', number}});
+%! p.Close();
+%! w.Close();
+%! assert(rr_eventually(@() numel(rr_log_call()) == 3));
+%! assert(sort({rr_log_call(){2}{1}, rr_log_call(){3}{1}}), {'pipe', 'wire'});
+%! delete(closed);
+
+%!error id=RobotRaconteur:MemberNotFound addlistener(rr_bench().level.Connect(), 'x', @() 0)
+%!error id=RobotRaconteur:MemberNotFound addlistener(rr_bench().numbers.Connect(), 'x', @() 0)
+
 %!test % a queue that is full
 %! c = rr_bench();
 %! p = c.numbers.Connect();
@@ -165,6 +189,23 @@
 %! m(:, 1) = [1 4; 2 5; 3 6];
 %! assert(m(:, 1), [1 4; 2 5; 3 6]);
 %! assert(m(2, 1), [4; 5; 6]);
+
+%!test % memories by positions and counts
+%! c = rr_bench();
+%! m = c.line;
+%! assert(m.Length(), 10);
+%! assert(m.Dimensions(), 10);
+%! m.Write(3, [7; 8]);
+%! assert(m.Read(2, 3), [2; 7; 8]);
+%! m(3:4) = [3; 4];
+%! assert(m.Read(1, 0), zeros(0, 1));
+%! g = c.grid;
+%! assert(g.DimCount(), 3);
+%! assert(g.Dimensions(), [3 4 2]);
+%! before = g.Read([1 1 1], [2 2 1]);
+%! g.Write([1 1 1], uint8([1 2; 3 4]));
+%! assert(g(1:2, 1:2, 1), uint8([1 2; 3 4]));
+%! g.Write([1 1 1], before);
 
 %!test % memories of pods and namedarrays
 %! c = bench();

@@ -38,9 +38,22 @@ classdef RobotRaconteur
     function Logout(obj)
       rrmex('logout', obj.rr_h);
     end
-    function found = GetServiceAttributes(obj)
-      %GETSERVICEATTRIBUTES What the service tells of itself, as a containers.Map.
-      found = rrmex('attributes', obj.rr_h);
+    function [found, varvalues] = GetServiceAttributes(obj)
+      %GETSERVICEATTRIBUTES What the service tells of itself, as a containers.Map; as it was when
+      %   the object was connected. varvalues has each as a RobotRaconteurVarValue, which tells its
+      %   type.
+      [found, varvalues] = rrmex('attributes', obj.rr_h);
+    end
+    function listener = AddClientServiceListener(obj, handler)
+      %ADDCLIENTSERVICELISTENER Hear of what happens to the session of an object, from Poll:
+      %   handler('ClientClosed', why) when it has ended, whoever ended it,
+      %   handler('ServicePathReleased', path) when the service has released an object.
+      listener = RobotRaconteurListener(rrmex('session_listen', obj.rr_h, handler));
+    end
+    function type = FindObjectType(obj, member, varargin)
+      %FINDOBJECTTYPE RobotRaconteur.FindObjectType(obj, objref, index): what type of object is
+      %   there, as the service says, without getting it.
+      type = rrmex('find_object_type', obj.rr_h, member, varargin{:});
     end
 
     function count = Poll(seconds)
@@ -194,23 +207,34 @@ classdef RobotRaconteur
       %REGISTERSERVICE service = RobotRaconteur.RegisterService(name, type, obj, options)
       %   Offers obj, a handle object or a struct of function handles (see RobotRaconteurServed), as
       %   an object of a registered type. options is a struct: Attributes (a containers.Map or
-      %   struct), Users (a text of users). Requests are answered by Poll and ServeFor, and while
-      %   a call of one's own waits.
+      %   struct), Users (a text of users), RequireUser (false: clients may also come without a
+      %   user), ExtraImports (cells with the names of the definitions that clients get besides
+      %   those that the type's imports; without it they get all that are known). Requests are
+      %   answered by Poll and ServeFor, and while a call of one's own waits.
       if nargin < 4
         options = struct();
       end
       attributes = [];
       users = '';
+      require_user = true;
+      extra_imports = [];
       if isfield(options, 'Attributes')
         attributes = options.Attributes;
       end
       if isfield(options, 'Users')
         users = options.Users;
       end
+      if isfield(options, 'RequireUser')
+        require_user = options.RequireUser;
+      end
+      if isfield(options, 'ExtraImports')
+        extra_imports = options.ExtraImports;
+      end
       if ~isa(obj, 'RobotRaconteurServed')
         obj = RobotRaconteurServed(type, obj);
       end
-      service = RobotRaconteurService(name, obj, attributes, users);
+      service = RobotRaconteurService(name, obj, attributes, users, require_user, ...
+                                      extra_imports);
     end
     function port = StartServer(port, address)
       %STARTSERVER Listen at a TCP port, 0 for a free one; returns it. address may be '127.0.0.1'.
@@ -222,9 +246,13 @@ classdef RobotRaconteur
       end
       port = rrmex('listen_tcp', port, address);
     end
+    function Listen(url)
+      %LISTEN Listen by another channel, as Listen('rr+local:///path'); see docs/channels.md.
+      rrmex('listen_url', url);
+    end
     function count = ServeFor(seconds)
-      %SERVEFOR Answer requests, and call handlers, for so long; returns how many requests. Ctrl-C
-      %   ends it.
+      %SERVEFOR Answer requests, and call handlers, for so long; returns how many requests, and
+      %   values and packets that an object was told. Ctrl-C ends it.
       count = rrmex('serve_for', seconds);
     end
     function number = CurrentClient()
@@ -232,6 +260,22 @@ classdef RobotRaconteur
       number = rrmex('current_client');
     end
 
+    function varargout = ThrowError(err)
+      %THROWERROR Throw an error that a service's client, or a callback's service, gets as it is,
+      %   with what an identifier cannot say: a struct like that of GetLastError, of which name or
+      %   code is enough. ThrowError(struct('name', 'example.arm.Jam', 'message', 'stuck', ...
+      %   'subname', 'joint', 'parameter', RobotRaconteurVarValue(3, 'int32'))). It gives nothing,
+      %   but may stand where a result is expected: @(a, b) RobotRaconteur.ThrowError(...).
+      varargout = {};
+      rrmex('throw', err);
+    end
+    function SetNodeOptions(options)
+      %SETNODEOPTIONS How the node is made: before it is used first, or after Shutdown. A struct
+      %   with any of NodeName, NodeID; RequestTimeout, ConnectTimeout, HeartbeatPeriod in seconds;
+      %   MemoryTransferLimit in bytes; CertificateFile, KeyFile, AuthorityFiles (cells), RequireTls;
+      %   ClientOffer and ServerOffer: structs with any of MessageV4, StringTable, CombinedConnect.
+      rrmex('node_options', options);
+    end
     function SetLogLevel(level)
       %SETLOGLEVEL 'DEBUG', 'INFO', 'WARNING', 'ERROR', 'DISABLE'
       rrmex('log_level', level);
@@ -256,7 +300,8 @@ classdef RobotRaconteur
     end
     function found = GetLastError()
       %GETLASTERROR What the last error of a call had: code, name, subname, message, identifier,
-      %   and the parameter that the service has sent with it.
+      %   and the parameter that the service has sent with it: as plain data in `parameter`, and
+      %   with its type, as a RobotRaconteurVarValue, in `varvalue`; [] for none.
       found = rrmex('last_error');
     end
     function Shutdown()

@@ -9,7 +9,8 @@ classdef RobotRaconteurGenerator < RobotRaconteurHandle
       %   at the end.
       [is_there, value] = rrmex('generator_next', obj.rr_h, varargin{:});
       if ~is_there
-        error('RobotRaconteur:StopIteration', 'the generator has ended');
+        RobotRaconteur.ThrowError(struct('name', 'RobotRaconteur.StopIteration', ...
+                                         'message', 'the generator has ended'));
       end
     end
     function [is_there, value] = TryNext(obj, varargin)

@@ -2,7 +2,9 @@ classdef RobotRaconteurMemory < handle
   %ROBOTRACONTEURMEMORY A memory of an object, read and written by indexing.
   %   size(m);  a = m(:);  m(:) = a;  b = m(1:100, 1:100, 1);  m(5:8, 2) = c;
   %   Each reads or writes at the service. What is read between the indexes is left out here;
-  %   what is written must be without gaps.
+  %   what is written must be without gaps. Where an index leaves it open, as `:` and `end` do, or
+  %   the memory has several dimensions, the service is asked for the sizes first; Read and Write,
+  %   which are told all, ask for nothing.
   properties (Hidden)
     rr_object = [];
     rr_name = '';
@@ -11,6 +13,26 @@ classdef RobotRaconteurMemory < handle
     function obj = RobotRaconteurMemory(object, name)
       obj.rr_object = object;
       obj.rr_name = name;
+    end
+    function items = Read(obj, first, count)
+      %READ m.Read([2 1], [3 1]): so many items in each dimension, from those counted from 1 on.
+      items = rrmex('memory_read', obj.rr_object.rr_h, obj.rr_name, first - 1, count);
+    end
+    function Write(obj, first, items)
+      %WRITE m.Write([2 1], items): an array, to the place that begins there.
+      rrmex('memory_write', obj.rr_object.rr_h, obj.rr_name, first - 1, items);
+    end
+    function count = Length(obj)
+      %LENGTH Items of a memory of one dimension.
+      count = rrmex('memory_length', obj.rr_object.rr_h, obj.rr_name);
+    end
+    function dims = Dimensions(obj)
+      %DIMENSIONS A row of sizes, as the service has them; size(m) has two at least.
+      dims = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
+    end
+    function count = DimCount(obj)
+      %DIMCOUNT How many dimensions it has.
+      count = rrmex('memory_dim_count', obj.rr_object.rr_h, obj.rr_name);
     end
     function varargout = size(obj, dimension)
       dims = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
@@ -46,8 +68,7 @@ classdef RobotRaconteurMemory < handle
         [varargout{1:nargout}] = builtin('subsref', obj, s);
         return
       end
-      dims = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
-      [first, count, picked] = rr_memory_ranges(s(1), dims);
+      [first, count, picked] = rr_memory_ranges(s(1), obj);
       items = rrmex('memory_read', obj.rr_object.rr_h, obj.rr_name, first - 1, count);
       items = rr_memory_pick(items, count, picked, numel(s(1).subs));
       if numel(s) > 1
@@ -60,8 +81,7 @@ classdef RobotRaconteurMemory < handle
         obj = builtin('subsasgn', obj, s, items);
         return
       end
-      dims = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
-      [first, count, picked] = rr_memory_ranges(s(1), dims);
+      [first, count, picked] = rr_memory_ranges(s(1), obj);
       if numel(s) > 1 || any(~cellfun(@isempty, picked))
         error('RobotRaconteur:InvalidArgument', 'a memory is written without gaps');
       end

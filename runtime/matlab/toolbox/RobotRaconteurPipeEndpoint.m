@@ -5,6 +5,8 @@ classdef RobotRaconteurPipeEndpoint < RobotRaconteurHandle
     Index
     IsOpen
     LostCount
+    IsUnreliable
+    RequestPacketAck
   end
   methods
     function obj = RobotRaconteurPipeEndpoint(number)
@@ -22,6 +24,15 @@ classdef RobotRaconteurPipeEndpoint < RobotRaconteurHandle
     function count = get.LostCount(obj)
       count = rrmex('pipe_about', obj.rr_h).lost_count;
     end
+    function answer = get.IsUnreliable(obj)
+      answer = rrmex('pipe_about', obj.rr_h).is_unreliable;
+    end
+    function answer = get.RequestPacketAck(obj)
+      answer = rrmex('pipe_about', obj.rr_h).wants_acks;
+    end
+    function set.RequestPacketAck(obj, is_on)
+      rrmex('pipe_ask_acks', obj.rr_h, is_on);
+    end
     function packet = ReceivePacket(obj)
       %RECEIVEPACKET The packet that has waited longest.
       packet = rrmex('pipe_receive', obj.rr_h);
@@ -33,7 +44,8 @@ classdef RobotRaconteurPipeEndpoint < RobotRaconteurHandle
       end
       [has_come, packet] = rrmex('pipe_receive_wait', obj.rr_h, seconds, false);
       if ~has_come
-        error('RobotRaconteur:OperationTimeout', 'no packet has come');
+        RobotRaconteur.ThrowError(struct('name', 'RobotRaconteur.OperationTimeout', ...
+                                         'message', 'no packet has come'));
       end
     end
     function [has_come, packet] = TryReceivePacketWait(obj, seconds, peek)
@@ -57,11 +69,21 @@ classdef RobotRaconteurPipeEndpoint < RobotRaconteurHandle
     end
     function listener = addlistener(obj, event, handler)
       %ADDLISTENER addlistener(endpoint, 'PacketReceived', handler): handler(packet) for each
-      %   packet, from RobotRaconteur.Poll, instead of keeping it.
-      if ~any(strcmp(event, {'PacketReceived', 'PacketReceivedEvent'}))
-        error('RobotRaconteur:MemberNotFound', 'a pipe has the event PacketReceived only');
+      %   packet, from RobotRaconteur.Poll, instead of keeping it. 'PacketAckReceived':
+      %   handler(number) for each packet that was sent while RequestPacketAck was true, once the
+      %   service has it. 'PipeEndpointClosed': handler() when the endpoint is closed.
+      switch event
+        case {'PacketReceived', 'PacketReceivedEvent'}
+          number = rrmex('pipe_listen', obj.rr_h, handler);
+        case 'PacketAckReceived'
+          number = rrmex('pipe_hear', obj.rr_h, 'acknowledged', handler);
+        case 'PipeEndpointClosed'
+          number = rrmex('pipe_hear', obj.rr_h, 'closed', handler);
+        otherwise
+          error('RobotRaconteur:MemberNotFound', ...
+                'a pipe has the events PacketReceived, PacketAckReceived, PipeEndpointClosed');
       end
-      listener = RobotRaconteurListener(rrmex('pipe_listen', obj.rr_h, handler));
+      listener = RobotRaconteurListener(number);
     end
     function Close(obj)
       rrmex('pipe_close', obj.rr_h);

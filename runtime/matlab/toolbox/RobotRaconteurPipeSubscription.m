@@ -16,7 +16,8 @@ classdef RobotRaconteurPipeSubscription < RobotRaconteurHandle
       end
       [has_come, packet, client] = rrmex('pipe_sub_receive', obj.rr_h, seconds);
       if ~has_come
-        error('RobotRaconteur:OperationTimeout', 'no packet has come');
+        RobotRaconteur.ThrowError(struct('name', 'RobotRaconteur.OperationTimeout', ...
+                                         'message', 'no packet has come'));
       end
     end
     function [packet, client] = ReceivePacket(obj)

@@ -8,7 +8,9 @@ classdef RobotRaconteurServed < RobotRaconteurHandle
   %   RobotRaconteurServed, or [] for none. A generator function gives a cell array of values, or
   %   a struct with next: a function that gives the next value and ends with the error
   %   RobotRaconteur:StopIteration; close and abort are called at the end. What clients send by a
-  %   wire or pipe `force` is told to on_force(value, client). See also RobotRaconteur.
+  %   wire or pipe `force` is told to on_force(value, client), that one has connected to
+  %   connected_force(client). What a wire's clients peek at is what was sent last, or what
+  %   peek_in_force() and peek_out_force() give. See also RobotRaconteur.
   methods
     function obj = RobotRaconteurServed(type, served)
       obj.rr_h = rrmex('serve', type, ...
@@ -16,8 +18,8 @@ classdef RobotRaconteurServed < RobotRaconteurHandle
       [names, declarations] = rrmex('served_members', obj.rr_h);
       for i = 1:numel(names)
         kind = strtok(declarations{i});
-        if any(strcmp(kind, {'wire', 'pipe'})) && rr_served_has(served, ['on_', names{i}])
-          rrmex('served_listen', obj.rr_h, names{i});
+        if any(strcmp(kind, {'wire', 'pipe'}))
+          rr_listen(obj, served, kind, names{i});
         elseif strcmp(kind, 'memory') && rr_served_has(served, names{i})
           rrmex('served_memory', obj.rr_h, names{i}, served.(names{i}));
         end
@@ -35,9 +37,32 @@ classdef RobotRaconteurServed < RobotRaconteurHandle
       %OUTVALUE The newest value that any client has sent by a wire; [] for none.
       [value, time] = rrmex('served_out', obj.rr_h, wire);
     end
-    function SendPacket(obj, pipe, packet)
-      %SENDPACKET Send a packet to all endpoints of a pipe.
-      rrmex('served_send', obj.rr_h, pipe, packet);
+    function SendPacket(obj, pipe, packet, wants_ack)
+      %SENDPACKET Send a packet to all endpoints of a pipe; with wants_ack clients acknowledge it.
+      if nargin < 4
+        wants_ack = false;
+      end
+      rrmex('served_send', obj.rr_h, pipe, packet, wants_ack);
+    end
+    function found = Endpoints(obj, pipe)
+      %ENDPOINTS The endpoints of a pipe that are open: a column of structs with client and index.
+      found = rrmex('served_endpoints', obj.rr_h, pipe);
+    end
+    function SendPacketTo(obj, pipe, endpoint, packet, wants_ack)
+      %SENDPACKETTO Send a packet to one of Endpoints.
+      if nargin < 5
+        wants_ack = false;
+      end
+      rrmex('served_send_to', obj.rr_h, pipe, endpoint, packet, wants_ack);
+    end
+    function Disconnect(obj, name)
+      %DISCONNECT End all connections of a wire, or all endpoints of a pipe.
+      rrmex('served_disconnect', obj.rr_h, name);
+    end
+    function EnableMonitor(obj)
+      %ENABLEMONITOR Clients can have the object to themselves, by MonitorEnter. Before it is
+      %   offered.
+      rrmex('served_monitor', obj.rr_h);
     end
     function result = CallBack(obj, callback, client, varargin)
       %CALLBACK Call the function of one client, RobotRaconteur.CurrentClient() for example.
@@ -50,6 +75,18 @@ classdef RobotRaconteurServed < RobotRaconteurHandle
     function SetMemory(obj, name, content)
       %SETMEMORY Give a memory another content.
       rrmex('served_memory', obj.rr_h, name, content);
+    end
+  end
+  methods (Access = private)
+    function rr_listen(obj, served, kind, name)
+      kinds = {'on', 'connected'};
+      if strcmp(kind, 'wire')
+        kinds = [kinds, {'peek_in', 'peek_out'}];
+      end
+      kinds = kinds(cellfun(@(one) rr_served_has(served, [one, '_', name]), kinds));
+      if ~isempty(kinds)
+        rrmex('served_listen', obj.rr_h, name, kinds);
+      end
     end
   end
 end

@@ -9,10 +9,11 @@ classdef RobotRaconteurService < handle
     rr_h = uint64(0);
   end
   methods
-    function obj = RobotRaconteurService(name, root, attributes, users)
+    function obj = RobotRaconteurService(name, root, attributes, users, require_user, extra_imports)
       obj.Name = name;
       obj.Root = root;
-      obj.rr_h = rrmex('register_service', name, root.rr_h, attributes, users);
+      obj.rr_h = rrmex('register_service', name, root.rr_h, attributes, users, require_user, ...
+                       extra_imports);
     end
     function Close(obj)
       %CLOSE Tell all clients that the service ends.

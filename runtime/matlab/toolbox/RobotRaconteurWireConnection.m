@@ -65,11 +65,18 @@ classdef RobotRaconteurWireConnection < RobotRaconteurHandle
     end
     function listener = addlistener(obj, event, handler)
       %ADDLISTENER addlistener(wire, 'WireValueChanged', handler): handler(value, time) for the
-      %   newest value, from RobotRaconteur.Poll.
-      if ~strcmp(event, 'WireValueChanged')
-        error('RobotRaconteur:MemberNotFound', 'a wire has the event WireValueChanged only');
+      %   newest value, from RobotRaconteur.Poll. 'WireConnectionClosed': handler() when the
+      %   connection is closed.
+      switch event
+        case 'WireValueChanged'
+          number = rrmex('wire_listen', obj.rr_h, handler);
+        case 'WireConnectionClosed'
+          number = rrmex('wire_hear', obj.rr_h, handler);
+        otherwise
+          error('RobotRaconteur:MemberNotFound', ...
+                'a wire has the events WireValueChanged, WireConnectionClosed');
       end
-      listener = RobotRaconteurListener(rrmex('wire_listen', obj.rr_h, handler));
+      listener = RobotRaconteurListener(number);
     end
     function Close(obj)
       rrmex('wire_close', obj.rr_h);

@@ -1,4 +1,4 @@
-function [first, count, picked] = rr_memory_ranges(s, dims)
+function [first, count, picked] = rr_memory_ranges(s, memory)
 %RR_MEMORY_RANGES The box that indexes mean, and for each dimension with gaps which of it.
 %   picked{i} is empty for a dimension without gaps. A single index of a memory of several
 %   dimensions has to be `:`.
@@ -6,6 +6,10 @@ if ~strcmp(s.type, '()')
   error('RobotRaconteur:InvalidArgument', 'a memory is indexed by parentheses');
 end
 subs = s.subs;
+dims = Inf;  % the service says what lies outside
+if ~rr_says_all(subs, memory)
+  dims = rrmex('memory_dims', memory.rr_object.rr_h, memory.rr_name);
+end
 rank = numel(dims);
 is_all = @(x) ischar(x) && strcmp(x, ':');
 if numel(subs) == 1 && rank > 1 && is_all(subs{1})
@@ -42,6 +46,13 @@ for i = 1:rank
     picked{i} = index - first(i) + 1;
   end
 end
+end
+
+function answer = rr_says_all(subs, memory)
+% Whether the service need not be asked how large the memory is.
+answer = numel(subs) == 1 && isnumeric(subs{1}) && ~isempty(subs{1}) && ...
+         all(subs{1}(:) >= 1 & subs{1}(:) == fix(subs{1}(:))) && ...
+         rrmex('memory_is_flat', memory.rr_object.rr_h, memory.rr_name);
 end
 
 function answer = rr_is_one(index)

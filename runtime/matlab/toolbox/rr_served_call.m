@@ -29,9 +29,11 @@ switch kind
     result = @(action, value) generator.Step(action, value);
   case 'objref'
     result = find_object(served, name, varargin{1}, varargin(2:end));
-  case 'on'
+  case {'on', 'connected'}
     result = [];
-    call(served, ['on_', name], false, varargin);
+    call(served, [kind, '_', name], false, varargin);
+  case {'peek_in', 'peek_out'}
+    result = call(served, [kind, '_', name], true, {});
 end
 end
 

@@ -6,6 +6,7 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -224,9 +225,11 @@ class WeakServedObject {
 };
 
 /// Offers an object, as Node::register_service. All definitions that it was made with are offered
-/// with it, whether imported or not, and the node keeps them. A node knows one definition of each
+/// with it, whether imported or not; with `extra` those that it imports and those of these names.
+/// The node keeps all of them. A node knows one definition of each
 /// name, the first that it was given.
 Service register_service(Node& node, std::string name, const ServedObject& root,
-                         ServiceOptions options = {});
+                         ServiceOptions options = {},
+                         const std::optional<std::set<std::string>>& extra = {});
 
 }  // namespace rr::dynamic

@@ -191,13 +191,17 @@ void ServedObject::set_monitor(Function<bool(std::chrono::milliseconds)> enter,
 }
 
 Service register_service(Node& node, std::string name, const ServedObject& root,
-                         ServiceOptions options) {
+                         ServiceOptions options,
+                         const std::optional<std::set<std::string>>& extra) {
   const std::shared_ptr<const Tables> tables = root.types().tables();
   std::set<const Definition*> imported;
   add_with_imports(root.skeleton()->rr_object_type().definition, imported);
   for (const auto& [service, definition] : tables->definitions()) {
     node.add_definition(std::shared_ptr<const Definition>(tables, &definition.wire));
-    if (!imported.contains(&definition.wire)) options.extra_imports.push_back(&definition.wire);
+    if (imported.contains(&definition.wire)) continue;
+    if (!extra || extra->contains(std::string(definition.wire.name))) {
+      options.extra_imports.push_back(&definition.wire);
+    }
   }
   return node.register_service(std::move(name), root.skeleton(), std::move(options));
 }

@@ -282,6 +282,22 @@ TEST_P(DynamicService, SendsWhatIsNotImportedToo) {
   EXPECT_TRUE(second->call("annotate", {Value(), List{late}}).is_null());
 }
 
+TEST_P(DynamicService, SendsWhatIsNotImportedOnlyIfItIsNamed) {
+  using Names = std::set<std::string>;
+  constexpr const char* late = "service example.late\n\nstdver 0.10\n";
+  constexpr const char* extra = "service example.extra\n\nstdver 0.10\n";
+  const Definitions definitions({testing::rig_text, testing::parts_text, late, extra});
+  const std::string place = url.substr(0, url.rfind('=') + 1);
+  const ServedObject less(definitions, "example.rig.Rig");
+  const Service plain = register_service(server, "plain", less, {}, Names());
+  EXPECT_THAT(connect(node, place + "plain").types().services(),
+              ElementsAre("example.parts", "example.rig"));
+  const ServedObject more(definitions, "example.rig.Rig");
+  const Service named = register_service(server, "named", more, {}, Names{"example.late"});
+  EXPECT_THAT(connect(node, place + "named").types().services(),
+              ElementsAre("example.late", "example.parts", "example.rig"));
+}
+
 TEST_P(DynamicService, MayBeOfferedAgainFromTheSameText) {
   service->close();
   for (int time = 0; time < 3; ++time) {

@@ -50,11 +50,19 @@ inline Failure failure_of(const Error& error) {
   return {identifier_of(error.name()), std::move(message)};
 }
 
+/// The code of an error of the protocol by its qualified name; remote_error for all others.
+inline ErrorCode code_of_name(std::string_view name) {
+  constexpr int last_code = 152;
+  for (int code = 1; code <= last_code; ++code) {
+    if (error_name(static_cast<ErrorCode>(code)) == name) return static_cast<ErrorCode>(code);
+  }
+  return ErrorCode::remote_error;
+}
+
 /// The error of the protocol that a failure of the user's function is told to a service as: one
 /// with an identifier of ours, or of a service's exception, is that; all others are
 /// RobotRaconteur.RemoteError with the identifier as sub-name.
 inline Error error_of(const Failure& failure) {
-  constexpr int last_code = 152;
   const std::string& identifier = failure.identifier;
   const std::size_t colon = identifier.rfind(':');
   const std::string first = identifier.substr(0, colon);
@@ -64,12 +72,7 @@ inline Error error_of(const Failure& failure) {
   });
   if (is_name && first != "Octave" && first != "MATLAB" && first.find(':') == std::string::npos) {
     const std::string name = first + "." + last;
-    for (int code = 1; code <= last_code; ++code) {
-      if (error_name(static_cast<ErrorCode>(code)) == name) {
-        return {static_cast<ErrorCode>(code), failure.message};
-      }
-    }
-    return {ErrorCode::remote_error, name, failure.message};
+    return {code_of_name(name), name, failure.message};
   }
   return {ErrorCode::remote_error, "RobotRaconteur.RemoteError", failure.message, identifier};
 }
