@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "rr/error.hpp"
-#include "runtime/matlab/src/number_types.hpp"
+#include "rr/number.hpp"
 #include "runtime/matlab/src/values.hpp"
 
 namespace rr::matlab {

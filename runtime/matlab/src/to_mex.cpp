@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/matlab/src/number_types.hpp"
+#include "rr/number.hpp"
 #include "runtime/matlab/src/values.hpp"
 
 namespace rr::matlab {
