@@ -173,23 +173,15 @@ std::string specialization(const RecordView& view, const std::string& space) {
 RecordView make_record(const model::Record& record, const Context& context) {
   const RecordNames names(record, context.report);
   RecordView view;
-  view.wire_name = record.qualified_name();
+  describe(view, record);
   view.name = identifier(record.name);
   view.qualified = qualified(*record.definition, view.name);
   view.doc = doc_lines(record.documentation, 0);
-  view.kind = model::name_of(record.kind);
-  view.is_struct = record.kind == model::RecordKind::struct_;
-  view.is_pod = record.kind == model::RecordKind::pod;
-  view.is_namedarray = record.kind == model::RecordKind::namedarray;
-  if (view.is_namedarray) {
-    view.number_type = context.types.number(record.number);
-    view.number_count = std::to_string(record.number_count);
-  }
+  if (view.is_namedarray) view.number_type = context.types.number(record.number);
   view.constants = class_constants(record.constants, context);
   for (const model::Field& field : record.fields) {
     view.fields.push_back(make_field(field, record, names, context));
   }
-  view.has_fields = !view.fields.empty();
   view.table = table_name("type", record.name);
   view.field_table = table_name("fields", record.name);
   view.field_rows = field_rows(view);
