@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "compiler/output/escape.hpp"
+
 namespace robdef {
 namespace {
 
@@ -35,30 +37,14 @@ std::size_t sequence_length(std::string_view text, std::size_t at) {
 }
 
 void append_escaped(std::string& out, char c) {
-  switch (c) {
-    case '"':
-      out += "\\\"";
-      return;
-    case '\\':
-      out += "\\\\";
-      return;
-    case '\n':
-      out += "\\n";
-      return;
-    case '\r':
-      out += "\\r";
-      return;
-    case '\t':
-      out += "\\t";
-      return;
-    default:
-      break;
-  }
-  constexpr std::string_view hex = "0123456789abcdef";
-  const auto code = static_cast<unsigned char>(c);
-  if (code >= 0x20 && code != 0x7F) {
+  const std::string_view escape = named_escape(c);
+  if (!escape.empty()) {
+    out += escape;
+  } else if (is_printable(c)) {
     out += c;
   } else {
+    constexpr std::string_view hex = "0123456789abcdef";
+    const auto code = static_cast<unsigned char>(c);
     out += "\\u00";
     out += hex[code >> 4];
     out += hex[code & 15];

@@ -7,6 +7,7 @@
 
 #include "compiler/backends/literals.hpp"
 #include "compiler/backends/words.hpp"
+#include "compiler/output/escape.hpp"
 
 namespace robdef::csharp {
 namespace {
@@ -14,34 +15,18 @@ namespace {
 using model::Primitive;
 
 void append_escaped(std::string& out, char c) {
-  switch (c) {
-    case '"':
-      out += "\\\"";
-      return;
-    case '\\':
-      out += "\\\\";
-      return;
-    case '\n':
-      out += "\\n";
-      return;
-    case '\r':
-      out += "\\r";
-      return;
-    case '\t':
-      out += "\\t";
-      return;
-    default:
-      break;
-  }
-  const auto byte = static_cast<unsigned char>(c);
-  if (byte >= 0x20 && byte != 0x7F) {
+  const std::string_view escape = named_escape(c);
+  if (!escape.empty()) {
+    out += escape;
+  } else if (is_printable(c)) {
     out += c;
-    return;
+  } else {
+    constexpr std::string_view digits = "0123456789ABCDEF";
+    const auto byte = static_cast<unsigned char>(c);
+    out += "\\u00";
+    out += digits[byte / 16];
+    out += digits[byte % 16];
   }
-  constexpr std::string_view digits = "0123456789ABCDEF";
-  out += "\\u00";
-  out += digits[byte / 16];
-  out += digits[byte % 16];
 }
 
 std::string number(const model::Constant& constant, const model::Number& value,

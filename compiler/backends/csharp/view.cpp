@@ -146,12 +146,9 @@ RecordView make_record(const model::Record& record, const Context& context) {
 /// The text as literals, one for each line, with what follows all but the last.
 std::vector<std::string> text_lines(std::string_view text) {
   std::vector<std::string> lines;
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    const std::size_t size = end == std::string_view::npos ? text.size() : end + 1;
-    lines.push_back(string_literal(text.substr(0, size)));
-    text.remove_prefix(size);
-    if (!text.empty()) lines.back() += " +";
+  for (const std::string_view line : lines_of(text)) {
+    if (!lines.empty()) lines.back() += " +";
+    lines.push_back(string_literal(line));
   }
   if (lines.empty()) lines.emplace_back("\"\"");
   return lines;

@@ -88,12 +88,7 @@ RecordView make_record(const model::Record& record) {
 
 std::vector<std::string> text_lines(std::string_view text) {
   std::vector<std::string> lines;
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    const std::size_t size = end == std::string_view::npos ? text.size() : end + 1;
-    lines.push_back(string_literal(text.substr(0, size)));
-    text.remove_prefix(size);
-  }
+  for (const std::string_view line : lines_of(text)) lines.push_back(string_literal(line));
   return lines;
 }
 
