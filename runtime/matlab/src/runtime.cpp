@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "rr/serial.hpp"
 #include "runtime/matlab/src/objects.hpp"
 
 namespace rr::matlab {
@@ -17,6 +18,7 @@ Runtime::Runtime(std::uint32_t generation)
       interrupts_(std::make_unique<Interrupts>([this] { interrupted(); })) {
   NodeOptions options;
   options.log = [log = log_](LogLevel level, std::string_view text) { log->write(level, text); };
+  options.channels.emplace("rr+serial", serial_channel());
   node_ = std::make_unique<Node>(std::move(options));
 }
 
