@@ -36,20 +36,7 @@ std::size_t sequence_length(std::string_view text, std::size_t at) {
   return is_overlong || is_outside ? 0 : length;
 }
 
-void append_escaped(std::string& out, char c) {
-  const std::string_view escape = named_escape(c);
-  if (!escape.empty()) {
-    out += escape;
-  } else if (is_printable(c)) {
-    out += c;
-  } else {
-    constexpr std::string_view hex = "0123456789abcdef";
-    const auto code = static_cast<unsigned char>(c);
-    out += "\\u00";
-    out += hex[code >> 4];
-    out += hex[code & 15];
-  }
-}
+constexpr std::string_view hex_digits = "0123456789abcdef";
 
 }  // namespace
 
@@ -60,7 +47,7 @@ std::string json_string(std::string_view text) {
     if (length == 0) {
       out += "\xEF\xBF\xBD";
     } else if (length == 1) {
-      append_escaped(out, text[at]);
+      append_escaped(out, text[at], hex_digits);
     } else {
       out += text.substr(at, length);
     }

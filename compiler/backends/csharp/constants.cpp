@@ -14,20 +14,7 @@ namespace {
 
 using model::Primitive;
 
-void append_escaped(std::string& out, char c) {
-  const std::string_view escape = named_escape(c);
-  if (!escape.empty()) {
-    out += escape;
-  } else if (is_printable(c)) {
-    out += c;
-  } else {
-    constexpr std::string_view digits = "0123456789ABCDEF";
-    const auto byte = static_cast<unsigned char>(c);
-    out += "\\u00";
-    out += digits[byte / 16];
-    out += digits[byte % 16];
-  }
-}
+constexpr std::string_view digits = "0123456789ABCDEF";
 
 std::string number(const model::Constant& constant, const model::Number& value,
                    const std::string& written) {
@@ -66,7 +53,7 @@ std::string string_literal(std::string_view text) {
       result += "\\u0085";
       ++i;
     } else {
-      append_escaped(result, text[i]);
+      append_escaped(result, text[i], digits);
     }
   }
   return result + '"';
