@@ -103,7 +103,7 @@ std::string take_port(Options& options, const std::string& value) {
 }
 
 std::string take_discover_format(Options& options, const std::string& value) {
-  const std::string complaint = take_format(options, value);
+  std::string complaint = take_format(options, value);
   if (!complaint.empty() || options.format != Format::line) return complaint;
   return "known here: `text`, `json`";
 }
