@@ -85,17 +85,25 @@ void print_output(const TemplateFolder& folder, const OutputRule& rule, const Mo
   }
 }
 
-/// All files of a view: by the templates that were compiled in, and those of `folder` laid over
-/// them unless it is empty.
-template <class ModelView, class DefinitionView>
-FileSet print_view(const ModelView& view, TemplateSources embedded, const std::string& folder) {
+/// All files that `print_rule(templates, rule, files)` makes of the rules: by the templates that
+/// were compiled in, and those of `folder` laid over them unless it is empty.
+template <class PrintRule>
+FileSet print_rules(TemplateSources embedded, const std::string& folder,
+                    const PrintRule& print_rule) {
   FileSet files;
   TemplateFolder templates = TemplateFolder::from_sources(std::move(embedded));
   if (!folder.empty()) templates = templates.overlaid_with(TemplateFolder::from_disk(folder));
-  for (const OutputRule& rule : templates.rules) {
-    print_output<ModelView, DefinitionView>(templates, rule, view, files);
-  }
+  for (const OutputRule& rule : templates.rules) print_rule(templates, rule, files);
   return files;
+}
+
+/// The same with the rules that most backends have.
+template <class ModelView, class DefinitionView>
+FileSet print_view(const ModelView& view, TemplateSources embedded, const std::string& folder) {
+  return print_rules(std::move(embedded), folder,
+                     [&](const TemplateFolder& templates, const OutputRule& rule, FileSet& files) {
+                       print_output<ModelView, DefinitionView>(templates, rule, view, files);
+                     });
 }
 
 }  // namespace robdef

@@ -20,6 +20,8 @@ std::string snake_case(std::string_view name);
 
 /// The segments of a dotted name.
 std::vector<std::string> segments_of(std::string_view name);
+/// The lines of a text, each with its line end.
+std::vector<std::string_view> lines_of(std::string_view text);
 /// `text` with every `from` replaced.
 std::string replace_all(std::string_view text, std::string_view from, std::string_view to);
 /// The pieces with `separator` between them.

@@ -32,5 +32,11 @@ TEST(Words, JoinAndReplace) {
   EXPECT_EQ(join({}, ", "), "");
 }
 
+TEST(Words, CutTextsIntoLinesWithTheirEnds) {
+  EXPECT_THAT(lines_of("a\n\nb"), ElementsAre("a\n", "\n", "b"));
+  EXPECT_THAT(lines_of("a\n"), ElementsAre("a\n"));
+  EXPECT_TRUE(lines_of("").empty());
+}
+
 }  // namespace
 }  // namespace robdef

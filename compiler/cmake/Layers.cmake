@@ -11,7 +11,7 @@ set(robdef_layers
   "compiler/output: compiler/diagnostics"
   "compiler/backends: compiler/diagnostics compiler/model compiler/output"
   # A sketch is C++ too: words and literals are the same.
-  "compiler/backends/arduino: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/check_values.hpp compiler/backends/implements.hpp compiler/backends/literals.hpp compiler/backends/print.hpp compiler/backends/words.hpp compiler/backends/cpp/constants.hpp compiler/backends/cpp/literal_text.hpp compiler/backends/cpp/names.hpp"
+  "compiler/backends/arduino: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/check_values.hpp compiler/backends/implements.hpp compiler/backends/literals.hpp compiler/backends/member_facts.hpp compiler/backends/print.hpp compiler/backends/words.hpp compiler/backends/cpp/constants.hpp compiler/backends/cpp/literal_text.hpp compiler/backends/cpp/names.hpp"
   "compiler/backends/cbus: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/print.hpp compiler/backends/words.hpp compiler/backends/cpp/names.hpp"
   "compiler/backends/cpp: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/check_values.hpp compiler/backends/implements.hpp compiler/backends/literals.hpp compiler/backends/member_facts.hpp compiler/backends/name_set.hpp compiler/backends/print.hpp compiler/backends/words.hpp"
   "compiler/backends/csharp: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/check_values.hpp compiler/backends/implements.hpp compiler/backends/literals.hpp compiler/backends/member_facts.hpp compiler/backends/name_set.hpp compiler/backends/print.hpp compiler/backends/words.hpp"
@@ -79,9 +79,9 @@ set(robdef_layers
 # Asio each have one place where they can be exchanged.
 set(robdef_outside_headers
   "^(antlr4|Robdef(Lexer|Parser))| compiler/syntax"
-  "^boost/| runtime/cpp/include/rr/async.hpp runtime/cpp/src/channel/web_socket.cpp runtime/cpp/src/channel/memory_stream.hpp"
+  "^boost/| runtime/cpp/include/rr/async runtime/cpp/src/channel/web_socket.cpp runtime/cpp/src/channel/memory_stream.hpp"
   "^openssl/| runtime/cpp/src/channel conformance/harness/web_socket_recording.cpp"
-  "^rr/async\\.hpp$| runtime/cpp/src runtime/cpp/stress examples conformance benchmarks compiler/backends"
+  "^rr/async(\\.hpp$|/)| runtime/cpp/include/rr/async.hpp runtime/cpp/include/rr/async runtime/cpp/src runtime/cpp/stress examples conformance benchmarks compiler/backends"
   "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| runtime/cpp/src/serial runtime/cpp/src/channel runtime/cpp/src/discovery runtime/cpp/src/endpoint runtime/cpp/src/realtime/udp_socket.cpp runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp conformance benchmarks"
   "^fmt/| compiler benchmarks"
   "^nlohmann/| runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"

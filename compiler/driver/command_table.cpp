@@ -1,162 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/driver/command_table.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
-#include <chrono>
-#include <optional>
 #include <vector>
 
-#include "compiler/backends/backend.hpp"
-#include "compiler/diagnostics/spelling.hpp"
 #include "compiler/driver/live/table.hpp"
-#include "runtime/cpp/src/replay/words.hpp"
+#include "compiler/driver/option_values.hpp"
 
 namespace robdef {
 
 namespace {
-
-std::string upper_case(std::string_view text) {
-  std::string upper(text);
-  for (char& letter : upper) {
-    letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
-  }
-  return upper;
-}
-
-std::string take_language(Options& options, const std::string& value) {
-  if (find_backend(value) != nullptr) {
-    options.language = value;
-    return "";
-  }
-  std::string known;
-  std::vector<std::string_view> names;
-  for (const Backend* backend : backends()) {
-    known += (known.empty() ? "`" : ", `") + std::string(backend->name()) + "`";
-    names.push_back(backend->name());
-  }
-  const std::string_view near = nearest(value, names);
-  return "unknown language `" + value + "`; " +
-         (near.empty() ? "known: " + known : "did you mean `" + std::string(near) + "`?");
-}
-
-std::string take_format(Options& options, const std::string& value) {
-  if (value == "text") {
-    options.format = Format::text;
-  } else if (value == "line") {
-    options.format = Format::line;
-  } else if (value == "json") {
-    options.format = Format::json;
-  } else {
-    return "unknown format `" + value + "`; known: `text`, `line`, `json`";
-  }
-  return "";
-}
-
-std::string take_silenced(Options& options, const std::string& value) {
-  const CodeEntry* entry = find_code(upper_case(value));
-  if (entry == nullptr) return "there is no code `" + value + "`; see `robdef explain --list`";
-  if (entry->severity == Severity::error) {
-    return "`" + std::string(entry->name) + "` is an error; only warnings can be turned off";
-  }
-  options.silenced.push_back(entry->code);
-  return "";
-}
-
-template <std::string Options::*member>
-std::string take_text(Options& options, const std::string& value) {
-  options.*member = value;
-  return value.empty() ? "the value is empty" : "";
-}
-
-template <bool Options::*member>
-std::string take_switch(Options& options, const std::string&) {
-  options.*member = true;
-  return "";
-}
-
-std::string take_import_folder(Options& options, const std::string& value) {
-  options.search_path.folders.push_back(value);
-  return value.empty() ? "the value is empty" : "";
-}
-
-template <bool RecordingOptions::*member>
-std::string take_recording_switch(Options& options, const std::string&) {
-  options.recording.*member = true;
-  return "";
-}
-
-std::string take_entry_types(Options& options, const std::string& value) {
-  std::size_t begin = 0;
-  while (begin <= value.size()) {
-    const std::size_t end = std::min(value.find(',', begin), value.size());
-    const std::string name = value.substr(begin, end - begin);
-    const auto type = rr::replay::entry_type_of(name);
-    if (!type) return "`" + name + "` is no type of an entry";
-    options.recording.entry_types.insert(static_cast<std::uint16_t>(*type));
-    begin = end + 1;
-  }
-  return "";
-}
-
-template <std::string RecordingOptions::*member>
-std::string take_recording_text(Options& options, const std::string& value) {
-  options.recording.*member = value;
-  return value.empty() ? "the value is empty" : "";
-}
-
-template <class Number>
-std::optional<Number> number_in(std::string_view text) {
-  Number number = 0;
-  const char* const end = text.data() + text.size();
-  const auto result = std::from_chars(text.data(), end, number);
-  if (text.empty() || result.ec != std::errc() || result.ptr != end) return std::nullopt;
-  return number;
-}
-
-std::string take_connection(Options& options, const std::string& value) {
-  options.recording.connection = number_in<std::uint32_t>(value);
-  return options.recording.connection ? "" : "`" + value + "` is no number of a connection";
-}
-
-std::string take_port(Options& options, const std::string& value) {
-  options.recording.port = number_in<std::uint16_t>(value);
-  return options.recording.port ? "" : "`" + value + "` is no port";
-}
-
-std::string take_discover_format(Options& options, const std::string& value) {
-  const std::string complaint = take_format(options, value);
-  if (!complaint.empty() || options.format != Format::line) return complaint;
-  return "known here: `text`, `json`";
-}
-
-std::string take_discovery_port(Options& options, const std::string& value) {
-  const auto port = number_in<std::uint16_t>(value);
-  options.discover.port = port.value_or(0);
-  return options.discover.port != 0 ? "" : "`" + value + "` is no port";
-}
-
-std::string take_wait(Options& options, const std::string& value) {
-  const auto seconds = number_in<std::uint16_t>(value);
-  options.discover.wait = std::chrono::seconds(seconds.value_or(0));
-  return seconds ? "" : "`" + value + "` is no number of seconds";
-}
-
-std::string take_interface(Options& options, const std::string& value) {
-  options.discover.interfaces.push_back(value);
-  return value.empty() ? "the value is empty" : "";
-}
-
-std::string take_days(Options& options, const std::string& value) {
-  options.days = number_in<int>(value);
-  const bool is_right = options.days && *options.days > 0 && *options.days <= 36500;
-  return is_right ? "" : "`" + value + "` is no number of days from 1 to 36500";
-}
-
-constexpr CommandSet reading = {Command::generate, Command::check, Command::describe,
-                                Command::model, Command::view};
 
 constexpr std::array commands = {
     CommandRow{Command::generate, "generate", "--lang LANG [-o DIR] [OPTION...] FILE...",
@@ -237,7 +90,7 @@ constexpr std::array options = {
               {Command::generate},
               "folder to write below, made when missing;\ndefault: the current folder",
               take_text<&Options::output_folder>},
-    OptionRow{"--import-path", "-I", "DIR", reading,
+    OptionRow{"--import-path", "-I", "DIR", reading_definitions,
               "look here for imported definitions; may be\nrepeated. An import a.b is the file\n"
               "a.b.robdef: beside the importing file, in\nthese folders, then in those of the\n"
               "environment",
@@ -273,12 +126,12 @@ constexpr std::array options = {
               {Command::generate},
               "target of that rule; default: the outputs",
               take_text<&Options::depfile_target>},
-    OptionRow{"--format", "", "FORM", reading,
+    OptionRow{"--format", "", "FORM", reading_definitions,
               "form of the findings: text (default), line\n(one line each) or json; json goes to"
               " standard\noutput unless the command prints there itself",
               take_format},
-    OptionRow{"--no-warning", "", "CODE", reading, "do not report this warning; may be repeated",
-              take_silenced},
+    OptionRow{"--no-warning", "", "CODE", reading_definitions,
+              "do not report this warning; may be repeated", take_silenced},
     OptionRow{"--list",
               "",
               "",
@@ -418,52 +271,12 @@ constexpr std::array options = {
               take_days},
 };
 
-/// `text` in a column that begins behind `indent` blanks; the first line stands there already.
-std::string hanging(std::string_view text, std::size_t indent) {
-  std::string lines;
-  for (const char letter : text) {
-    lines += letter;
-    if (letter == '\n') lines.append(indent, ' ');
-  }
-  return lines + "\n";
-}
-
-std::string padded(std::string text, std::size_t width) {
-  if (text.size() < width) text.resize(width, ' ');
-  return text;
-}
-
-std::string option_line(std::string_view short_name, std::string_view name, std::string_view value,
-                        std::string_view help) {
-  constexpr std::size_t column = 28;
-  std::string left = short_name.empty() ? "      " : "  " + std::string(short_name) + ", ";
-  left += name;
-  if (!value.empty()) left += " " + std::string(value);
-  if (left.size() > column - 2) left += "\n" + std::string(column, ' ');
-  return padded(std::move(left), column) + hanging(help, column);
-}
-
-std::string languages() {
-  std::string text = "\nLanguages:\n";
-  for (const Backend* backend : backends()) {
-    text +=
-        "  " + padded(std::string(backend->name()), 12) + std::string(backend->summary()) + "\n";
-  }
-  return text;
-}
-
 template <class Row, std::size_t size>
 std::vector<Row> with(const std::array<Row, size>& rows, std::span<const Row> others) {
   std::vector<Row> all(rows.begin(), rows.end());
   all.insert(all.end(), others.begin(), others.end());
   return all;
 }
-
-constexpr std::string_view environment_and_exit =
-    "\nEnvironment:\n"
-    "  ROBOTRACONTEUR_ROBDEF_PATH  folders searched for imports after those of -I,\n"
-    "                              separated by : or ;\n"
-    "\nExit status: 0 fine, 1 errors found, 2 used wrongly, 3 a fault of robdef itself.\n";
 
 }  // namespace
 
@@ -474,54 +287,6 @@ std::span<const CommandRow> command_rows() {
 std::span<const OptionRow> option_rows() {
   static const std::vector<OptionRow> all = with(options, live::options());
   return all;
-}
-
-std::string general_help() {
-  std::string text =
-      "usage: robdef COMMAND [OPTION...] FILE...\n"
-      "\n"
-      "Compiles service definitions (.robdef), the language of Robot Raconteur, into\n"
-      "clients and services.\n"
-      "\n"
-      "Commands:\n";
-  for (const CommandRow& row : command_rows()) {
-    text += "  " + padded(std::string(row.name), 12) + std::string(row.summary) + "\n";
-  }
-  text +=
-      "\n"
-      "  robdef COMMAND --help       the options of a command\n"
-      "  robdef --version            the version of this program\n"
-      "\n"
-      "Examples:\n"
-      "  robdef check experimental.mount.robdef\n"
-      "  robdef generate --lang cpp -o generated -I shared experimental.mount.robdef\n"
-      "  robdef explain R0203\n";
-  text += languages();
-  text += environment_and_exit;
-  return text;
-}
-
-std::string help_of(const CommandRow& command) {
-  std::string text = "usage: robdef " + std::string(command.name) + " " +
-                     std::string(command.arguments) + "\n\n" + std::string(command.description) +
-                     "\nOptions:\n";
-  bool has_language = false;
-  for (const OptionRow& row : option_rows()) {
-    if (!row.commands.contains(command.command)) continue;
-    text += option_line(row.short_name, row.name, row.value, row.help);
-    has_language = has_language || row.name == "--lang";
-  }
-  text += option_line("-h", "--help", "", "print this");
-  if (has_language) text += languages();
-  if (reading.contains(command.command)) {
-    text += environment_and_exit;
-  } else if (command.command == Command::explain) {
-    text += "\nExit status: 0 fine, 2 no such code.\n";
-  } else {
-    if (command.command >= Command::get) text += live::environment_help;
-    text += "\nExit status: 0 fine, 1 errors, 2 used wrongly, 3 a fault of robdef itself.\n";
-  }
-  return text;
 }
 
 }  // namespace robdef

@@ -44,6 +44,10 @@ struct OptionRow {
   [[nodiscard]] std::string_view title() const { return name.empty() ? short_name : name; }
 };
 
+/// The commands that read definitions.
+inline constexpr CommandSet reading_definitions = {
+    Command::generate, Command::check, Command::describe, Command::model, Command::view};
+
 std::span<const CommandRow> command_rows();
 std::span<const OptionRow> option_rows();
 

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "compiler/output/escape.hpp"
+
 namespace robdef {
 namespace {
 
@@ -34,36 +36,7 @@ std::size_t sequence_length(std::string_view text, std::size_t at) {
   return is_overlong || is_outside ? 0 : length;
 }
 
-void append_escaped(std::string& out, char c) {
-  switch (c) {
-    case '"':
-      out += "\\\"";
-      return;
-    case '\\':
-      out += "\\\\";
-      return;
-    case '\n':
-      out += "\\n";
-      return;
-    case '\r':
-      out += "\\r";
-      return;
-    case '\t':
-      out += "\\t";
-      return;
-    default:
-      break;
-  }
-  constexpr std::string_view hex = "0123456789abcdef";
-  const auto code = static_cast<unsigned char>(c);
-  if (code >= 0x20 && code != 0x7F) {
-    out += c;
-  } else {
-    out += "\\u00";
-    out += hex[code >> 4];
-    out += hex[code & 15];
-  }
-}
+constexpr std::string_view hex_digits = "0123456789abcdef";
 
 }  // namespace
 
@@ -74,7 +47,7 @@ std::string json_string(std::string_view text) {
     if (length == 0) {
       out += "\xEF\xBF\xBD";
     } else if (length == 1) {
-      append_escaped(out, text[at]);
+      append_escaped(out, text[at], hex_digits);
     } else {
       out += text.substr(at, length);
     }

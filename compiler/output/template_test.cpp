@@ -28,25 +28,9 @@ struct RootView {
 
 }  // namespace
 
-template <>
-const ViewType& view_type<NoteView>() {
-  static const ViewType type{view_field<&NoteView::text>("text")};
-  return type;
-}
-template <>
-const ViewType& view_type<ItemView>() {
-  static const ViewType type{
-      view_field<&ItemView::name>("name"), view_field<&ItemView::is_big>("is_big"),
-      view_field<&ItemView::lines>("lines"), view_field<&ItemView::note>("note")};
-  return type;
-}
-template <>
-const ViewType& view_type<RootView>() {
-  static const ViewType type{view_field<&RootView::title>("title"),
-                             view_field<&RootView::about>("about"),
-                             view_field<&RootView::items>("items")};
-  return type;
-}
+ROBDEF_VIEW_TYPE(NoteView, text);
+ROBDEF_VIEW_TYPE(ItemView, name, is_big, lines, note);
+ROBDEF_VIEW_TYPE(RootView, title, about, items);
 
 namespace {
 

@@ -9,18 +9,16 @@
 #include <vector>
 
 /// What a template can know about a view: the names of its fields and what they hold. A view is an
-/// ordinary struct; one table beside it lets templates print it and writes it as JSON:
+/// ordinary struct; one line beside it lets templates print it and writes it as JSON:
 ///
 ///   struct FieldView {
 ///     std::string type;  ///< the C++ type
 ///     bool is_last = false;
 ///   };
-///   template <>
-///   const ViewType& robdef::view_type<FieldView>() {
-///     static const ViewType type{view_field<&FieldView::type>("type"),
-///                                view_field<&FieldView::is_last>("is_last")};
-///     return type;
-///   }
+///   ROBDEF_VIEW_TYPE(FieldView, type, is_last);  // in namespace robdef
+///
+/// What views of several languages have alike stands in a struct that they derive from; its own
+/// `Facts::fields<View>()` gives its fields, which come first.
 ///
 /// Fields are std::string, bool, another view, std::optional of a view, std::vector of a view or of
 /// std::string.
@@ -104,15 +102,61 @@ struct ViewAccess<std::vector<std::string>> {
   }
 };
 
-/// Describes the field `Member`, a pointer to member, under the name that templates use.
-template <auto Member>
+/// Describes the field `Member` of `View`, a pointer to member, under the name that templates use.
+template <auto Member, class View = decltype(class_of(Member))>
 ViewField view_field(std::string_view name) {
-  using View = decltype(class_of(Member));
   using Access = ViewAccess<decltype(value_of(Member))>;
   return {.name = name, .kind = Access::kind, .type = Access::type, .get = [](const void* view) {
             return Access::get(static_cast<const View*>(view)->*Member);
           }};
 }
+
+/// The fields that `View` has from `Facts`, and `own` behind them.
+template <class Facts, class View>
+ViewType fields_behind(const ViewType& own) {
+  ViewType all = Facts::template fields<View>();
+  all.insert(all.end(), own.begin(), own.end());
+  return all;
+}
+
+/// The fields of a view: those of its facts, if it has some, and its own.
+template <class View>
+ViewType view_fields(const ViewType& own) {
+  if constexpr (requires { typename View::Facts; }) {
+    return fields_behind<typename View::Facts, View>(own);
+  } else {
+    return own;
+  }
+}
+
+// Applies ROBDEF_VIEW_FIELD to each name; so many rounds reach 256 of them.
+#define ROBDEF_VIEW_PARENTHESES ()
+#define ROBDEF_VIEW_ROUNDS(...) ROBDEF_VIEW_ROUNDS3(ROBDEF_VIEW_ROUNDS3(__VA_ARGS__))
+#define ROBDEF_VIEW_ROUNDS3(...) \
+  ROBDEF_VIEW_ROUNDS2(ROBDEF_VIEW_ROUNDS2(ROBDEF_VIEW_ROUNDS2(ROBDEF_VIEW_ROUNDS2(__VA_ARGS__))))
+#define ROBDEF_VIEW_ROUNDS2(...) \
+  ROBDEF_VIEW_ROUNDS1(ROBDEF_VIEW_ROUNDS1(ROBDEF_VIEW_ROUNDS1(ROBDEF_VIEW_ROUNDS1(__VA_ARGS__))))
+#define ROBDEF_VIEW_ROUNDS1(...) \
+  ROBDEF_VIEW_ROUNDS0(ROBDEF_VIEW_ROUNDS0(ROBDEF_VIEW_ROUNDS0(ROBDEF_VIEW_ROUNDS0(__VA_ARGS__))))
+#define ROBDEF_VIEW_ROUNDS0(...) __VA_ARGS__
+#define ROBDEF_VIEW_FIELD(View, field) ::robdef::view_field<&View::field, View>(#field)
+#define ROBDEF_VIEW_EACH(View, field, ...) \
+  ROBDEF_VIEW_FIELD(View, field)           \
+  __VA_OPT__(, ROBDEF_VIEW_AGAIN ROBDEF_VIEW_PARENTHESES(View, __VA_ARGS__))
+#define ROBDEF_VIEW_AGAIN() ROBDEF_VIEW_EACH
+
+/// The descriptions of these fields of a view, as a list.
+#define ROBDEF_VIEW_FIELDS(View, ...) ROBDEF_VIEW_ROUNDS(ROBDEF_VIEW_EACH(View, __VA_ARGS__))
+
+/// Defines the table of a view; the names that templates use are those of the fields.
+#define ROBDEF_VIEW_TYPE(View, ...)                                           \
+  template <>                                                                 \
+  const ViewType& view_type<View>() {                                         \
+    static const ViewType type =                                              \
+        ::robdef::view_fields<View>({ROBDEF_VIEW_FIELDS(View, __VA_ARGS__)}); \
+    return type;                                                              \
+  }                                                                           \
+  static_assert(true)
 
 /// Writes one view as a JSON object, its fields in the order of the table.
 void write_json(JsonWriter& json, const ViewType& type, const void* view);

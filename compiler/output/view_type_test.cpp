@@ -17,21 +17,27 @@ struct TreeView {
   std::vector<std::string> words;
 };
 
+// What views of several languages say alike, and one of these.
+struct PlantFacts {
+  using Facts = PlantFacts;
+  std::string wire_name;
+  bool is_green = false;
+
+  template <class View>
+  static ViewType fields() {
+    return {ROBDEF_VIEW_FIELDS(View, wire_name, is_green)};
+  }
+};
+struct PlantView : PlantFacts {
+  std::string doc;
+  LeafView top;
+};
+
 }  // namespace
 
-template <>
-const ViewType& view_type<LeafView>() {
-  static const ViewType type{view_field<&LeafView::name>("name")};
-  return type;
-}
-template <>
-const ViewType& view_type<TreeView>() {
-  static const ViewType type{
-      view_field<&TreeView::is_old>("is_old"), view_field<&TreeView::top>("top"),
-      view_field<&TreeView::bottom>("bottom"), view_field<&TreeView::leaves>("leaves"),
-      view_field<&TreeView::words>("words")};
-  return type;
-}
+ROBDEF_VIEW_TYPE(LeafView, name);
+ROBDEF_VIEW_TYPE(TreeView, is_old, top, bottom, leaves, words);
+ROBDEF_VIEW_TYPE(PlantView, doc, top);
 
 namespace {
 
@@ -60,6 +66,24 @@ TEST(ViewType, WritesAViewAsJsonInTheOrderOfItsTable) {
     "x",
     "y"
   ]
+}
+)");
+}
+
+TEST(ViewType, PutsFactsBeforeTheFieldsOfTheirView) {
+  PlantView plant;
+  plant.wire_name = "fern";
+  plant.is_green = true;
+  plant.doc = "d";
+  plant.top = {"t"};
+  EXPECT_EQ(view_json(plant),
+            R"({
+  "wire_name": "fern",
+  "is_green": true,
+  "doc": "d",
+  "top": {
+    "name": "t"
+  }
 }
 )");
 }

@@ -7,6 +7,7 @@
 #include "conformance/harness/comparison.hpp"
 #include "conformance/harness/result.hpp"
 #include "conformance/harness/runner.hpp"
+#include "conformance/harness/scenario_service.hpp"
 #include "conformance/harness/stream.hpp"
 
 namespace rr::conformance {
@@ -18,16 +19,6 @@ struct Connect {
   /// A new connection. Throws std::runtime_error.
   Stream operator()() const { return make(); }
 };
-
-/// What a runner's `serve` is told so that it is the service of a recording. `channel` is what its
-/// node needs for it, null for TCP.
-Json serve_request(const Captures& captures, const Scenario& scenario, const Json& channel = {});
-
-/// The service that a connection is with, as its first requests say.
-std::string service_of(const Scenario& scenario, int connection);
-
-/// The name that the host language of the recorded library gave to the exception in an answer.
-std::string host_error_of(const Frame& frame);
 
 /// Plays the client of a recording, byte for byte, and compares what the service answers.
 class ServiceReplay {

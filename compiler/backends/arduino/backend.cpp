@@ -6,6 +6,7 @@
 
 #include "compiler/backends/arduino/templates.hpp"
 #include "compiler/backends/arduino/view.hpp"
+#include "compiler/backends/print.hpp"
 #include "compiler/output/template_folder.hpp"
 #include "compiler/output/view_type.hpp"
 
@@ -43,14 +44,11 @@ std::string_view ArduinoBackend::summary() const {
 
 FileSet ArduinoBackend::generate(const model::Model& model, const GenerateOptions& options,
                                  Report& report) const {
-  FileSet files;
   const ModelView view = make_view(model, report);
-  if (report.has_errors()) return files;
-  TemplateFolder folder = TemplateFolder::from_sources(embedded_templates());
-  if (!options.template_folder.empty()) {
-    folder = folder.overlaid_with(TemplateFolder::from_disk(options.template_folder));
-  }
-  for (const OutputRule& rule : folder.rules) print(folder, rule, view, files);
+  if (report.has_errors()) return {};
+  FileSet files = print_rules(embedded_templates(), options.template_folder,
+                              [&](const TemplateFolder& folder, const OutputRule& rule,
+                                  FileSet& printed) { print(folder, rule, view, printed); });
   for (const ServiceView& service : view.services) files.add_note(service.estimate);
   return files;
 }

@@ -28,8 +28,7 @@ std::vector<MemberView> MemberMaker::make(std::size_t group) {
   }
   for (const model::Member& member : object.members) {
     MemberView view;
-    view.kind = std::string(model::name_of(member.kind));
-    view.wire_name = member.name;
+    describe(view, member);
     view.number = std::to_string(views.size());
     view.doc = prose(without_limits(member.documentation), "/// ", 98);
     if (!board_abilities.serve(member)) {
@@ -68,32 +67,26 @@ void MemberMaker::make_one(const model::Member& member, std::size_t group, Membe
   limits.report_unused(report_);
   switch (member.kind) {
     case MemberKind::property:
-      view.is_property = true;
       break;
     case MemberKind::function:
-      view.is_function = true;
       view.hook = name;
       sizes_.take_request(parameters);
       break;
     case MemberKind::event:
-      view.is_event = true;
       view.sender = "fire" + big;
       sizes_.take_queued(parameters);
       break;
     case MemberKind::callback:
-      view.is_callback = true;
       view.sender = "ask" + big;
       view.hook = "answered" + big;
       sizes_.take_queued(parameters);
       break;
     case MemberKind::pipe:
-      view.is_pipe = true;
       view.sender = "send" + big;
       view.setter = "receive" + big;
       take_slots(group, view);
       break;
     case MemberKind::wire:
-      view.is_wire = true;
       view.sender = camel(member.name) + "Changed";
       take_slots(group, view);
       break;
@@ -158,7 +151,6 @@ std::uint64_t MemberMaker::make_parameters(const model::Member& member, MemberVi
 }
 
 void MemberMaker::make_objref(const model::Member& member, std::size_t group, MemberView& view) {
-  view.is_objref = true;
   for (const Group& child : groups_) {
     if (child.via != &member || child.parent != group) continue;
     view.child_first = std::to_string(child.first);

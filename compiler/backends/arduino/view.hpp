@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/backends/member_facts.hpp"
 #include "compiler/diagnostics/report.hpp"
 #include "compiler/model/model.hpp"
 
@@ -15,18 +16,9 @@ struct ParameterView {
   std::string name;
 };
 
-struct MemberView {
-  std::string kind;       ///< `property`, `function`, ...
-  std::string wire_name;  ///< as in the definition
-  std::string number;     ///< its place in the object
+struct MemberView : MemberKindFacts {
+  std::string number;  ///< its place in the object
   // What kind it is.
-  bool is_property = false;
-  bool is_function = false;
-  bool is_event = false;
-  bool is_objref = false;
-  bool is_pipe = false;
-  bool is_callback = false;
-  bool is_wire = false;
 
   bool can_get = false;  ///< a client reads: property, wire; a pipe that sends
   bool can_set = false;  ///< a client writes

@@ -40,15 +40,12 @@ std::string_view CBusBackend::summary() const {
 
 FileSet CBusBackend::generate(const model::Model& model, const GenerateOptions& options,
                               Report& report) const {
-  FileSet files;
   const ModelView view = make_view(model, report);
-  if (report.has_errors()) return files;
-  TemplateFolder folder = TemplateFolder::from_sources(embedded_templates());
-  if (!options.template_folder.empty()) {
-    folder = folder.overlaid_with(TemplateFolder::from_disk(options.template_folder));
-  }
-  for (const OutputRule& rule : folder.rules) print_rule(folder, rule, view, files);
-  return files;
+  if (report.has_errors()) return {};
+  return print_rules(embedded_templates(), options.template_folder,
+                     [&](const TemplateFolder& folder, const OutputRule& rule, FileSet& files) {
+                       print_rule(folder, rule, view, files);
+                     });
 }
 
 std::string CBusBackend::view(const model::Model& model, Report& report) const {

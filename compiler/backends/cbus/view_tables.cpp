@@ -5,59 +5,12 @@
 
 namespace robdef {
 
-#define FIELD(View, name) view_field<&cbus::View::name>(#name)
-
-template <>
-const ViewType& view_type<cbus::FieldView>() {
-  static const ViewType type{FIELD(FieldView, wire_name),
-                             FIELD(FieldView, name),
-                             FIELD(FieldView, type),
-                             FIELD(FieldView, dimension),
-                             FIELD(FieldView, doc),
-                             FIELD(FieldView, gap),
-                             FIELD(FieldView, offset),
-                             FIELD(FieldView, offset_four),
-                             FIELD(FieldView, claim),
-                             FIELD(FieldView, put),
-                             FIELD(FieldView, get),
-                             FIELD(FieldView, address),
-                             FIELD(FieldView, count),
-                             FIELD(FieldView, simulink_type),
-                             FIELD(FieldView, simulink_dimensions),
-                             FIELD(FieldView, complexity)};
-  return type;
-}
-template <>
-const ViewType& view_type<cbus::SignalView>() {
-  static const ViewType type{FIELD(SignalView, name), FIELD(SignalView, path),
-                             FIELD(SignalView, type), FIELD(SignalView, count),
-                             FIELD(SignalView, place)};
-  return type;
-}
-template <>
-const ViewType& view_type<cbus::RecordView>() {
-  static const ViewType type{
-      FIELD(RecordView, wire_name),   FIELD(RecordView, c_name),    FIELD(RecordView, doc),
-      FIELD(RecordView, is_bus),      FIELD(RecordView, fields),    FIELD(RecordView, gap),
-      FIELD(RecordView, size),        FIELD(RecordView, size_four), FIELD(RecordView, bytes),
-      FIELD(RecordView, frame_bytes), FIELD(RecordView, hash),      FIELD(RecordView, signal_count),
-      FIELD(RecordView, signals)};
-  return type;
-}
-template <>
-const ViewType& view_type<cbus::DefinitionView>() {
-  static const ViewType type{FIELD(DefinitionView, wire_name), FIELD(DefinitionView, prefix),
-                             FIELD(DefinitionView, guard),     FIELD(DefinitionView, doc),
-                             FIELD(DefinitionView, includes),  FIELD(DefinitionView, others),
-                             FIELD(DefinitionView, records)};
-  return type;
-}
-template <>
-const ViewType& view_type<cbus::ModelView>() {
-  static const ViewType type{FIELD(ModelView, definitions)};
-  return type;
-}
-
-#undef FIELD
+ROBDEF_VIEW_TYPE(cbus::FieldView, wire_name, name, type, dimension, doc, gap, offset, offset_four,
+                 claim, put, get, address, count, simulink_type, simulink_dimensions, complexity);
+ROBDEF_VIEW_TYPE(cbus::SignalView, name, path, type, count, place);
+ROBDEF_VIEW_TYPE(cbus::RecordView, wire_name, c_name, doc, is_bus, fields, gap, size, size_four,
+                 bytes, frame_bytes, hash, signal_count, signals);
+ROBDEF_VIEW_TYPE(cbus::DefinitionView, wire_name, prefix, guard, doc, includes, others, records);
+ROBDEF_VIEW_TYPE(cbus::ModelView, definitions);
 
 }  // namespace robdef

@@ -9,6 +9,7 @@
 #include "compiler/backends/cpp/layout.hpp"
 #include "compiler/backends/literals.hpp"
 #include "compiler/backends/words.hpp"
+#include "compiler/output/escape.hpp"
 
 namespace robdef::cpp {
 namespace {
@@ -18,35 +19,18 @@ using model::Primitive;
 std::string blanks(std::size_t count) { return std::string(count, ' '); }
 
 void append_escaped(std::string& out, char c) {
-  switch (c) {
-    case '"':
-      out += "\\\"";
-      return;
-    case '\\':
-      out += "\\\\";
-      return;
-    case '\n':
-      out += "\\n";
-      return;
-    case '\r':
-      out += "\\r";
-      return;
-    case '\t':
-      out += "\\t";
-      return;
-    case '?':  // two of them begin a trigraph
-      out += out.ends_with('?') ? "\\?" : "?";
-      return;
-    default:
-      break;
-  }
-  const auto byte = static_cast<unsigned char>(c);
-  if (byte >= 0x20 && byte != 0x7F) {
+  const std::string_view escape = named_escape(c);
+  if (!escape.empty()) {
+    out += escape;
+  } else if (c == '?' && out.ends_with('?')) {  // two of them begin a trigraph
+    out += "\\?";
+  } else if (is_printable(c)) {
     out += c;
-    return;
+  } else {
+    const auto byte = static_cast<unsigned char>(c);
+    out += '\\';
+    for (const int shift : {6, 3, 0}) out += static_cast<char>('0' + ((byte >> shift) & 7));
   }
-  out += '\\';
-  for (const int shift : {6, 3, 0}) out += static_cast<char>('0' + ((byte >> shift) & 7));
 }
 
 std::string array_value(const model::Constant& constant) {

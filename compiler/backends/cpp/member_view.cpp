@@ -26,18 +26,10 @@ constexpr std::size_t in_class = 2;
 
 /// `::rr::readonly | ::rr::nolock`; empty for none.
 std::string access_text(const model::Access& access) {
-  std::vector<std::string> flags;
-  const auto add = [&](bool is_set, const char* name) {
-    if (is_set) flags.push_back(std::string("::rr::") + name);
-  };
-  add(access.is_readonly, "readonly");
-  add(access.is_writeonly, "writeonly");
-  add(access.is_unreliable, "unreliable");
-  add(access.is_nolock, "nolock");
-  add(access.is_nolockread, "nolockread");
-  add(access.is_perclient, "perclient");
-  add(access.is_urgent, "urgent");
-  return join(flags, " | ");
+  return join(
+      access_words(access, {"::rr::readonly", "::rr::writeonly", "::rr::unreliable", "::rr::nolock",
+                            "::rr::nolockread", "::rr::perclient", "::rr::urgent"}),
+      " | ");
 }
 
 class MemberMaker {
@@ -69,10 +61,9 @@ class MemberMaker {
  private:
   MemberView common(const Member& member) {
     MemberView view;
-    describe_member(view, member, runtime_abilities);
+    describe(view, object_, member, runtime_abilities);
     view.name = member_name(object_, member.name);
     view.doc = doc_lines(member.documentation, in_class);
-    view.is_inherited = origin(object_, member.name) != nullptr;
     return view;
   }
 
@@ -82,12 +73,10 @@ class MemberMaker {
     for (const model::Parameter& parameter : member.parameters) {
       view.parameters.push_back(make_parameter(parameter, taken));
     }
-    view.has_parameters = !view.parameters.empty();
     if (member.generator_parameter) {
       view.generator_parameter = make_parameter(*member.generator_parameter, taken);
     }
-    view.is_generator = member.generator != model::GeneratorForm::none;
-    view.yields = view.is_generator && !member.type.is_void();
+    view.yields = view.is_source || view.is_filter;
     std::vector<std::string> names;
     for (const ParameterView& parameter : view.parameters) names.push_back(parameter.name);
     view.arguments = join(names, ", ");
@@ -101,7 +90,6 @@ class MemberMaker {
       view.type = type.text;
       view.passed = type.passed();
       view.descriptor = type.descriptor;
-      view.has_result = !member.type.is_void();
       view.value = context_.names.local("value", taken);
       if (view.has_result) view.local = variable(type, view.value, 8);
       if (view.is_property) make_stored(view, type);
@@ -113,30 +101,25 @@ class MemberMaker {
   ParameterView make_parameter(const model::Parameter& parameter, std::set<std::string>& taken) {
     const CppType type = spell(parameter.type);
     ParameterView view;
-    view.wire_name = parameter.name;
-    view.name = context_.names.local(parameter.name, taken);
+    describe(view, parameter, context_.names.local(parameter.name, taken));
     view.type = type.text;
     view.passed = type.passed();
     view.local = variable(type, view.name, 6);
     view.descriptor = type.descriptor;
-    view.robdef_type = parameter.type.text();
     return view;
   }
 
   void make_reference(MemberView& view, const Member& member) {
-    view.has_index = view.has_int32_index || view.has_string_index;
     if (view.has_int32_index) context_.types.include("<cstdint>");
     if (view.has_string_index) context_.types.include("<string>");
     context_.types.include("<memory>");
     if (const auto* object = std::get_if<const Object*>(&member.type.base)) {
       const Object& target = **object;
-      view.object_type = target.qualified_name();
       view.stub = context_.names.object_class(target, stub_name(target), hidden_);
       view.skeleton = context_.names.object_class(target, skeleton_name(target), hidden_);
       view.qualified_stub = qualified(*target.definition, stub_name(target));
       view.qualified_skeleton = qualified(*target.definition, skeleton_name(target));
     } else {
-      view.is_varobject = true;
       view.stub = view.qualified_stub = "::rr::Stub";
       view.skeleton = view.qualified_skeleton = "::rr::Skeleton";
     }
@@ -154,7 +137,6 @@ class MemberMaker {
     item.container = model::ContainerForm::none;
     item.array = model::ArrayForm::none;
     view.item = spell(item).text;
-    view.is_multi = member.type.array == model::ArrayForm::any_shape;
   }
 
   /// The headers that a kind needs beside those of every object.

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "compiler/backends/member_facts.hpp"
 #include "compiler/diagnostics/report.hpp"
 #include "compiler/model/model.hpp"
-#include "compiler/output/view_type.hpp"
 
 /// What templates can print of a definition in C++. Texts are finished: names are C++ names, types
 /// C++ types, and what may need several lines is broken as the project's clang-format style does.
@@ -67,20 +67,13 @@ struct FieldView {
 };
 
 /// A struct, pod or namedarray.
-struct RecordView {
-  std::string wire_name;  ///< qualified: `example.Angles`
+struct RecordView : RecordFacts {
   std::string name;
   std::string qualified;
   std::vector<std::string> doc;
-  std::string kind;  ///< `struct`, `pod`, `namedarray`
-  bool is_struct = false;
-  bool is_pod = false;
-  bool is_namedarray = false;
-  std::string number_type;   ///< namedarray: of its numbers, `double`
-  std::string number_count;  ///< namedarray
+  std::string number_type;  ///< namedarray: of its numbers, `double`
   std::vector<ConstantView> constants;
   std::vector<FieldView> fields;
-  bool has_fields = false;
   std::string table;                    ///< name of its RecordType
   std::string field_table;              ///< name of the array of its fields
   std::vector<std::string> field_rows;  ///< what the array holds
@@ -88,74 +81,38 @@ struct RecordView {
   std::string specialization;           ///< of rr::type_of
 };
 
-struct ParameterView {
-  std::string wire_name;
-  std::string name;
+struct ParameterView : ParameterFacts {
   std::string type;
   std::string passed;  ///< `double`, `const ::std::string&`
   std::string local;   ///< a variable for it: `double pan = 0;`
   std::string descriptor;
-  std::string robdef_type;
 };
 
 /// A member of an object. What does not apply to its kind is empty or false.
-struct MemberView {
-  std::string wire_name;
+struct MemberView : MemberFacts {
   std::string name;
   std::vector<std::string> doc;
-  std::string kind;  ///< `property`, `function`, ...
-  bool is_property = false;
-  bool is_function = false;
-  bool is_event = false;
-  bool is_objref = false;
-  bool is_pipe = false;
-  bool is_callback = false;
-  bool is_wire = false;
-  bool is_memory = false;
-  bool is_served = false;     ///< false: the runtime cannot do it, and nothing is generated
-  bool is_inherited = false;  ///< the generated classes have it from one they implement
-  std::string number;         ///< its place in the object's table
-  std::string entry;          ///< the table's entry: `rr_members_PanTilt[3]`
-
-  bool is_readonly = false;
-  bool is_writeonly = false;
-  bool is_unreliable = false;
-  bool is_nolock = false;
-  bool is_nolockread = false;
-  bool is_perclient = false;
-  bool is_urgent = false;
-  bool can_get = false;  ///< property: not writeonly
-  bool can_set = false;  ///< property: not readonly
+  std::string entry;  ///< the table's entry: `rr_members_PanTilt[3]`
 
   std::string type;    ///< property, pipe, wire, memory: the value; function, callback: the result
   std::string passed;  ///< the value as a parameter
   std::string descriptor;  ///< what rr::type_of is asked for
-  std::string robdef_type;
-  std::string value;      ///< a name for a variable that holds it
-  std::string local;      ///< the variable: `double value = 0;`
-  std::string item;       ///< memory: one of its items, `double`
-  bool is_multi = false;  ///< memory: of several dimensions
+  std::string value;       ///< a name for a variable that holds it
+  std::string local;       ///< the variable: `double value = 0;`
+  std::string item;        ///< memory: one of its items, `double`
   std::string handle;  ///< what the stub's method gives: `::rr::Pipe<Frame>`, `::rr::Event<double>`
   std::string served;  ///< what the skeleton's gives: `::rr::PipeServer<Frame>`
   std::string stored;  ///< property, memory: what a Default class keeps
-  bool has_result = false;  ///< function, callback: not void
   std::vector<ParameterView> parameters;
-  bool has_parameters = false;
-  std::string arguments;        ///< names of the parameters: `pan, tilt`
-  std::string parameter_table;  ///< its definition; empty without parameters
-  bool is_generator = false;
+  std::string arguments;                             ///< names of the parameters: `pan, tilt`
+  std::string parameter_table;                       ///< its definition; empty without parameters
   bool yields = false;                               ///< generator: each step returns a `type`
   std::optional<ParameterView> generator_parameter;  ///< what each step takes
 
-  std::string object_type;  ///< objref: qualified, `example.PanTilt`; empty for varobject
-  bool is_varobject = false;
   std::string stub;  ///< objref: its class, as written here
   std::string skeleton;
   std::string qualified_stub;
   std::string qualified_skeleton;
-  bool has_index = false;
-  bool has_int32_index = false;
-  bool has_string_index = false;
 
   std::string getter;  ///< `get_pan`: properties and objrefs
   std::string setter;  ///< `set_pan`

@@ -28,10 +28,16 @@ std::vector<std::string> doc_lines(const std::string& documentation, std::size_t
 /// `double pan = 0;`, broken behind the type where it does not fit.
 std::string variable(const CppType& type, const std::string& name, std::size_t indent);
 
+/// A constant with `storage` in front, printed behind `indent` blanks.
+ConstantView make_constant(const model::Constant& constant, const std::string& storage,
+                           std::size_t indent, const Context& context);
 /// The constants of a record or object, for the inside of a class.
 std::vector<ConstantView> class_constants(const std::vector<model::Constant>& constants,
                                           const Context& context);
 
+EnumView make_enum(const model::Enum& enumeration);
+ExceptionView make_exception(const model::Exception& exception, const Context& context);
+RecordView make_record(const model::Record& record, const Context& context);
 ObjectView make_object(const model::Object& object, const Context& context);
 
 /// Adds the members of an object and the rows of their table. Reports R0904 for those that the

@@ -7,42 +7,14 @@
 
 #include "compiler/backends/literals.hpp"
 #include "compiler/backends/words.hpp"
+#include "compiler/output/escape.hpp"
 
 namespace robdef::csharp {
 namespace {
 
 using model::Primitive;
 
-void append_escaped(std::string& out, char c) {
-  switch (c) {
-    case '"':
-      out += "\\\"";
-      return;
-    case '\\':
-      out += "\\\\";
-      return;
-    case '\n':
-      out += "\\n";
-      return;
-    case '\r':
-      out += "\\r";
-      return;
-    case '\t':
-      out += "\\t";
-      return;
-    default:
-      break;
-  }
-  const auto byte = static_cast<unsigned char>(c);
-  if (byte >= 0x20 && byte != 0x7F) {
-    out += c;
-    return;
-  }
-  constexpr std::string_view digits = "0123456789ABCDEF";
-  out += "\\u00";
-  out += digits[byte / 16];
-  out += digits[byte % 16];
-}
+constexpr std::string_view digits = "0123456789ABCDEF";
 
 std::string number(const model::Constant& constant, const model::Number& value,
                    const std::string& written) {
@@ -81,7 +53,7 @@ std::string string_literal(std::string_view text) {
       result += "\\u0085";
       ++i;
     } else {
-      append_escaped(result, text[i]);
+      append_escaped(result, text[i], digits);
     }
   }
   return result + '"';

@@ -55,12 +55,11 @@ class MemberMaker {
  private:
   MemberView common(const Member& member) {
     MemberView view;
-    describe_member(view, member, runtime_abilities);
+    describe(view, object_, member, runtime_abilities);
     view.name = is_called_by_itself(member)
                     ? member_name(member.name, "", member.span, context_.report)
                     : pascal(member.name);
     view.doc = summary(member.documentation, in_class);
-    view.is_inherited = origin(object_, member.name) != nullptr;
     view.is_hiding = !view.is_inherited && is_implemented(member.name);
     view.access = access_text(member.access);
     if (view.is_urgent) view.urgent = ", " + runtime("MemberAccess") + ".Urgent";
@@ -81,18 +80,13 @@ class MemberMaker {
   std::string runtime(std::string_view name) { return context_.names.library(runtime_space, name); }
 
   std::string access_text(const model::Access& access) {
-    std::vector<std::string> flags;
-    const auto add = [&](bool is_set, const char* name) {
-      if (is_set) flags.push_back(runtime("MemberAccess") + "." + name);
-    };
-    add(access.is_readonly, "ReadOnly");
-    add(access.is_writeonly, "WriteOnly");
-    add(access.is_unreliable, "Unreliable");
-    add(access.is_nolock, "NoLock");
-    add(access.is_nolockread, "NoLockRead");
-    add(access.is_perclient, "PerClient");
-    add(access.is_urgent, "Urgent");
-    return flags.empty() ? runtime("MemberAccess") + ".None" : join(flags, " | ");
+    std::vector<std::string> flags = access_words(
+        access,
+        {"ReadOnly", "WriteOnly", "Unreliable", "NoLock", "NoLockRead", "PerClient", "Urgent"});
+    if (flags.empty()) flags.emplace_back("None");
+    const std::string before = runtime("MemberAccess") + ".";
+    for (std::string& flag : flags) flag.insert(0, before);
+    return join(flags, " | ");
   }
 
   void make_value(MemberView& view, const Member& member) {
@@ -104,7 +98,6 @@ class MemberMaker {
       parameters.push_back(view.parameters.back().type + " " + view.parameters.back().name);
       arguments.push_back(view.parameters.back().name);
     }
-    view.has_parameters = !view.parameters.empty();
     view.writes.assign(view.parameters.rbegin(), view.parameters.rend());
     view.signature = join(parameters, ", ");
     view.signature_before = view.signature + (view.has_parameters ? ", " : "");
@@ -119,7 +112,6 @@ class MemberMaker {
       const CsType type = context_.types.spell(member.type);
       view.type = type.text;
       view.codec = type.codec;
-      view.has_result = !member.type.is_void();
       view.first = type.initial.empty() ? "default" : type.initial.substr(3);
       if (view.first.ends_with(';')) view.first.pop_back();
     }
@@ -129,28 +121,25 @@ class MemberMaker {
 
   ParameterView make_parameter(const model::Parameter& parameter, std::set<std::string>& taken) {
     const CsType type = context_.types.spell(parameter.type);
-    return {.wire_name = parameter.name,
-            .name = Names::local(parameter.name, taken),
-            .type = type.text,
-            .codec = type.codec,
-            .robdef_type = parameter.type.text()};
+    ParameterView view;
+    describe(view, parameter, Names::local(parameter.name, taken));
+    view.type = type.text;
+    view.codec = type.codec;
+    return view;
   }
 
   void make_reference(MemberView& view, const Member& member) {
     if (view.has_int32_index) view.index_type = "int index";
     if (view.has_string_index) view.index_type = "string index";
-    const bool has_index = !view.index_type.empty();
-    view.index_parameter = view.index_type + (has_index ? ", " : "");
-    view.index_argument = has_index ? "index" : runtime("ObjectIndex") + ".None";
+    view.index_parameter = view.index_type + (view.has_index ? ", " : "");
+    view.index_argument = view.has_index ? "index" : runtime("ObjectIndex") + ".None";
     if (view.has_int32_index) view.index_read = "rrRequest.IndexNumber";
     if (view.has_string_index) view.index_read = "rrRequest.IndexText";
     if (const auto* object = std::get_if<const Object*>(&member.type.base)) {
       const model::Definition& owner = *(*object)->definition;
-      view.object_type = (*object)->qualified_name();
       view.interface = context_.names.type(owner, interface_name(**object));
       view.stub = context_.names.type(owner, stub_name(**object));
     } else {
-      view.is_varobject = true;
       view.interface = view.stub = runtime("Stub");
     }
   }
@@ -161,7 +150,7 @@ class MemberMaker {
       case MemberKind::objref:
         break;
       case MemberKind::function:
-        make_function(view, member);
+        make_function(view);
         break;
       case MemberKind::event:
         view.handler = system("Action") + angled(types_of(view));
@@ -196,11 +185,7 @@ class MemberMaker {
     return result == "void" ? name : name + "<" + result + ">";
   }
 
-  void make_function(MemberView& view, const Member& member) {
-    view.is_generator = member.generator != model::GeneratorForm::none;
-    view.is_source = member.generator == model::GeneratorForm::returns;
-    view.is_sink = member.generator == model::GeneratorForm::takes;
-    view.is_filter = member.generator == model::GeneratorForm::both;
+  void make_function(MemberView& view) {
     view.result = view.type;
     view.verb = "Run";
     view.codecs = view.has_result ? view.codec + ", " : "";
@@ -254,7 +239,6 @@ class MemberMaker {
     const CsType item = context_.types.item(member.type);
     view.item = item.text;
     view.item_codec = item.codec;
-    view.is_multi = member.type.array == model::ArrayForm::any_shape;
     const std::string kind = view.is_multi ? "MultiDimMemory" : "ArrayMemory";
     view.handle = runtime(kind) + "<" + item.text + ">";
     view.handle_served = runtime(kind + "Source") + "<" + item.text + ">";

@@ -119,12 +119,9 @@ FieldView make_field(const model::Field& field, const model::Record& record,
 
 RecordView make_record(const model::Record& record, const Context& context) {
   RecordView view;
-  view.wire_name = record.qualified_name();
+  describe(view, record);
   view.name = pascal(record.name);
   view.doc = summary(record.documentation, 0);
-  view.is_struct = record.kind == model::RecordKind::struct_;
-  view.is_pod = record.kind == model::RecordKind::pod;
-  view.is_namedarray = record.kind == model::RecordKind::namedarray;
   if (view.is_namedarray) {
     view.number_type = context.types.number(record.number);
     view.number_codec = context.types.number_codec(record.number);
@@ -141,7 +138,6 @@ RecordView make_record(const model::Record& record, const Context& context) {
     view.has_rows |= !view.fields.back().items.empty();
   }
   view.writes.assign(view.fields.rbegin(), view.fields.rend());
-  view.has_fields = !view.fields.empty();
   view.field_count = std::to_string(view.fields.size());
   view.codec_class = "Rr" + view.name + "Codec";
   return view;
@@ -150,12 +146,9 @@ RecordView make_record(const model::Record& record, const Context& context) {
 /// The text as literals, one for each line, with what follows all but the last.
 std::vector<std::string> text_lines(std::string_view text) {
   std::vector<std::string> lines;
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    const std::size_t size = end == std::string_view::npos ? text.size() : end + 1;
-    lines.push_back(string_literal(text.substr(0, size)));
-    text.remove_prefix(size);
-    if (!text.empty()) lines.back() += " +";
+  for (const std::string_view line : lines_of(text)) {
+    if (!lines.empty()) lines.back() += " +";
+    lines.push_back(string_literal(line));
   }
   if (lines.empty()) lines.emplace_back("\"\"");
   return lines;

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "compiler/backends/member_facts.hpp"
 #include "compiler/diagnostics/report.hpp"
 #include "compiler/model/model.hpp"
-#include "compiler/output/view_type.hpp"
 
 /// What templates can print of a definition in C#. Texts are finished; what has several lines
 /// begins each but the first with its blanks. `robdef view --lang csharp` prints it all as JSON.
@@ -55,97 +55,60 @@ struct FieldView {
 };
 
 /// A struct, pod or namedarray.
-struct RecordView {
-  std::string wire_name;  ///< qualified: `example.Angles`
+struct RecordView : RecordFacts {
   std::string name;
   std::vector<std::string> doc;
-  bool is_struct = false;
-  bool is_pod = false;
-  bool is_namedarray = false;
   std::string number_type;   ///< namedarray: of its numbers, `double`
   std::string number_codec;  ///< namedarray
   std::string packed_size;   ///< pod: most bytes of one in message version 2
   std::vector<ConstantView> constants;
   std::vector<FieldView> fields;
   std::vector<FieldView> writes;  ///< the fields from the last to the first
-  bool has_fields = false;
-  bool has_rows = false;  ///< namedarray: a field is a row of items
+  bool has_rows = false;          ///< namedarray: a field is a row of items
   std::string field_count;
   std::string codec_class;  ///< `RrAnglesCodec`
 };
 
-struct ParameterView {
-  std::string wire_name;
-  std::string name;
+struct ParameterView : ParameterFacts {
   std::string type;
   std::string codec;
-  std::string robdef_type;
 };
 
 /// A member of an object. What does not apply to its kind is empty or false.
-struct MemberView {
-  std::string wire_name;
+struct MemberView : MemberFacts {
   std::string name;  ///< `MoveTo`
   std::vector<std::string> doc;
-  std::string kind;  ///< `property`, `function`, ...
-  bool is_property = false;
-  bool is_function = false;
-  bool is_event = false;
-  bool is_objref = false;
-  bool is_pipe = false;
-  bool is_callback = false;
-  bool is_wire = false;
-  bool is_memory = false;
-  bool is_served = false;     ///< false: the runtime cannot do it, and nothing is generated
-  bool is_inherited = false;  ///< the interface has it from one that it implements
-  bool is_hiding = false;     ///< two implemented interfaces have it: declared anew
-  std::string number;         ///< its place in the object's table
-  std::string row;            ///< of that table
-  std::string access;         ///< `MemberAccess.ReadOnly | MemberAccess.NoLock`
-  bool is_perclient = false;
-  bool is_urgent = false;
-  bool can_get = false;  ///< property: not writeonly
-  bool can_set = false;  ///< property: not readonly
+  bool is_hiding = false;  ///< two implemented interfaces have it: declared anew
+  std::string row;         ///< of that table
+  std::string access;      ///< `MemberAccess.ReadOnly | MemberAccess.NoLock`
 
   std::string type;  ///< property, pipe, wire: the value; function, callback: the result
   std::string codec;
-  std::string initial;      ///< property: what a Default class begins with
-  std::string robdef_type;  ///< as in the definition, with qualified names
-  std::string item;         ///< memory: one of its items, `double`
+  std::string initial;  ///< property: what a Default class begins with
+  std::string item;     ///< memory: one of its items, `double`
   std::string item_codec;
-  bool is_multi = false;    ///< memory: of several dimensions
-  bool has_result = false;  ///< function, callback: not void
   std::vector<ParameterView> parameters;
   std::vector<ParameterView> writes;  ///< the parameters from the last to the first
-  bool has_parameters = false;
-  std::string signature;         ///< `double pan, double tilt`
-  std::string signature_before;  ///< the same with `, ` behind it, unless it is empty
-  std::string arguments;         ///< `pan, tilt`
-  std::string arguments_before;  ///< the same with `, ` behind it, unless it is empty
-  std::string cancel;            ///< a name for the token behind the parameters
-  std::string client;            ///< a name for the client before the parameters
-  std::string urgent;            ///< `, MemberAccess.Urgent` or empty
-  std::string handler;           ///< event, callback: the delegate
-  std::string task;              ///< function, callback: what an asynchronous one gives
-  std::string result;            ///< `double`, `void`, `Generator<double>`
-  std::string served;            ///< function: what the skeleton's member gives
-  std::string served_signature;  ///< function: what it takes
-  std::string invocation;        ///< function: `RrCallMoveTo(pan, tilt)`
-  std::string verb;              ///< `Run`, `Open`, `OpenSink`, `OpenFilter`
-  std::string codecs;            ///< what the verb gets before the token: `ValueCodec.Double, `
-  std::string answer;            ///< what the answer gets behind the value: `, ValueCodec.Double`
-  bool is_generator = false;
-  bool is_source = false;                            ///< generator: gives values only
-  bool is_sink = false;                              ///< generator: takes values only
-  bool is_filter = false;                            ///< generator: both
+  std::string signature;              ///< `double pan, double tilt`
+  std::string signature_before;       ///< the same with `, ` behind it, unless it is empty
+  std::string arguments;              ///< `pan, tilt`
+  std::string arguments_before;       ///< the same with `, ` behind it, unless it is empty
+  std::string cancel;                 ///< a name for the token behind the parameters
+  std::string client;                 ///< a name for the client before the parameters
+  std::string urgent;                 ///< `, MemberAccess.Urgent` or empty
+  std::string handler;                ///< event, callback: the delegate
+  std::string task;                   ///< function, callback: what an asynchronous one gives
+  std::string result;                 ///< `double`, `void`, `Generator<double>`
+  std::string served;                 ///< function: what the skeleton's member gives
+  std::string served_signature;       ///< function: what it takes
+  std::string invocation;             ///< function: `RrCallMoveTo(pan, tilt)`
+  std::string verb;                   ///< `Run`, `Open`, `OpenSink`, `OpenFilter`
+  std::string codecs;  ///< what the verb gets before the token: `ValueCodec.Double, `
+  std::string answer;  ///< what the answer gets behind the value: `, ValueCodec.Double`
   std::optional<ParameterView> generator_parameter;  ///< what each step takes
 
   std::string interface;  ///< objref: what it gives
   std::string stub;
-  std::string object_type;  ///< objref: qualified, `example.PanTilt`; empty for varobject
-  bool is_varobject = false;
-  bool has_int32_index = false;
-  bool has_string_index = false;
   std::string index_parameter;  ///< `int index, `
   std::string index_argument;   ///< `index`, or `ObjectIndex.None`
   std::string index_type;       ///< `int index`, or empty

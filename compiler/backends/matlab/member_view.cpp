@@ -46,13 +46,12 @@ class MemberMaker {
 
   MemberView make(const Member& member) {
     MemberView view;
-    describe_member(view, member, runtime_abilities);
+    describe(view, object_, member, runtime_abilities);
     view.name = member_name(member.name, identifier(object_.name));
     if (view.is_objref) view.name = "get_" + member.name;
     view.declaration = model::written(member, *object_.definition);
-    view.is_generator = member.generator != model::GeneratorForm::none;
-    view.has_result = !member.type.is_void() || view.is_generator;
-    view.has_index = member.index != model::IndexForm::none;
+    // A generator function has one whatever its steps give.
+    view.has_result = view.has_result || view.is_generator;
     view.is_stream = view.is_pipe || view.is_wire || view.is_memory || view.is_callback;
     make_names(view, member);
     make_parameters(view, member);
@@ -88,13 +87,10 @@ class MemberMaker {
     std::set<std::string> taken{"obj", "result", "handler", "varargin"};
     std::vector<std::string> names;
     for (const model::Parameter& parameter : member.parameters) {
-      view.parameters.push_back({.wire_name = parameter.name,
-                                 .name = local(parameter.name, taken),
-                                 .robdef_type = parameter.type.text()});
+      describe(view.parameters.emplace_back(), parameter, local(parameter.name, taken));
       names.push_back(view.parameters.back().name);
     }
     if (view.has_index) names.emplace_back("index");
-    view.has_parameters = !view.parameters.empty();
     view.arguments = join(names, ", ");
     view.argument_cell = "{" + view.arguments + "}";
     view.arguments_behind = (names.empty() ? "" : ", ") + view.arguments;

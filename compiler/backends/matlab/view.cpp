@@ -60,11 +60,9 @@ ExceptionView make_exception(const model::Exception& exception) {
 RecordView make_record(const model::Record& record) {
   const model::Definition& definition = *record.definition;
   RecordView view;
-  view.wire_name = record.qualified_name();
+  describe(view, record);
   view.name = identifier(record.name);
   view.qualified = qualified(definition, view.name);
-  view.kind = model::name_of(record.kind);
-  view.is_namedarray = record.kind == model::RecordKind::namedarray;
   view.cpp = cpp::qualified(definition, cpp::identifier(record.name));
   Help text =
       help(view.name, record.documentation, "A value for the " + view.kind + " " + view.wire_name);
@@ -82,7 +80,6 @@ RecordView make_record(const model::Record& record) {
     one.help.insert(one.help.end(), doc.begin(), doc.end());
     view.fields.push_back(std::move(one));
   }
-  view.has_fields = !view.fields.empty();
   view.constants = make_constants(record.constants, constants_class_of(record));
   view.has_constants = !view.constants.empty();
   view.constants_class = constants_class_of(record);
@@ -91,12 +88,7 @@ RecordView make_record(const model::Record& record) {
 
 std::vector<std::string> text_lines(std::string_view text) {
   std::vector<std::string> lines;
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    const std::size_t size = end == std::string_view::npos ? text.size() : end + 1;
-    lines.push_back(string_literal(text.substr(0, size)));
-    text.remove_prefix(size);
-  }
+  for (const std::string_view line : lines_of(text)) lines.push_back(string_literal(line));
   return lines;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/backends/member_facts.hpp"
 #include "compiler/diagnostics/report.hpp"
 #include "compiler/model/model.hpp"
 
@@ -45,33 +46,21 @@ struct FieldView {
 };
 
 /// A struct, pod or namedarray.
-struct RecordView {
-  std::string wire_name;  ///< qualified: `example.Angles`
+struct RecordView : RecordFacts {
   std::string name;
   std::string qualified;  ///< as MATLAB calls it
   std::string title;
   std::vector<std::string> help;
-  std::string kind;  ///< `struct`, `pod`, `namedarray`
-  bool is_namedarray = false;
   std::string cpp;          ///< `::example::Angles`
   std::string number_type;  ///< namedarray: of its numbers in C++, `double`
-  std::string number_count;
   std::vector<FieldView> fields;
-  bool has_fields = false;
   std::vector<ConstantView> constants;
   bool has_constants = false;
   std::string constants_class;
 };
 
-struct ParameterView {
-  std::string wire_name;
-  std::string name;
-  std::string robdef_type;
-};
-
 /// A member of an object. What does not apply to its kind is empty or false.
-struct MemberView {
-  std::string wire_name;
+struct MemberView : MemberFacts {
   std::string name;
   std::string async_name;         ///< property: `async_get_speed`; function, objref likewise
   std::string async_set_name;     ///< property
@@ -79,35 +68,10 @@ struct MemberView {
   std::vector<std::string> help;  ///< further lines, the declaration last
   std::vector<std::string> property_doc;  ///< lines with their `%`, the declaration last
   std::string declaration;                ///< `property double speed [readonly]`
-  std::string kind;                       ///< `property`, `function`, ...
-  bool is_property = false;
-  bool is_function = false;
-  bool is_event = false;
-  bool is_objref = false;
-  bool is_pipe = false;
-  bool is_callback = false;
-  bool is_wire = false;
-  bool is_memory = false;
-  bool is_served = false;  ///< false: the runtime cannot do it, and nothing is generated
-  bool can_get = false;    ///< property: not writeonly
-  bool can_set = false;    ///< property: not readonly
-  bool is_readonly = false;
-  bool is_writeonly = false;
-  bool is_unreliable = false;
-  bool is_nolock = false;
-  bool is_nolockread = false;
-  bool is_perclient = false;
-  bool is_urgent = false;
-  std::string number;  ///< its place in the object's table
-  std::string robdef_type;
-  bool has_result = false;  ///< function, callback: not void; a generator function always has one
-  bool is_generator = false;
-  std::vector<ParameterView> parameters;
-  bool has_parameters = false;
+  std::vector<ParameterFacts> parameters;
   std::string arguments;         ///< of its method, without the object: `pan, tilt`
   std::string arguments_behind;  ///< the same behind others: `, pan, tilt`
   std::string argument_cell;     ///< and as a cell: `{pan, tilt}`
-  bool has_index = false;        ///< objref
   bool is_stream = false;        ///< pipe, callback, wire, memory: a property of the class
   std::string object_class;      ///< objref: what is generated for it; empty for what is not known
   std::string binding;           ///< its row in the client's table

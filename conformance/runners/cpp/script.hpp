@@ -166,7 +166,7 @@ void Script::add_wire(const std::string& name, const WireServer<T>& wire) {
   });
   wire.on_connect([this, name, wire, scripted](ServedWire<T>) {
     if (part(told("wires", name), "at_connect") != true) return;
-    do_later([wire, scripted] { wire.set_in(scripted("peek_in")); });
+    do_later(name + " at_connect", [wire, scripted] { wire.set_in(scripted("peek_in")); });
   });
   add_action("send_" + name, [this, name, wire](std::string_view) {
     for (const Json& value : part(told("wires", name), "send")) {

@@ -2,6 +2,7 @@
 #include "conformance/runners/shared/object_script.hpp"
 
 #include <algorithm>
+#include <iostream>
 #include <stdexcept>
 #include <utility>
 
@@ -53,7 +54,7 @@ Json ObjectScript::outcome(std::string_view function, const Json& parameters,
   if (function.ends_with(later)) {
     const auto put_off = actions_.find(function.substr(0, function.size() - later.size()));
     if (put_off != actions_.end()) {
-      do_later([&act = put_off->second] { (void)act({}); });
+      do_later(std::string(function), [&act = put_off->second] { (void)act({}); });
       return nullptr;
     }
   }
@@ -66,14 +67,18 @@ Json ObjectScript::outcome(std::string_view function, const Json& parameters,
   return part(next, "return");
 }
 
-void ObjectScript::do_later(std::function<void()> what) {
+void ObjectScript::do_later(std::string name, std::function<void()> what) {
   const std::lock_guard lock(mutex_);
-  put_off_.emplace_back([what = std::move(what)] {
+  put_off_.emplace_back([name = std::move(name), what = std::move(what)] {
     std::this_thread::sleep_for(delay);
     try {
       what();
     } catch (const Error&) {
       return;  // whom it was for has gone
+    } catch (const std::exception& error) {
+      std::cerr << name + ": " + error.what() + "\n";
+    } catch (...) {
+      std::cerr << name + ": something else than an exception was thrown\n";
     }
   });
 }

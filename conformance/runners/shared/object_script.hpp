@@ -70,8 +70,9 @@ class ObjectScript {
   }
   void count_packet() { ++received_; }
   [[nodiscard]] int packet_count() const { return received_; }
-  /// Does it once what happens now has been answered.
-  void do_later(std::function<void()> what);
+  /// Does it once what happens now has been answered; nobody is left to be told what it throws, so
+  /// the error output is, by this name.
+  void do_later(std::string name, std::function<void()> what);
   /// Waits for what has been put off. First in the destructor of what that uses.
   void finish();
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/c/src/memory_types.hpp"
 
-#include <complex>
 #include <limits>
+#include <type_traits>
 
-#include "rr/complex.hpp"
+#include "rr/number.hpp"
 #include "rr/type.hpp"
 #include "runtime/c/src/border.hpp"
 
@@ -18,39 +18,10 @@ const Type& array_of(bool is_multi) {
 }
 
 const Type* numbers(ElementType element, bool is_multi) {
-  switch (element) {
-    case ElementType::double_:
-      return &array_of<double>(is_multi);
-    case ElementType::single:
-      return &array_of<float>(is_multi);
-    case ElementType::int8:
-      return &array_of<std::int8_t>(is_multi);
-    case ElementType::uint8:
-      return &array_of<std::uint8_t>(is_multi);
-    case ElementType::int16:
-      return &array_of<std::int16_t>(is_multi);
-    case ElementType::uint16:
-      return &array_of<std::uint16_t>(is_multi);
-    case ElementType::int32:
-      return &array_of<std::int32_t>(is_multi);
-    case ElementType::uint32:
-      return &array_of<std::uint32_t>(is_multi);
-    case ElementType::int64:
-      return &array_of<std::int64_t>(is_multi);
-    case ElementType::uint64:
-      return &array_of<std::uint64_t>(is_multi);
-    case ElementType::cdouble:
-      return &array_of<std::complex<double>>(is_multi);
-    case ElementType::csingle:
-      return &array_of<std::complex<float>>(is_multi);
-    case ElementType::bool_:
-      return &array_of<bool>(is_multi);
-    case ElementType::pod_array:
-    case ElementType::namedarray_array:
-      return nullptr;
-    default:
-      refuse_argument("there are no memories of this type");
-  }
+  if (element == ElementType::pod_array || element == ElementType::namedarray_array) return nullptr;
+  if (!is_number(element)) refuse_argument("there are no memories of this type");
+  return with_number(element,
+                     [&]<class T>(std::type_identity<T>) { return &array_of<T>(is_multi); });
 }
 
 }  // namespace

@@ -107,6 +107,8 @@ class ClientTables final : public client::DefinitionReader,
   ~ClientTables() override;
   [[nodiscard]] std::shared_ptr<const TypeRegistry> types() const override;
   void read(const std::map<std::string, std::string>& texts) override;
+  [[nodiscard]] const Holding& holding() const override { return holding_of<Raw>; }
+  [[nodiscard]] std::string_view name_of_values() const override { return "elements"; }
 
   /// The member of this name as it is to be used; always the same one. `kind` and `access` as they
   /// are, `form` of a generator, `type` of a memory or null for that of any value.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the definitions of a service say: texts, constants, empty structures.
 #include "rr/error.hpp"
-#include "runtime/matlab/src/number_types.hpp"
+#include "rr/number.hpp"
 #include "runtime/matlab/src/objects.hpp"
 
 namespace rr::matlab {

@@ -7,7 +7,7 @@
 
 #include "rr/error.hpp"
 #include "rr/matlab/shapes.hpp"
-#include "runtime/matlab/src/number_types.hpp"
+#include "rr/number.hpp"
 #include "runtime/matlab/src/values.hpp"
 
 namespace rr::matlab {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "rr/serial.hpp"
 #include "runtime/matlab/src/objects.hpp"
 
 namespace rr::matlab {
@@ -16,6 +17,7 @@ Runtime::Runtime(std::uint32_t generation, NodeOptions options)
       handles_(generation),
       interrupts_(std::make_unique<Interrupts>([this] { interrupted(); })) {
   options.log = [log = log_](LogLevel level, std::string_view text) { log->write(level, text); };
+  options.channels.emplace("rr+serial", serial_channel());
   node_ = std::make_unique<Node>(std::move(options));
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "rr/matlab/shapes.hpp"
-#include "runtime/matlab/src/number_types.hpp"
+#include "rr/number.hpp"
 #include "runtime/matlab/src/values.hpp"
 
 namespace rr::matlab {

@@ -30,7 +30,8 @@ else
   own = dir(fullfile(root, 'runtime', 'matlab', 'src', '*.cpp'));
   own = {own(~strcmp({own.name}, 'rrmex.cpp')).name};
   files = [files, in_folder(fullfile(root, 'runtime', 'matlab', 'src'), own)];
-  archives = in_folder(library_folder(prefix), {'librobdef_dynamic.a', 'librobdef_runtime.a'});
+  archives = in_folder(library_folder(prefix), ...
+                       {'librobdef_serial.a', 'librobdef_dynamic.a', 'librobdef_runtime.a'});
   mex('CXXFLAGS=$CXXFLAGS -std=c++20 -fvisibility=hidden', includes{:}, ['-I', root], ...
       varargin{:}, '-outdir', folder, '-output', 'rrmex', files{:}, archives{:}, libraries{:});
 end

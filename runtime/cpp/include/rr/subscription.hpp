@@ -165,7 +165,7 @@ class ServiceSubscription {
   /// name of the service or with `*`, which stands for it; empty means the root. Asking for the
   /// same wire again gives another handle of the same: a client can connect a wire once. Throws
   /// rr::Error (invalid_argument for what is no path; invalid_operation when closed, or when the
-  /// same wire is used with another T).
+  /// same wire is used with another T; data_type_mismatch for a T that rr::dynamic has not).
   template <class T>
   WireSubscription<T> subscribe_wire(std::string_view member, std::string_view path = {}) {
     return WireSubscription<T>(add_wire(member, path, holding_of<T>));

@@ -4,7 +4,9 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 
+#include "rr/holding.hpp"
 #include "rr/registry.hpp"
 
 namespace rr::client {
@@ -19,6 +21,10 @@ class DefinitionReader {
   /// The texts of all definitions that have come, by their names. Throws rr::Error
   /// (service_definition_error).
   virtual void read(const std::map<std::string, std::string>& texts) = 0;
+  /// How wires and pipes of its types keep values, whatever these are.
+  [[nodiscard]] virtual const Holding& holding() const = 0;
+  /// What a program calls the type of such values.
+  [[nodiscard]] virtual std::string_view name_of_values() const = 0;
 };
 
 }  // namespace rr::client

@@ -55,6 +55,14 @@ class Ignored final : public Completion {
 
 }  // namespace
 
+struct Pipes::Used final : PipeEnd::State {
+  Used(std::shared_ptr<const endpoint::Core> core, std::shared_ptr<endpoint::PipeSide> side,
+       Identity what, std::uint64_t notices)
+      : State(std::move(core), std::move(side), std::move(what)), notices_before(notices) {}
+
+  const std::uint64_t notices_before;  ///< that were read (Notices); none of them means it
+};
+
 // A request to connect that is open: packets that come meanwhile are kept.
 class Pipes::Connecting {
  public:
@@ -137,9 +145,10 @@ Pipes::End Pipes::open(const Wish& wish, Decoder& decoder, const Entry& entry) {
   const bool is_unreliable =
       wish.options.unreliable && (wish.member->access & unreliable) != 0 &&
       find_element(decoder, entry.elements, entry.element_count, "unreliable", element);
-  const auto end = std::make_shared<PipeEnd::State>(
+  const auto end = std::make_shared<Used>(
       session_.core(), std::shared_ptr<endpoint::PipeSide>(session_.shared_from_this(), this),
-      PipeEnd::State::Identity{wish.path, wish.member, wish.holding, index, is_unreliable, true});
+      PipeEnd::State::Identity{wish.path, wish.member, wish.holding, index, is_unreliable, true},
+      session_.notices().read());
   bool has_room = true;
   End predecessor;
   {
@@ -164,42 +173,19 @@ Pipes::End Pipes::open(const Wish& wish, Decoder& decoder, const Entry& entry) {
   return end;
 }
 
-// Under the lock, as the next. Returns the end whose index the new one has been given; null: none.
+// Under the lock. Returns the end whose index the new one has been given; null: none.
 Pipes::End Pipes::add(const End& end) {
-  if (notices_read_ != notices_handled_) notices_before_[end.get()] = notices_read_;
   if (ends_.add(end)) return nullptr;
   const PipeEnd::State::Identity& what = end->identity;
   End predecessor = ends_.find(what.path, what.member->name, what.index);
   ends_.remove(*predecessor);
-  notices_before_.erase(predecessor.get());
   ends_.add(end);
   return predecessor;
 }
 
-void Pipes::foresee(const Message& message) {
-  std::uint64_t count = 0;
-  EntryReader entries(message);
-  for (Entry entry; entries.next(entry);) {
-    count +=
-        entry.type == EntryType::pipe_closed || entry.type == EntryType::service_path_released_req;
-  }
-  const std::lock_guard lock(mutex_);
-  notices_read_ += count;
-}
-
-// Whether the end has been connected after the service has sent a notice. Under the lock, as the
-// next.
-bool Pipes::is_overtaken(const End& end, std::uint64_t notice) const {
-  const auto before = notices_before_.find(end.get());
-  return before != notices_before_.end() && before->second >= notice;
-}
-
-// Returns the number of the notice that is handled now.
-std::uint64_t Pipes::next_notice() {
-  const std::uint64_t notice = ++notices_handled_;
-  // Those that were read before these ends have all been handled with the one before.
-  std::erase_if(notices_before_, [&](const auto& item) { return item.second < notice; });
-  return notice;
+// Whether the end has been connected after the service has sent a notice.
+bool Pipes::is_overtaken(const End& end, std::uint64_t notice) {
+  return static_cast<const Used&>(*end).notices_before >= notice;
 }
 
 // Under the lock.
@@ -253,12 +239,7 @@ void Pipes::take_acknowledgements(const Message& message, const Entry& entry) {
   });
 }
 
-void Pipes::take_closed(const Message& message, const Entry& entry) {
-  std::uint64_t notice = 0;
-  {
-    const std::lock_guard lock(mutex_);
-    notice = next_notice();  // also when it cannot be read
-  }
+void Pipes::take_closed(const Message& message, const Entry& entry, std::uint64_t notice) {
   Decoder decoder(message.version, &message.strings);
   std::int32_t index = 0;
   endpoint::read_value(decoder, entry, "index", type_of<std::int32_t>, &index);
@@ -272,11 +253,10 @@ void Pipes::take_closed(const Message& message, const Entry& entry) {
   end->finish();
 }
 
-void Pipes::release(std::string_view path) {
+void Pipes::release(std::string_view path, std::uint64_t notice) {
   std::vector<End> ended;
   {
     const std::lock_guard lock(mutex_);
-    const std::uint64_t notice = next_notice();
     ended = ends_.take_below(path);
     std::erase_if(ended,
                   [&](const End& end) { return is_overtaken(end, notice) && ends_.add(end); });
@@ -289,7 +269,6 @@ void Pipes::end() {
   {
     const std::lock_guard lock(mutex_);
     ended = ends_.take_all();
-    notices_before_.clear();
   }
   for (const End& end : ended) end->finish();
 }
@@ -304,7 +283,6 @@ void Pipes::close(PipeEnd::State& end, bool may_wait) {
   {
     const std::lock_guard lock(mutex_);
     if (!ends_.remove(end)) return;
-    notices_before_.erase(&end);
   }
   const auto keep = session_.shared_from_this();
   end.finish();

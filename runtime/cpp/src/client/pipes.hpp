@@ -42,14 +42,13 @@ class Pipes final : public endpoint::PipeSide {
                      std::unique_ptr<Completion> completion);
 
   // What the service sends.
-  /// Notices of ends that have been read, and will be handled in turn with all other messages.
-  void foresee(const Message& message);
   void take_packets(const Message& message, const Entry& entry, const MemoryRef& owner);
   void take_acknowledgements(const Message& message, const Entry& entry);
-  void take_closed(const Message& message, const Entry& entry);
+  /// `notice` is the number of the notice that is handled (Notices).
+  void take_closed(const Message& message, const Entry& entry, std::uint64_t notice);
 
   /// The object at a path has been released, and those below it, as a notice says.
-  void release(std::string_view path);
+  void release(std::string_view path, std::uint64_t notice);
   /// The session is over.
   void end();
 
@@ -61,6 +60,7 @@ class Pipes final : public endpoint::PipeSide {
  private:
   class Connecting;
   class Opened;
+  struct Used;
   using End = std::shared_ptr<PipeEnd::State>;
   using Key = std::pair<std::string, std::string>;
 
@@ -83,19 +83,13 @@ class Pipes final : public endpoint::PipeSide {
   void finish(const Wish& wish);
   End open(const Wish& wish, Decoder& decoder, const Entry& entry);
   End add(const End& end);
-  std::uint64_t next_notice();
-  [[nodiscard]] bool is_overtaken(const End& end, std::uint64_t notice) const;
+  static bool is_overtaken(const End& end, std::uint64_t notice);
   bool keep_early(const Entry& entry, const endpoint::PipePacket& packet, Decoder& decoder);
 
   Session& session_;
   std::mutex mutex_;
   endpoint::PipeTable ends_;
   std::map<Key, Early> early_;
-  // An answer to connecting is read at once, a notice before it in turn with all other messages: of
-  // each end it is known how many notices were read before its answer. These do not mean it.
-  std::uint64_t notices_read_ = 0;
-  std::uint64_t notices_handled_ = 0;
-  std::map<const PipeEnd::State*, std::uint64_t> notices_before_;
 };
 
 }  // namespace rr::client

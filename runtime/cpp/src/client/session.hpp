@@ -27,6 +27,7 @@
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/client/callbacks.hpp"
 #include "runtime/cpp/src/client/definition_text.hpp"
+#include "runtime/cpp/src/client/notices.hpp"
 #include "runtime/cpp/src/client/pipes.hpp"
 #include "runtime/cpp/src/client/subscription.hpp"
 #include "runtime/cpp/src/endpoint/call_terms.hpp"
@@ -143,6 +144,7 @@ class Session final : public channel::Receiver,
   void add_handler(const std::shared_ptr<client::EventSubscription>& handler);
   [[nodiscard]] client::Callbacks& callbacks() { return callbacks_; }
   [[nodiscard]] client::Pipes& pipes() { return pipes_; }
+  [[nodiscard]] const client::Notices& notices() const { return notices_; }
   /// Sends a message of one entry, whose elements are in the writer, that is not answered: one of a
   /// stream, or a reply to what is handled. Throws rr::Error.
   void stream_packet(Writer& writer, const EntryHeader& header, std::string_view metadata);
@@ -157,7 +159,7 @@ class Session final : public channel::Receiver,
                    channel::Laters& laters) override;
   bool take_packet(const Message& message, const Entry& entry, const MemoryRef& owner,
                    channel::Laters& laters) override;
-  void foresee(const Message& message) override { pipes_.foresee(message); }
+  void foresee(const Message& message) override { notices_.foresee(message); }
   void handle(const Message& message, const Entry& first, const MemoryRef& owner) override;
   void lost(const Error& why, channel::Laters& laters) override;
   void closed() override;
@@ -201,7 +203,7 @@ class Session final : public channel::Receiver,
       const std::string& told, const std::vector<std::string>& implements) const;
   void pull_type(const std::string& type, Milliseconds timeout);
   std::shared_ptr<Stub> known_stub(const std::string& path);
-  void release_path(std::string_view path);
+  void release_path(std::string_view path, std::uint64_t notice);
   void handle_event(const Message& message, const Entry& entry, const MemoryRef& owner);
 
   // Requests of the other node
@@ -243,6 +245,7 @@ class Session final : public channel::Receiver,
   client::Callbacks callbacks_;  // with a lock of its own
   std::map<std::string, std::string> texts_;
   std::map<std::string, client::DefinitionOutline> outlines_;
+  client::Notices notices_;
   client::Pipes pipes_{*this};
   std::uint16_t seen_message_id_ = 0;  // at quiet_since_
   channel::Time quiet_since_;

@@ -9,6 +9,7 @@
 #include "runtime/cpp/src/channel/scratch.hpp"
 #include "runtime/cpp/src/client/definition_reader.hpp"
 #include "runtime/cpp/src/client/session.hpp"
+#include "runtime/cpp/src/client/wire_end.hpp"
 #include "runtime/cpp/src/endpoint/arguments.hpp"
 #include "runtime/cpp/src/endpoint/client_version.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
@@ -130,7 +131,7 @@ std::shared_ptr<Stub> Session::find(const std::string& path, std::string_view wa
   return make_stub(told, path, wanted, {});
 }
 
-void Session::release_path(std::string_view path) {
+void Session::release_path(std::string_view path, std::uint64_t notice) {
   std::function<void(const std::string&)> notify;
   {
     const std::lock_guard lock(mutex_);
@@ -140,9 +141,12 @@ void Session::release_path(std::string_view path) {
     notify = options_.on_path_released;
   }
   channel::Laters laters;
-  for (const auto& end : wires_.take_below(path)) end->finish(laters);
+  const auto is_meant = [notice](const WireEnd::State& end) {
+    return static_cast<const client::ClientWireEnd&>(end).is_meant_by(notice);
+  };
+  for (const auto& end : wires_.take_below(path, is_meant)) end->finish(laters);
   post(std::move(laters));
-  pipes_.release(path);
+  pipes_.release(path, notice);
   if (notify) notify(std::string(path));
 }
 
@@ -202,12 +206,13 @@ void Session::handle_entry(const Message& message, const Entry& entry, const Mem
     close();
     return;
   }
+  const std::uint64_t notice = client::Notices::is_one(entry) ? notices_.next() : 0;
   switch (entry.type) {
     case EntryType::service_closed:
       give_up(Error(ErrorCode::service_not_found, "the service was closed"));
       break;
     case EntryType::service_path_released_req:
-      release_path(entry.service_path);
+      release_path(entry.service_path, notice);
       break;
     case EntryType::event_req:
       handle_event(message, entry, owner);
@@ -229,7 +234,7 @@ void Session::handle_entry(const Message& message, const Entry& entry, const Mem
       pipes_.take_acknowledgements(message, entry);
       break;
     case EntryType::pipe_closed:
-      pipes_.take_closed(message, entry);
+      pipes_.take_closed(message, entry, notice);
       break;
     default:
       if (static_cast<std::uint16_t>(entry.type) % 2 != 0) answer_request(message, entry);

@@ -39,6 +39,8 @@ void ClientWireEnd::transmit(Writer& writer, const channel::Newest& newest) {
                         endpoint::wire_elements, newest);
 }
 
+void ClientWireEnd::take_answer() { notices_before_ = session_->notices().read(); }
+
 void ClientWireEnd::close() {
   if (!begin_close()) return;
   try {

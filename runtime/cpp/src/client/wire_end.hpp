@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -19,6 +22,10 @@ class ClientWireEnd final : public WireEnd::State {
   ClientWireEnd(std::shared_ptr<Session> session, std::string path, const Member& member);
 
   void close() override;
+  /// The service has answered that it is connected. From the thread that reads the answer.
+  void take_answer();
+  /// Whether a notice that its object was released is of this end, and of none before it.
+  [[nodiscard]] bool is_meant_by(std::uint64_t notice) const { return notices_before_ < notice; }
   /// It could not be connected.
   void give_up();
 
@@ -30,6 +37,8 @@ class ClientWireEnd final : public WireEnd::State {
 
   const std::shared_ptr<Session> session_;
   endpoint::SenderTimes times_;
+  // See Notices. What is handled before the answer has come does not mean this end.
+  std::atomic<std::uint64_t> notices_before_ = std::numeric_limits<std::uint64_t>::max();
 };
 
 }  // namespace client

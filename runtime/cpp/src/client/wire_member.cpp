@@ -36,6 +36,10 @@ std::shared_ptr<ClientWireEnd> begin_connecting(const Stub& stub, const Member& 
   return end;
 }
 
+Session::AnswerReader connect_reader(std::shared_ptr<ClientWireEnd> end) {
+  return [end = std::move(end)](Decoder&, const Message&, const Entry&) { end->take_answer(); };
+}
+
 // What comes now is for nobody who waits for an answer.
 void end_connecting(Session& session, ClientWireEnd& end) {
   end.open();
@@ -87,7 +91,7 @@ WireEnd WireMember::connect_end() {
   Session& session = need_session(*stub_);
   const std::shared_ptr<ClientWireEnd> end = begin_connecting(*stub_, *member_);
   try {
-    session.call({EntryType::wire_connect_req, end->path(), member_->name}, Incoming{},
+    session.call({EntryType::wire_connect_req, end->path(), member_->name}, connect_reader(end),
                  stub_->rr_timeout());
   } catch (...) {
     end->give_up();
@@ -111,7 +115,7 @@ void WireMember::start_connect(WireEnd* end, std::unique_ptr<Completion> complet
   }
   auto connecting =
       std::make_shared<ConnectCompletion>(stub_->rr_session(), made, end, std::move(completion));
-  session.start({EntryType::wire_connect_req, made->path(), member_->name}, Incoming{},
+  session.start({EntryType::wire_connect_req, made->path(), member_->name}, connect_reader(made),
                 stub_->rr_timeout(), std::move(connecting));
 }
 

@@ -29,6 +29,8 @@ class DefinitionStore final : public client::DefinitionReader,
     all_.push_back(std::move(tables));
     known_ = texts.size();
   }
+  [[nodiscard]] const Holding& holding() const override { return holding_of<Value>; }
+  [[nodiscard]] std::string_view name_of_values() const override { return "rr::dynamic::Value"; }
   [[nodiscard]] Definitions newest() const {
     const std::lock_guard lock(mutex_);
     return all_.empty() ? Definitions() : Definitions(all_.back());

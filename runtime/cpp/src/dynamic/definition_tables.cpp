@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
-#include "runtime/cpp/src/dynamic/numbers.hpp"
+#include "rr/number.hpp"
 #include "runtime/cpp/src/dynamic/type_text.hpp"
 
 namespace rr::dynamic {

@@ -92,43 +92,6 @@ std::string text_of(T number) {
 
 }  // namespace
 
-std::string_view word_of(ElementType type) {
-  switch (type) {
-    case ElementType::string:
-      return "string";
-    case ElementType::void_:
-      return "void";
-    case ElementType::double_:
-      return "double";
-    case ElementType::single:
-      return "single";
-    case ElementType::int8:
-      return "int8";
-    case ElementType::uint8:
-      return "uint8";
-    case ElementType::int16:
-      return "int16";
-    case ElementType::uint16:
-      return "uint16";
-    case ElementType::int32:
-      return "int32";
-    case ElementType::uint32:
-      return "uint32";
-    case ElementType::int64:
-      return "int64";
-    case ElementType::uint64:
-      return "uint64";
-    case ElementType::cdouble:
-      return "cdouble";
-    case ElementType::csingle:
-      return "csingle";
-    case ElementType::bool_:
-      return "bool";
-    default:
-      return "";
-  }
-}
-
 bool is_complex(ElementType type) {
   return type == ElementType::cdouble || type == ElementType::csingle;
 }

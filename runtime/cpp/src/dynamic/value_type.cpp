@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rr/error.hpp"
+#include "rr/number.hpp"
 #include "runtime/cpp/src/dynamic/definition_tables.hpp"
 #include "runtime/cpp/src/dynamic/json.hpp"
-#include "runtime/cpp/src/dynamic/numbers.hpp"
 
 namespace rr::dynamic {
 namespace {

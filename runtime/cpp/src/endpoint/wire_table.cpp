@@ -30,11 +30,12 @@ void WireTable::remove(const WireEnd::State& end) {
   ends_.erase(found);
 }
 
-std::vector<WireTable::End> WireTable::take_below(std::string_view path) {
+std::vector<WireTable::End> WireTable::take_below(std::string_view path, const Choice& is_taken) {
   std::vector<End> taken;
   const std::lock_guard lock(mutex_);
   std::erase_if(ends_, [&](const auto& item) {
     if (!is_at_or_below(item.first.path, path)) return false;
+    if (is_taken && !is_taken(*item.second)) return false;
     taken.push_back(item.second);
     return true;
   });

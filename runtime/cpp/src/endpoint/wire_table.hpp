@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string_view>
@@ -21,8 +22,10 @@ class WireTable {
   enum class Added { yes, exists, ended };
   Added add(const End& end);
   void remove(const WireEnd::State& end);
-  /// Takes out those of an object and of the objects below it.
-  std::vector<End> take_below(std::string_view path);
+  using Choice = std::function<bool(const WireEnd::State&)>;
+  /// Takes out those of an object and of the objects below it, but for what `is_taken` denies;
+  /// empty: all.
+  std::vector<End> take_below(std::string_view path, const Choice& is_taken = {});
   /// Takes out all. None can be added from now on.
   std::vector<End> take_all();
 

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "runtime/cpp/src/node/testing/gate.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 #include "runtime/cpp/src/node/testing/wired.hpp"
 
@@ -133,6 +134,44 @@ TEST(WireEnds, EndWhenTheirObjectIsReleased) {
   EXPECT_FALSE(level.is_open());
   EXPECT_TRUE(root.client.is_open());
   EXPECT_TRUE(root.service.is_open());
+  EXPECT_TRUE(wired->get_child("left")->level().connect().is_open());
+}
+
+TEST(WireEnds, AreNotEndedByAReleaseBeforeTheyWereConnected) {
+  Gate gate;
+  std::atomic<int> released = 0;
+  WiredPair pair;
+  auto wired = pair.connect({.on_path_released = [&](const std::string&) {
+    ++released;
+    gate.pass();  // what comes now waits for this function; answers do not
+  }});
+  (void)wired->get_child("left");
+  pair.service->release_path("wired.child[left]");
+  ASSERT_TRUE(gate.has_entered());
+  const auto child = wired->get_child("left");
+  pair.service->release_path("wired.child[left]");
+  auto level = child->level().connect();
+  ASSERT_TRUE(level.is_open());
+  gate.open();
+  ASSERT_TRUE(eventually([&] { return released == 2; }));
+  pair.object->child->level().set_in(3);
+  EXPECT_TRUE(level.wait_in(plenty));
+  EXPECT_TRUE(level.is_open());
+  pair.service->release_path("wired.child[left]");
+  EXPECT_TRUE(eventually([&] { return !level.is_open(); }));
+}
+
+TEST(WireEnds, EndWhenTheirObjectIsReleasedWhileTheyAreConnected) {
+  WiredPair pair;
+  auto wired = pair.connect();
+  const auto child = wired->get_child("left");
+  std::atomic<bool> has_released = false;
+  pair.object->child->level().on_connect([&](ServedWire<double>) {
+    if (!has_released.exchange(true)) pair.service->release_path("wired.child[left]");
+  });
+  auto level = child->level().connect();
+  EXPECT_TRUE(eventually([&] { return !level.is_open(); }));
+  EXPECT_EQ(pair.object->child->level().connection_count(), 0U);
   EXPECT_TRUE(wired->get_child("left")->level().connect().is_open());
 }
 

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <utility>
 
+#include "rr/number.hpp"
 #include "runtime/cpp/src/replay/words.hpp"
 
 namespace rr::replay {
@@ -91,62 +92,6 @@ constexpr std::array entry_names = {
     Row{EntryType::wire_poke_out_value_ret, "WirePokeOutValueRet"},
 };
 
-std::string_view known_name(ElementType type) {
-  switch (type) {
-    case ElementType::void_:
-      return "void";
-    case ElementType::double_:
-      return "double";
-    case ElementType::single:
-      return "single";
-    case ElementType::int8:
-      return "int8";
-    case ElementType::uint8:
-      return "uint8";
-    case ElementType::int16:
-      return "int16";
-    case ElementType::uint16:
-      return "uint16";
-    case ElementType::int32:
-      return "int32";
-    case ElementType::uint32:
-      return "uint32";
-    case ElementType::int64:
-      return "int64";
-    case ElementType::uint64:
-      return "uint64";
-    case ElementType::string:
-      return "string";
-    case ElementType::cdouble:
-      return "cdouble";
-    case ElementType::csingle:
-      return "csingle";
-    case ElementType::bool_:
-      return "bool";
-    case ElementType::structure:
-      return "structure";
-    case ElementType::vector:
-      return "vector";
-    case ElementType::dictionary:
-      return "dictionary";
-    case ElementType::list:
-      return "list";
-    case ElementType::pod:
-      return "pod";
-    case ElementType::pod_array:
-      return "pod_array";
-    case ElementType::pod_multidimarray:
-      return "pod_multidimarray";
-    case ElementType::namedarray_array:
-      return "namedarray_array";
-    case ElementType::namedarray_multidimarray:
-      return "namedarray_multidimarray";
-    case ElementType::multidimarray:
-      return "multidimarray";
-  }
-  return {};
-}
-
 }  // namespace
 
 std::string name_of(EntryType type) {
@@ -174,7 +119,7 @@ std::string name_of_exchange(EntryType request) {
 }
 
 std::string name_of(ElementType type) {
-  const std::string_view known = known_name(type);
+  const std::string_view known = word_of(type);
   return known.empty() ? "type" + std::to_string(static_cast<unsigned>(type)) : std::string(known);
 }
 

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "rr/number.hpp"
+
 namespace rr::replay {
 namespace {
 
@@ -124,40 +126,18 @@ std::string label_of(const ElementTree& element) {
 }
 
 std::string number_at(const ElementTree& element, std::size_t index) {
-  if (index >= items_of(element)) return {};
+  if (index >= items_of(element) || !is_number(element.type)) return {};
   const std::size_t offset = index * item_size(element.type);
-  switch (element.type) {
-    case ElementType::double_:
-      return shortest(item<double>(element, offset));
-    case ElementType::single:
-      return shortest(item<float>(element, offset));
-    case ElementType::int8:
-      return shortest(item<std::int8_t>(element, offset));
-    case ElementType::uint8:
-      return shortest(item<std::uint8_t>(element, offset));
-    case ElementType::int16:
-      return shortest(item<std::int16_t>(element, offset));
-    case ElementType::uint16:
-      return shortest(item<std::uint16_t>(element, offset));
-    case ElementType::int32:
-      return shortest(item<std::int32_t>(element, offset));
-    case ElementType::uint32:
-      return shortest(item<std::uint32_t>(element, offset));
-    case ElementType::int64:
-      return shortest(item<std::int64_t>(element, offset));
-    case ElementType::uint64:
-      return shortest(item<std::uint64_t>(element, offset));
-    case ElementType::cdouble:
-      return complex_at<double>(element, offset);
-    case ElementType::csingle:
-      return complex_at<float>(element, offset);
-    case ElementType::bool_: {
+  return with_number(element.type, [&]<class T>(std::type_identity<T>) -> std::string {
+    if constexpr (std::is_same_v<T, bool>) {
       const auto value = item<std::uint8_t>(element, offset);
       return value == 0 ? "false" : value == 1 ? "true" : "bool " + std::to_string(value);
+    } else if constexpr (std::is_arithmetic_v<T>) {
+      return shortest(item<T>(element, offset));
+    } else {
+      return complex_at<typename T::value_type>(element, offset);
     }
-    default:
-      return {};
-  }
+  });
 }
 
 std::string text_of(const ElementTree& element, const Shortening& shortening) {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
-#include "runtime/cpp/src/dynamic/numbers.hpp"
+#include "rr/number.hpp"
 #include "runtime/cpp/src/dynamic/tables.hpp"
 
 namespace rr::serial {
@@ -48,13 +48,13 @@ void put_number(T number, std::vector<std::uint8_t>& bytes) {
 }
 
 void pack_number(ElementType number, const Value& value, std::vector<std::uint8_t>& bytes) {
-  dynamic::with_number(
-      number, [&](auto type) { put_number(value.as<typename decltype(type)::type>(), bytes); });
+  with_number(number,
+              [&](auto type) { put_number(value.as<typename decltype(type)::type>(), bytes); });
 }
 
 Value unpack_number(const TypeNode& type, ElementType number,
                     std::span<const std::uint8_t>& bytes) {
-  return dynamic::with_number(number, [&](auto tag) -> Value {
+  return with_number(number, [&](auto tag) -> Value {
     using Number = typename decltype(tag)::type;
     const auto raw = take(type, sizeof(Number), bytes);
     if constexpr (std::is_same_v<Number, bool>) {
@@ -101,7 +101,7 @@ Value unpack_array(const TypeNode& type, std::span<const std::uint8_t>& bytes) {
   dynamic::List items;
   for (std::size_t at = 0; at < count; ++at) items.push_back(unpack(item_of(type), bytes));
   if (!bounds.has_dims) return Value(std::move(items));
-  return dynamic::with_number(type.number(), [&](auto tag) -> Value {
+  return with_number(type.number(), [&](auto tag) -> Value {
     using Number = typename decltype(tag)::type;
     MultiArray<Number> array;
     array.dims = bounds.shape;

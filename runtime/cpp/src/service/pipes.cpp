@@ -183,6 +183,11 @@ void Pipes::release(std::string_view path) {
   {
     const std::lock_guard lock(mutex_);
     ended = ends_.take_below(path);
+    // The notice of the release may leave before the answer, and then is not of what that opens.
+    for (const auto& end : ended) {
+      auto& served = static_cast<Served&>(*end);
+      served.is_closed_unannounced = !served.is_announced;
+    }
   }
   for (const auto& end : ended) finish(static_cast<Served&>(*end));
 }

@@ -82,8 +82,7 @@ void ServedWireEnd::fetch(std::size_t step) const {
   }
 }
 
-void ServedWireEnd::close() {
-  if (!begin_close()) return;
+void ServedWireEnd::send_closed() {
   Writer& writer = channel::thread_writer();
   writer.reset(version());
   writer.entry({.type = EntryType::wire_closed, .service_path = path(), .member = member().name}, 0,
@@ -93,6 +92,11 @@ void ServedWireEnd::close() {
   } catch (const Error&) {
     // The client is gone; its session ends.
   }
+}
+
+void ServedWireEnd::close() {
+  if (!begin_close()) return;
+  send_closed();
   endpoint_->wires().remove(*this);
   finish_now();
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -23,6 +24,11 @@ class ServedWireEnd final : public WireEnd::State {
                 std::shared_ptr<const ServedObject> object, const Member& member);
 
   void close() override;
+  /// Tells the client that it has ended.
+  void send_closed();
+  /// Its object is being released, of which the client is told.
+  void begin_release() { is_released_ = true; }
+  [[nodiscard]] bool is_released() const { return is_released_; }
   [[nodiscard]] std::uint32_t client() const override;
 
   /// The client's node.
@@ -51,6 +57,7 @@ class ServedWireEnd final : public WireEnd::State {
   const std::shared_ptr<ServerEndpoint> endpoint_;
   std::shared_ptr<const ServedObject> object_;
   const std::shared_ptr<OfferedWire> offered_;
+  std::atomic<bool> is_released_ = false;
 };
 
 }  // namespace rr::service

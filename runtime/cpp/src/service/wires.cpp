@@ -73,7 +73,8 @@ void Wires::answer_packet(const Question& question, const ServedObject& object,
 // may send, before the answer leaves.
 void Wires::answer_connect(const Question& question, std::shared_ptr<const ServedObject> object,
                            const Member& member) {
-  while (!connect(object, member)) {
+  std::shared_ptr<ServedWireEnd> end;
+  while (!(end = connect(object, member))) {
     // It was released meanwhile: the client gets the one that is there now.
     auto next = endpoint_.find_object(question.entry.service_path);
     if (next->type != object->type) {
@@ -82,10 +83,13 @@ void Wires::answer_connect(const Question& question, std::shared_ptr<const Serve
     object = std::move(next);
   }
   endpoint_.answer_empty(question);
+  // The notice may have left before the answer, and then is not of what is connected by it.
+  if (end->is_released()) end->send_closed();
 }
 
-// False when the object is no longer the one at its path.
-bool Wires::connect(const std::shared_ptr<const ServedObject>& object, const Member& member) {
+// Null when the object is no longer the one at its path.
+std::shared_ptr<ServedWireEnd> Wires::connect(const std::shared_ptr<const ServedObject>& object,
+                                              const Member& member) {
   auto end = std::static_pointer_cast<ServedWireEnd>(table_.find(object->path, member.name));
   if (!end) {
     end = std::make_shared<ServedWireEnd>(endpoint_.shared_from_this(), object, member);
@@ -103,7 +107,7 @@ bool Wires::connect(const std::shared_ptr<const ServedObject>& object, const Mem
   try {
     if (endpoint_.find_object(object->path) != object) {
       give_up();
-      return false;
+      return nullptr;
     }
     offered(*object, member).join(end);
   } catch (...) {
@@ -112,7 +116,7 @@ bool Wires::connect(const std::shared_ptr<const ServedObject>& object, const Mem
   }
   // It may have ended before it could join, and would stay with the object.
   if (!end->is_open()) offered(*object, member).leave(*end);
-  return true;
+  return end;
 }
 
 void Wires::answer_disconnect(const Question& question, const ServedObject& object,
@@ -164,7 +168,10 @@ void Wires::answer_poke(const Question& question, const ServedObject& object,
 
 void Wires::release(std::string_view path) {
   channel::Laters laters;
-  for (const auto& end : table_.take_below(path)) end->finish(laters);
+  for (const auto& end : table_.take_below(path)) {
+    static_cast<ServedWireEnd&>(*end).begin_release();
+    end->finish(laters);
+  }
   run(std::move(laters));
 }
 

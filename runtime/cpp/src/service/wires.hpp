@@ -11,6 +11,7 @@
 namespace rr::service {
 
 class OfferedWire;
+class ServedWireEnd;
 class ServerEndpoint;
 struct Question;
 struct ServedObject;
@@ -36,7 +37,8 @@ class Wires {
   void answer_packet(const Question& question, const ServedObject& object, const Member& member);
   void answer_connect(const Question& question, std::shared_ptr<const ServedObject> object,
                       const Member& member);
-  bool connect(const std::shared_ptr<const ServedObject>& object, const Member& member);
+  std::shared_ptr<ServedWireEnd> connect(const std::shared_ptr<const ServedObject>& object,
+                                         const Member& member);
   void answer_disconnect(const Question& question, const ServedObject& object,
                          const Member& member);
   void answer_peek(const Question& question, const ServedObject& object, const Member& member);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/client/definition_reader.hpp"
 #include "runtime/cpp/src/subscription/object_links.hpp"
 #include "runtime/cpp/src/subscription/pipe_links.hpp"
 #include "runtime/cpp/src/subscription/services.hpp"
@@ -20,8 +21,20 @@ std::shared_ptr<Links> Services::add_member(std::shared_ptr<Links> member) {
   return member;
 }
 
+// Where the program was built without the definitions all values are of one type.
+void Services::check_holding(std::string_view member, const Holding& holding) const {
+  if (!options_.make_definition_reader) return;
+  const auto reader = options_.make_definition_reader();
+  if (&reader->holding() == &holding) return;
+  throw Error(ErrorCode::data_type_mismatch,
+              "the values of `" + std::string(member) + "` are " +
+                  std::string(reader->name_of_values()) +
+                  ", as all of a subscription without generated code");
+}
+
 std::shared_ptr<Links> Services::add_wire(std::string_view member, std::string_view path,
                                           const Holding& holding) {
+  check_holding(member, holding);
   auto wire =
       std::make_shared<WireLinks>(host_.core, weak_from_this(), std::string(member), path, holding);
   const std::lock_guard lock(mutex_);
@@ -37,6 +50,7 @@ std::shared_ptr<Links> Services::add_wire(std::string_view member, std::string_v
 
 std::shared_ptr<Links> Services::add_pipe(std::string_view member, std::string_view path,
                                           const Holding& holding, std::size_t max_received) {
+  check_holding(member, holding);
   auto pipe = std::make_shared<PipeLinks>(host_.core, weak_from_this(), std::string(member), path,
                                           holding, max_received);
   const std::lock_guard lock(mutex_);

@@ -137,6 +137,7 @@ class Services final : public Waits, public std::enable_shared_from_this<Service
   void leave(const TargetPointer& target, Farewell& farewell, const Error& why);
   void tell_left(const std::shared_ptr<const LiveClient>& client);
   std::shared_ptr<Links> add_member(std::shared_ptr<Links> member);
+  void check_holding(std::string_view member, const Holding& holding) const;  // not under the lock
 
   [[nodiscard]] bool has_ended() const override { return !is_open(); }
   [[nodiscard]] std::optional<Error> why_none() const override { return last_error(); }

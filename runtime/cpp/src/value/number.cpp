@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "rr/number.hpp"
+
 #include <cstring>
 #include <string>
 
@@ -41,6 +43,62 @@ bool StringType::read(Decoder& decoder, const Element& element, void* value) con
   }
   static_cast<std::string*>(value)->assign(element.text());
   return true;
+}
+
+std::string_view word_of(ElementType type) {
+  switch (type) {
+    case ElementType::void_:
+      return "void";
+    case ElementType::double_:
+      return "double";
+    case ElementType::single:
+      return "single";
+    case ElementType::int8:
+      return "int8";
+    case ElementType::uint8:
+      return "uint8";
+    case ElementType::int16:
+      return "int16";
+    case ElementType::uint16:
+      return "uint16";
+    case ElementType::int32:
+      return "int32";
+    case ElementType::uint32:
+      return "uint32";
+    case ElementType::int64:
+      return "int64";
+    case ElementType::uint64:
+      return "uint64";
+    case ElementType::string:
+      return "string";
+    case ElementType::cdouble:
+      return "cdouble";
+    case ElementType::csingle:
+      return "csingle";
+    case ElementType::bool_:
+      return "bool";
+    case ElementType::structure:
+      return "structure";
+    case ElementType::vector:
+      return "vector";
+    case ElementType::dictionary:
+      return "dictionary";
+    case ElementType::list:
+      return "list";
+    case ElementType::pod:
+      return "pod";
+    case ElementType::pod_array:
+      return "pod_array";
+    case ElementType::pod_multidimarray:
+      return "pod_multidimarray";
+    case ElementType::namedarray_array:
+      return "namedarray_array";
+    case ElementType::namedarray_multidimarray:
+      return "namedarray_multidimarray";
+    case ElementType::multidimarray:
+      return "multidimarray";
+  }
+  return {};
 }
 
 }  // namespace rr

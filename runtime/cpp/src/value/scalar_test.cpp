@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "rr/number.hpp"
 #include "runtime/cpp/src/value/conformance_types.hpp"
 #include "runtime/cpp/src/value/testing.hpp"
 
@@ -26,6 +27,24 @@ void survives_at_its_limits() {
   EXPECT_TRUE(survives(std::numeric_limits<T>::min()));
   EXPECT_TRUE(survives(std::numeric_limits<T>::max()));
   EXPECT_TRUE(survives(T{1}));
+}
+
+TEST(Scalar, IsFoundByItsTypeAndNamedAsInDefinitions) {
+  int count = 0;
+  for (std::uint16_t i = 0; i < 200; ++i) {
+    const auto type = static_cast<ElementType>(i);
+    if (!is_number(type)) continue;
+    ++count;
+    with_number(type, [&]<class T>(std::type_identity<T>) {
+      EXPECT_EQ(type_of<T>.element_type(), type) << word_of(type);
+      EXPECT_EQ(sizeof(T), item_size(type)) << word_of(type);
+    });
+  }
+  EXPECT_EQ(count, 13);
+  EXPECT_EQ(word_of(ElementType::csingle), "csingle");
+  EXPECT_EQ(word_of(ElementType::bool_), "bool");
+  EXPECT_EQ(word_of(ElementType::pod_array), "pod_array");
+  EXPECT_EQ(word_of(static_cast<ElementType>(104)), "");
 }
 
 TEST(Scalar, EveryNumberSurvives) {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <new>
 
-#include "rr/complex.hpp"
+#include "rr/number.hpp"
 #include "rr/registry.hpp"
 #include "runtime/cpp/src/value/items.hpp"
 
@@ -44,36 +44,10 @@ bool read_multi_array(Decoder& decoder, const Element& element, VarValue& value)
   if (!find_element(decoder, element.payload, element.count, "array", array)) {
     return decoder.fail(ErrorCode::message_element_not_found, "no such element", "array");
   }
-  switch (array.type) {
-    case ElementType::double_:
-      return read_as<MultiArray<double>>(decoder, element, value);
-    case ElementType::single:
-      return read_as<MultiArray<float>>(decoder, element, value);
-    case ElementType::int8:
-      return read_as<MultiArray<std::int8_t>>(decoder, element, value);
-    case ElementType::uint8:
-      return read_as<MultiArray<std::uint8_t>>(decoder, element, value);
-    case ElementType::int16:
-      return read_as<MultiArray<std::int16_t>>(decoder, element, value);
-    case ElementType::uint16:
-      return read_as<MultiArray<std::uint16_t>>(decoder, element, value);
-    case ElementType::int32:
-      return read_as<MultiArray<std::int32_t>>(decoder, element, value);
-    case ElementType::uint32:
-      return read_as<MultiArray<std::uint32_t>>(decoder, element, value);
-    case ElementType::int64:
-      return read_as<MultiArray<std::int64_t>>(decoder, element, value);
-    case ElementType::uint64:
-      return read_as<MultiArray<std::uint64_t>>(decoder, element, value);
-    case ElementType::cdouble:
-      return read_as<MultiArray<std::complex<double>>>(decoder, element, value);
-    case ElementType::csingle:
-      return read_as<MultiArray<std::complex<float>>>(decoder, element, value);
-    case ElementType::bool_:
-      return read_as<MultiArray<bool>>(decoder, element, value);
-    default:
-      return value::fail_type(decoder, array);
-  }
+  if (!is_number(array.type)) return value::fail_type(decoder, array);
+  return with_number(array.type, [&]<class T>(std::type_identity<T>) {
+    return read_as<MultiArray<T>>(decoder, element, value);
+  });
 }
 
 const RecordType* find_record(Decoder& decoder, const Element& element) {
@@ -151,36 +125,15 @@ void VarValueType::write(Writer& writer, const ElementName& name, const void* va
 
 bool VarValueType::read(Decoder& decoder, const Element& element, void* value) const {
   auto& self = *static_cast<VarValue*>(value);
+  if (is_number(element.type)) {
+    return with_number(element.type, [&]<class T>(std::type_identity<T>) {
+      return read_as<Array<T>>(decoder, element, self);
+    });
+  }
   switch (element.type) {
     case ElementType::void_:
       self = VarValue();
       return true;
-    case ElementType::double_:
-      return read_as<Array<double>>(decoder, element, self);
-    case ElementType::single:
-      return read_as<Array<float>>(decoder, element, self);
-    case ElementType::int8:
-      return read_as<Array<std::int8_t>>(decoder, element, self);
-    case ElementType::uint8:
-      return read_as<Array<std::uint8_t>>(decoder, element, self);
-    case ElementType::int16:
-      return read_as<Array<std::int16_t>>(decoder, element, self);
-    case ElementType::uint16:
-      return read_as<Array<std::uint16_t>>(decoder, element, self);
-    case ElementType::int32:
-      return read_as<Array<std::int32_t>>(decoder, element, self);
-    case ElementType::uint32:
-      return read_as<Array<std::uint32_t>>(decoder, element, self);
-    case ElementType::int64:
-      return read_as<Array<std::int64_t>>(decoder, element, self);
-    case ElementType::uint64:
-      return read_as<Array<std::uint64_t>>(decoder, element, self);
-    case ElementType::cdouble:
-      return read_as<Array<std::complex<double>>>(decoder, element, self);
-    case ElementType::csingle:
-      return read_as<Array<std::complex<float>>>(decoder, element, self);
-    case ElementType::bool_:
-      return read_as<Array<bool>>(decoder, element, self);
     case ElementType::string:
       return read_as<std::string>(decoder, element, self);
     case ElementType::vector:
@@ -197,7 +150,7 @@ bool VarValueType::read(Decoder& decoder, const Element& element, void* value) c
       return read_named(decoder, element, self);
     case ElementType::multidimarray:
       return read_multi_array(decoder, element, self);
-    case ElementType::pod:
+    default:
       break;
   }
   return decoder.fail(ErrorCode::data_type_error, "no type of a varvalue", element.name);

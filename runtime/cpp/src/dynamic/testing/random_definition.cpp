@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "runtime/cpp/src/dynamic/numbers.hpp"
+#include "rr/number.hpp"
 
 namespace rr::dynamic::testing {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <limits>
 
-#include "runtime/cpp/src/dynamic/numbers.hpp"
+#include "rr/number.hpp"
 #include "runtime/cpp/src/dynamic/testing/random_definition.hpp"
 #include "runtime/cpp/src/dynamic/type_text.hpp"
 

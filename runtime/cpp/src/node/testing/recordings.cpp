@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -71,8 +72,14 @@ std::string difference_of_messages(const Recorded& one, const Recorded& other) {
     const auto twin = others.find(opened.client_url);
     if (twin == others.end()) return opened.client_url + " is in one of them only";
     for (const Direction direction : {Direction::to_service, Direction::to_client}) {
-      if (one.messages.at({number, direction}) != other.messages.at({twin->second, direction})) {
-        return opened.client_url + " has other messages";
+      const auto& ours = one.messages.at({number, direction});
+      const auto& theirs = other.messages.at({twin->second, direction});
+      if (ours != theirs) {
+        const auto at = std::mismatch(ours.begin(), ours.end(), theirs.begin(), theirs.end()).first;
+        return opened.client_url + " has other messages " +
+               (direction == Direction::to_service ? "to the service" : "to the client") + ": " +
+               std::to_string(ours.size()) + " and " + std::to_string(theirs.size()) +
+               ", alike are the first " + std::to_string(at - ours.begin());
       }
     }
   }

@@ -3,15 +3,22 @@
 
 #include <complex>
 #include <cstdint>
+#include <string_view>
 #include <type_traits>
 
 #include "rr/complex.hpp"
-#include "rr/dynamic_value.hpp"
+#include "rr/wire.hpp"
 
-namespace rr::matlab {
+/// Numbers whose type is known at run time.
+namespace rr {
 
-/// Calls `use` with std::type_identity of the C++ type of a number, bool or complex number, and
-/// returns what it does.
+/// Numbers, complex ones and bool.
+constexpr bool is_number(ElementType type) {
+  return item_size(type) != 0 && type != ElementType::string;
+}
+
+/// Calls `use` with std::type_identity of the C++ type of a number, and returns what it does.
+/// `type` is a number, bool or complex number; another is taken for a double.
 template <class Use>
 decltype(auto) with_number(ElementType type, Use&& use) {
   switch (type) {
@@ -44,4 +51,8 @@ decltype(auto) with_number(ElementType type, Use&& use) {
   }
 }
 
-}  // namespace rr::matlab
+/// `double`, `uint8`, as definitions spell it; what has no word there as the specification calls it
+/// (01, section 5). Empty for a number that is no type.
+std::string_view word_of(ElementType type);
+
+}  // namespace rr

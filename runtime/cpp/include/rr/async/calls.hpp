@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+#include "rr/async/completion.hpp"
+#include "rr/skeleton.hpp"
+#include "rr/stub.hpp"
+
+/// Properties, functions, objrefs and callbacks; see rr/async.hpp.
+namespace rr {
+
+/// Of the search for an object.
+template <class Handler, class S>
+class FindCompletion final : public HandlerCompletion<Handler> {
+ public:
+  FindCompletion(Handler handler, const Member& member)
+      : HandlerCompletion<Handler>(std::move(handler)), member_(&member) {}
+  void* result() override { return &found_; }
+  void succeed() override {
+    auto stub = std::dynamic_pointer_cast<S>(std::move(found_));
+    if (stub) {
+      this->finish(std::exception_ptr(), std::move(stub));
+      return;
+    }
+    try {
+      Stub::rr_refuse(*member_);
+    } catch (...) {
+      fail(std::current_exception());
+    }
+  }
+  void fail(std::exception_ptr error) override {
+    this->finish(std::move(error), std::shared_ptr<S>());
+  }
+
+ private:
+  const Member* member_;
+  std::shared_ptr<Stub> found_;
+};
+
+template <class R, class Token, class... Arguments>
+auto Stub::rr_async_call(const Member& member, Token&& token, const Arguments&... arguments) {
+  return boost::asio::async_initiate<Token, typename CompletionSignature<R>::type>(
+      [this, call = &member](auto&& handler, const Arguments&... values) {
+        using Handler = std::decay_t<decltype(handler)>;
+        const void* const places[] = {&values..., nullptr};
+        rr_start(
+            *call, false, places,
+            std::make_unique<CallCompletion<Handler, R>>(std::forward<decltype(handler)>(handler)));
+      },
+      token, arguments...);
+}
+
+template <class T, class Token>
+auto Stub::rr_async_get(const Member& member, Token&& token) {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr, T)>(
+      [this, property = &member](auto&& handler) {
+        using Handler = std::decay_t<decltype(handler)>;
+        rr_start(
+            *property, false, nullptr,
+            std::make_unique<CallCompletion<Handler, T>>(std::forward<decltype(handler)>(handler)));
+      },
+      token);
+}
+
+template <class T, class Token>
+auto Stub::rr_async_set(const Member& member, Token&& token, const T& value) {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr)>(
+      [this, property = &member](auto&& handler, const T& wanted) {
+        using Handler = std::decay_t<decltype(handler)>;
+        const void* const place = &wanted;
+        rr_start(*property, true, &place,
+                 std::make_unique<CallCompletion<Handler, void>>(
+                     std::forward<decltype(handler)>(handler)));
+      },
+      token, value);
+}
+
+template <class S, class Token, class... Index>
+auto Stub::rr_async_find(const Member& member, Token&& token, const Index&... index) {
+  return boost::asio::async_initiate<Token, void(std::exception_ptr, std::shared_ptr<S>)>(
+      [this, objref = &member](auto&& handler, const auto&... wanted) {
+        using Handler = std::decay_t<decltype(handler)>;
+        this->rr_start_find(*objref, wanted...,
+                            std::make_unique<FindCompletion<Handler, S>>(
+                                std::forward<decltype(handler)>(handler), *objref));
+      },
+      token, index...);
+}
+
+template <class R, class Token, class... Arguments>
+auto Skeleton::rr_async_call_back(const Member& member, Token&& token, std::uint32_t client,
+                                  const Arguments&... arguments) const {
+  return boost::asio::async_initiate<Token, typename CompletionSignature<R>::type>(
+      [this, callback = &member, client](auto&& handler, const Arguments&... values) {
+        using Handler = std::decay_t<decltype(handler)>;
+        const void* const places[] = {&values..., nullptr};
+        rr_start_asking(
+            *callback, client, places,
+            std::make_unique<CallCompletion<Handler, R>>(std::forward<decltype(handler)>(handler)));
+      },
+      token, arguments...);
+}
+
+}  // namespace rr
