@@ -70,6 +70,7 @@ struct Command {
 std::vector<Command> session_commands();
 std::vector<Command> object_commands();
 std::vector<Command> async_commands();
+std::vector<Command> dotted_commands();
 std::vector<Command> event_commands();
 std::vector<Command> wire_commands();
 std::vector<Command> pipe_commands();

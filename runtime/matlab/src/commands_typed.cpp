@@ -168,7 +168,7 @@ void member(Runtime& runtime, Call& call) {
   }
   const bool is_set = call.size() > 2 && object->resolve(name).use == Use::get;
   if (is_set) return forward(runtime, "assign", call, {call[0], make_text(name)});
-  forward(runtime, "access", call, {call[0], make_text(name), mxCreateLogicalScalar(true)});
+  forward(runtime, "access", call, {call[0], make_text(name)});
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ classdef RobotRaconteur
     end
     function DisconnectService(obj)
       %DISCONNECTSERVICE End the session of an object. It also ends when no variable is left of it.
-      if isa(obj, 'RobotRaconteurObject') || isa(obj, 'RobotRaconteurStub')
+      if isa(obj, 'RobotRaconteurStub')
         rrmex('disconnect', obj.rr_h);
       else
         obj.Close();

@@ -1,31 +1,26 @@
-classdef RobotRaconteurStub < handle
-  %ROBOTRACONTEURSTUB The base of the classes that robdef generates for the objects of a definition.
-  %   They are used as a RobotRaconteurObject, and in its place wherever one is taken, but their
-  %   members are listed in the class, with help, and faster.
-  properties (Hidden)
-    rr_h = uint64(0);
-  end
+classdef RobotRaconteurStub < RobotRaconteurHandle
+  %ROBOTRACONTEURSTUB An object of a service, whatever is known of its members.
+  %   The base of RobotRaconteurObject and of the classes that robdef generates for the objects of
+  %   a definition. These are used in its place wherever one is taken, but their members are
+  %   listed in the class, with help, and faster.
   methods
     function obj = RobotRaconteurStub(type, names, varargin)
+      if nargin == 0
+        return  % the number is known already
+      end
       if isempty(varargin)
         error('RobotRaconteur:InvalidArgument', 'expected a URL, or an object');
       end
       other = varargin{1};
-      if ~isa(other, 'RobotRaconteurObject') && ~isa(other, 'RobotRaconteurStub')
+      if ~isa(other, 'RobotRaconteurStub')
         other = RobotRaconteur.ConnectService(varargin{:});
       end
       obj.rr_h = rrmex('typed', other.rr_h, type, names);
     end
 
-    function delete(obj)
-      if obj.rr_h ~= 0
-        rrmex('close', obj.rr_h);
-        obj.rr_h = uint64(0);
-      end
-    end
-
     function answer = eq(a, b)
-      answer = rrmex('same', a.rr_h, b.rr_h);
+      answer = isa(a, 'RobotRaconteurStub') && isa(b, 'RobotRaconteurStub') && ...
+               rrmex('same', a.rr_h, b.rr_h);
     end
 
     function answer = ne(a, b)
@@ -66,7 +61,7 @@ classdef RobotRaconteurStub < handle
     end
 
     function value = rr_access(obj, name, varargin)
-      [value, kind] = rrmex('access', obj.rr_h, name, true, varargin{:});
+      [value, kind] = rrmex('access', obj.rr_h, name, varargin{:});
       value = rr_wrap(obj, value, kind);
     end
 
@@ -82,13 +77,7 @@ classdef RobotRaconteurStub < handle
     end
 
     function rr_async(obj, name, given, handler, more)
-      if numel(more) > 2
-        error('RobotRaconteur:InvalidArgument', ...
-              '%s: expected handler, parameter, seconds', name);
-      end
-      rest = {[], -1};
-      rest(1:numel(more)) = more;
-      rrmex('async', obj.rr_h, name(7:end), handler, rest{:}, given{:});
+      rrmex('async', obj.rr_h, name(7:end), given{:}, handler, more{:});
     end
   end
 

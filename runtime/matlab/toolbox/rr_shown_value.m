@@ -4,7 +4,7 @@ text = '';
 kind = strtok(declaration);
 try
   if strcmp(kind, 'property')
-    value = rrmex('access', obj.rr_h, name, false);
+    value = rrmex('access', obj.rr_h, name);
   elseif strcmp(kind, 'wire')
     value = rrmex('wire_peek', obj.rr_h, name, false);
   else
