@@ -7,7 +7,6 @@
 
 #include <array>
 #include <atomic>
-#include <utility>
 
 #include "rr/matlab/containers.hpp"
 #endif
@@ -21,13 +20,13 @@ struct Chained {
   const int number;
   const char* const dump;  ///< the interpreter's function that says whether a workspace is written
   struct sigaction before {};
-  bool is_ours = false;
 };
 
 // A handler has nothing but what is static.
 std::array<Chained, 2> chained{
     {{SIGTERM, "sigterm_dumps_octave_core"}, {SIGHUP, "sighup_dumps_octave_core"}}};
-sigset_t blocked_before;
+sigset_t taken;        // of these, those with a handler of the interpreter's
+sigset_t mask_before;  // of its thread
 std::atomic<bool> has_come{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
@@ -52,8 +51,7 @@ bool has_handler(const struct sigaction& action) {
 
 EndingSignals::EndingSignals() {
   has_come = false;
-  sigset_t all;
-  sigemptyset(&all);
+  sigemptyset(&taken);
   for (Chained& one : chained) {
     // Without a handler the process ends at once, or is not to end.
     if (sigaction(one.number, nullptr, &one.before) != 0 || !has_handler(one.before)) continue;
@@ -61,18 +59,15 @@ EndingSignals::EndingSignals() {
     struct sigaction ours = one.before;
     ours.sa_sigaction = note;
     ours.sa_flags |= SA_SIGINFO;
-    one.is_ours = sigaction(one.number, &ours, nullptr) == 0;
-    if (one.is_ours) sigaddset(&all, one.number);
+    if (sigaction(one.number, &ours, nullptr) == 0) sigaddset(&taken, one.number);
   }
-  pthread_sigmask(SIG_UNBLOCK, &all, &blocked_before);
+  pthread_sigmask(SIG_SETMASK, nullptr, &mask_before);
 }
 
 EndingSignals::~EndingSignals() {
-  sigset_t all;
-  sigemptyset(&all);
-  for (Chained& one : chained) {
-    if (!std::exchange(one.is_ours, false)) continue;
-    if (sigismember(&blocked_before, one.number) == 1) sigaddset(&all, one.number);
+  for (const Chained& one : chained) {
+    if (sigismember(&taken, one.number) != 1) continue;
+    if (sigismember(&mask_before, one.number) != 1) sigdelset(&taken, one.number);
     struct sigaction now {};
     // Somebody else may have come before this one, and calls it: then it stays.
     if (sigaction(one.number, nullptr, &now) == 0 && (now.sa_flags & SA_SIGINFO) != 0 &&
@@ -80,7 +75,14 @@ EndingSignals::~EndingSignals() {
       sigaction(one.number, &one.before, nullptr);
     }
   }
-  pthread_sigmask(SIG_BLOCK, &all, nullptr);
+  pthread_sigmask(SIG_BLOCK, &taken, nullptr);
+}
+
+void EndingSignals::prepare() {
+  pthread_sigmask(SIG_UNBLOCK, &taken, nullptr);
+  has_come = false;
+  // What came to the other thread, or before; Ctrl-C is for the call to see.
+  if (octave_signal_caught != 0 && octave_interrupt_state == 0) octave_quit();
 }
 
 bool EndingSignals::is_pending() { return has_come && octave_signal_caught != 0; }
@@ -89,17 +91,13 @@ void EndingSignals::end_interpreter() {
   if (is_pending()) octave_quit();
 }
 
-void EndingSignals::forget_seen() {
-  if (has_come && octave_signal_caught == 0) has_come = false;
-}
-
 #else
 
 EndingSignals::EndingSignals() = default;
 EndingSignals::~EndingSignals() = default;
 bool EndingSignals::is_pending() { return false; }
+void EndingSignals::prepare() {}
 void EndingSignals::end_interpreter() {}
-void EndingSignals::forget_seen() {}
 
 #endif
 

@@ -8,23 +8,23 @@ namespace rr::matlab {
 /// says that they were. Nothing in MATLAB, which handles signals on threads of its own.
 class EndingSignals {
  public:
-  /// Puts a handler before the interpreter's, and has this thread take the signals, which in Octave
-  /// another one does that nobody can ask; the end undoes it. Octave writes no workspace at these
-  /// signals any more: it cannot save objects, and would go on where it fails to. One at a time,
-  /// on the interpreter's thread.
+  /// Puts a handler before the interpreter's; the end takes it away again. Octave writes no
+  /// workspace at these signals any more: it cannot save objects, and would go on where it fails
+  /// to. One at a time, on the interpreter's thread.
   EndingSignals();
   ~EndingSignals();
   EndingSignals(const EndingSignals&) = delete;
   EndingSignals& operator=(const EndingSignals&) = delete;
 
+  /// Before this thread waits: has it take the signals, which in Octave another one does that tells
+  /// nobody, and ends the interpreter if one has come before. Again after functions of the user's,
+  /// which may have changed who takes them. On the interpreter's thread.
+  static void prepare();
   /// Whether one has come and the interpreter has not seen it yet. On any thread.
   [[nodiscard]] static bool is_pending();
   /// Ends the interpreter if one is pending, by an exception of the interpreter's own: where an
   /// error is caught it forgets what is pending. On the interpreter's thread.
   static void end_interpreter();
-  /// Forgets one that the interpreter has seen, as in a function that it calls at its end. On the
-  /// interpreter's thread.
-  static void forget_seen();
 };
 
 }  // namespace rr::matlab

@@ -87,7 +87,6 @@ Interrupts::~Interrupts() {
 }
 
 void Interrupts::begin() {
-  EndingSignals::forget_seen();
   state_->is_waiting = true;
   if (!state_->is_asleep) return;
   const std::lock_guard lock(state_->mutex);

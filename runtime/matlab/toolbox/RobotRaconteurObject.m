@@ -14,7 +14,7 @@ classdef RobotRaconteurObject < RobotRaconteurStub
 
     function varargout = subsref(obj, s)
       % Each line here takes the interpreter longer than the MEX file needs for all of it.
-      [value, left] = rrmex('subsref', obj.rr_h, s);
+      [value, left] = rrmex('subsref', obj, s);
       if left
         varargout = rr_go_on(obj, s, nargout, value, left);
       else
@@ -23,7 +23,7 @@ classdef RobotRaconteurObject < RobotRaconteurStub
     end
 
     function obj = subsasgn(obj, s, value)
-      left = rrmex('subsasgn', obj.rr_h, s, value);
+      left = rrmex('subsasgn', obj, s, value);
       if left
         obj = rr_assign_rest(obj, s, value, left);
       end
@@ -39,7 +39,7 @@ classdef RobotRaconteurObject < RobotRaconteurStub
 
     function names = properties(obj)
       %PROPERTIES Names of the properties, wires, pipes, memories and callbacks.
-      [names, declarations] = rrmex('members', obj.rr_h);
+      [names, declarations] = rrmex('members', obj);
       names = names(cellfun(@isempty, regexp(declarations, '^(function|objref|event)')));
       if nargout == 0
         fprintf('  %s\n', names{:});
@@ -49,9 +49,9 @@ classdef RobotRaconteurObject < RobotRaconteurStub
 
     function found = methods(obj)
       %METHODS The members as their definition declares them; with a result, how they are called.
-      [names, declarations] = rrmex('members', obj.rr_h);
+      [names, declarations] = rrmex('members', obj);
       if nargout == 0
-        fprintf('Members of %s:\n', rrmex('about', obj.rr_h).type);
+        fprintf('Members of %s:\n', rrmex('about', obj).type);
         fprintf('  %s\n', declarations{:});
         return
       end
@@ -114,7 +114,7 @@ classdef RobotRaconteurObject < RobotRaconteurStub
       part = subsref(obj, s(1));
       value = subsasgn(part, s(2:end), value);
       if ~isa(part, 'RobotRaconteurMemory') && ~isa(part, 'RobotRaconteurWire')
-        rrmex('assign', obj.rr_h, s(1).subs, value);
+        rrmex('assign', obj, s(1).subs, value);
       end
     end
   end

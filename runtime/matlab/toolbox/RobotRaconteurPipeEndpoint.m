@@ -27,12 +27,15 @@ classdef RobotRaconteurPipeEndpoint < RobotRaconteurHandle
       packet = rrmex('pipe_receive', obj.rr_h);
     end
     function packet = ReceivePacketWait(obj, seconds)
-      %RECEIVEPACKETWAIT The next packet, waited for; RobotRaconteur:OperationTimeout for none.
+      %RECEIVEPACKETWAIT The next packet, waited for; RobotRaconteur:OperationTimeout for none,
+      %   InvalidOperation when the endpoint is closed.
       if nargin < 2
         seconds = -1;
       end
       [has_come, packet] = rrmex('pipe_receive_wait', obj.rr_h, seconds, false);
-      if ~has_come
+      if ~has_come && ~obj.IsOpen
+        error('RobotRaconteur:InvalidOperation', 'the pipe endpoint is closed');
+      elseif ~has_come
         error('RobotRaconteur:OperationTimeout', 'no packet has come');
       end
     end

@@ -15,12 +15,12 @@ classdef RobotRaconteurStub < RobotRaconteurHandle
       if ~isa(other, 'RobotRaconteurStub')
         other = RobotRaconteur.ConnectService(varargin{:});
       end
-      obj.rr_h = rrmex('typed', other.rr_h, type, names);
+      obj.rr_h = rrmex('typed', other, type, names);
     end
 
     function answer = eq(a, b)
       answer = isa(a, 'RobotRaconteurStub') && isa(b, 'RobotRaconteurStub') && ...
-               rrmex('same', a.rr_h, b.rr_h);
+               rrmex('same', a, b);
     end
 
     function answer = ne(a, b)
@@ -29,7 +29,7 @@ classdef RobotRaconteurStub < RobotRaconteurHandle
 
     function listener = addlistener(obj, event, handler)
       %ADDLISTENER Call handler(parameters...) for each event; delete(listener) ends it.
-      listener = RobotRaconteurListener(rrmex('listen', obj.rr_h, event, handler));
+      listener = RobotRaconteurListener(rrmex('listen', obj, event, handler));
     end
 
     function answer = ismethod(obj, name)
@@ -42,18 +42,18 @@ classdef RobotRaconteurStub < RobotRaconteurHandle
 
     function text = type(obj)
       %TYPE The type of the object, in full; it may be one that implements the class's.
-      text = rrmex('about', obj.rr_h).type;
+      text = rrmex('about', obj).type;
     end
 
     function text = members(obj)
       %MEMBERS The declarations of the members, one in each cell.
-      [names, text] = rrmex('members', obj.rr_h);
+      [names, text] = rrmex('members', obj);
     end
 
     function text = servicedef(obj)
       %SERVICEDEF The definition in which the object is declared, as the service has sent it.
-      name = rrmex('about', obj.rr_h).type;
-      text = rrmex('definition', obj.rr_h, name(1:find(name == '.', 1, 'last') - 1));
+      name = rrmex('about', obj).type;
+      text = rrmex('definition', obj, name(1:find(name == '.', 1, 'last') - 1));
     end
 
     function disp(obj)
@@ -61,23 +61,23 @@ classdef RobotRaconteurStub < RobotRaconteurHandle
     end
 
     function value = rr_access(obj, name, varargin)
-      [value, kind] = rrmex('access', obj.rr_h, name, varargin{:});
+      [value, kind] = rrmex('access', obj, name, varargin{:});
       value = rr_wrap(obj, value, kind);
     end
 
     function rr_assign(obj, name, value)
-      rrmex('assign', obj.rr_h, name, value);
+      rrmex('assign', obj, name, value);
     end
 
     function rr_written(obj, name, value)
       % The part of a memory has been written when the memory itself comes back.
       if ~isa(value, 'RobotRaconteurMemory')
-        rrmex('assign', obj.rr_h, name, value);
+        rrmex('assign', obj, name, value);
       end
     end
 
     function rr_async(obj, name, given, handler, more)
-      rrmex('async', obj.rr_h, name(7:end), given{:}, handler, more{:});
+      rrmex('async', obj, name(7:end), given{:}, handler, more{:});
     end
   end
 
