@@ -26,21 +26,21 @@ classdef RobotRaconteur
     function DisconnectService(obj)
       %DISCONNECTSERVICE End the session of an object. It also ends when no variable is left of it.
       if isa(obj, 'RobotRaconteurStub')
-        rrmex('disconnect', obj.rr_h);
+        rrmex('disconnect', obj);
       else
         obj.Close();
       end
     end
     function Authenticate(obj, username, credentials)
       %AUTHENTICATE Log in at the service of an object.
-      rrmex('authenticate', obj.rr_h, username, credentials);
+      rrmex('authenticate', obj, username, credentials);
     end
     function Logout(obj)
-      rrmex('logout', obj.rr_h);
+      rrmex('logout', obj);
     end
     function found = GetServiceAttributes(obj)
       %GETSERVICEATTRIBUTES What the service tells of itself, as a containers.Map.
-      found = rrmex('attributes', obj.rr_h);
+      found = rrmex('attributes', obj);
     end
 
     function count = Poll(seconds)
@@ -58,7 +58,7 @@ classdef RobotRaconteur
     function EnableEvents(obj)
       %ENABLEEVENTS Events are delivered, which they are anyway, and at Octave's prompt without Poll.
       persistent is_hooked
-      rrmex('events', obj.rr_h, true);
+      rrmex('events', obj, true);
       if isempty(is_hooked) && exist('OCTAVE_VERSION', 'builtin') && isguirunning_or_prompt()
         add_input_event_hook(@() RobotRaconteur.Poll(0));
         is_hooked = true;
@@ -66,7 +66,7 @@ classdef RobotRaconteur
     end
     function DisableEvents(obj)
       %DISABLEEVENTS Events of the object's session are dropped until EnableEvents.
-      rrmex('events', obj.rr_h, false);
+      rrmex('events', obj, false);
     end
 
     function RequestObjectLock(obj, kind)
@@ -74,42 +74,42 @@ classdef RobotRaconteur
       if nargin < 2
         kind = 'User';
       end
-      rrmex('lock', obj.rr_h, kind);
+      rrmex('lock', obj, kind);
     end
     function ReleaseObjectLock(obj)
-      rrmex('unlock', obj.rr_h);
+      rrmex('unlock', obj);
     end
     function MonitorEnter(obj, seconds)
       %MONITORENTER Wait until this session alone may use the object.
       if nargin < 2
         seconds = -1;
       end
-      rrmex('monitor_enter', obj.rr_h, seconds);
+      rrmex('monitor_enter', obj, seconds);
     end
     function MonitorExit(obj)
-      rrmex('monitor_exit', obj.rr_h);
+      rrmex('monitor_exit', obj);
     end
 
     function made = CreateStructure(obj, name)
       %CREATESTRUCTURE A struct, pod or namedarray of a definition with all fields: 0, '', [].
-      made = rrmex('create', obj.rr_h, name);
+      made = rrmex('create', obj, name);
     end
     function found = GetConstants(obj, service)
       %GETCONSTANTS Constants and enums of a definition, in a struct; those of its structs and
       %   objects are structs in it.
       if nargin < 2
-        name = rrmex('about', obj.rr_h).type;
+        name = rrmex('about', obj).type;
         service = name(1:find(name == '.', 1, 'last') - 1);
       end
-      found = rrmex('constants', obj.rr_h, service);
+      found = rrmex('constants', obj, service);
     end
     function names = GetPulledServiceTypes(obj)
       %GETPULLEDSERVICETYPES Names of the definitions that the service has sent.
-      names = rrmex('definitions', obj.rr_h);
+      names = rrmex('definitions', obj);
     end
     function text = GetPulledServiceType(obj, name)
       %GETPULLEDSERVICETYPE The text of one of them.
-      text = rrmex('definition', obj.rr_h, name);
+      text = rrmex('definition', obj, name);
     end
 
     function sub = SubscribeService(url, username, credentials, object_type)

@@ -13,7 +13,7 @@ classdef RobotRaconteurMemory < handle
       obj.rr_name = name;
     end
     function varargout = size(obj, dimension)
-      dims = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
+      dims = rrmex('memory_dims', obj.rr_object, obj.rr_name);
       dims(end + 1:2) = 1;
       if nargin == 2
         dims(end + 1:dimension) = 1;
@@ -39,7 +39,7 @@ classdef RobotRaconteurMemory < handle
       answer = 1;
     end
     function last = end(obj, k, n)
-      dims = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
+      dims = rrmex('memory_dims', obj.rr_object, obj.rr_name);
       dims(end + 1:n) = 1;
       last = dims(k);
       if n == 1
@@ -51,9 +51,9 @@ classdef RobotRaconteurMemory < handle
         [varargout{1:nargout}] = builtin('subsref', obj, s);
         return
       end
-      dims = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
+      dims = rrmex('memory_dims', obj.rr_object, obj.rr_name);
       [first, count, picked] = rr_memory_ranges(s(1), dims);
-      items = rrmex('memory_read', obj.rr_object.rr_h, obj.rr_name, first - 1, count);
+      items = rrmex('memory_read', obj.rr_object, obj.rr_name, first - 1, count);
       items = rr_memory_pick(items, count, picked, numel(s(1).subs));
       if numel(s) > 1
         items = subsref(items, s(2:end));
@@ -65,14 +65,14 @@ classdef RobotRaconteurMemory < handle
         obj = builtin('subsasgn', obj, s, items);
         return
       end
-      dims = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
+      dims = rrmex('memory_dims', obj.rr_object, obj.rr_name);
       [first, count, picked] = rr_memory_ranges(s(1), dims);
       if numel(s) > 1 || any(~cellfun(@isempty, picked))
         error('RobotRaconteur:InvalidArgument', 'a memory is written without gaps');
       end
       items = rr_memory_shape(items, count);
       if prod(count) ~= 0
-        rrmex('memory_write', obj.rr_object.rr_h, obj.rr_name, first - 1, items);
+        rrmex('memory_write', obj.rr_object, obj.rr_name, first - 1, items);
       end
     end
     function disp(obj)

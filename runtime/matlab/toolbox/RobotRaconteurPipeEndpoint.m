@@ -11,20 +11,20 @@ classdef RobotRaconteurPipeEndpoint < RobotRaconteurHandle
       obj.rr_h = number;
     end
     function count = get.Available(obj)
-      count = rrmex('pipe_available', obj.rr_h);
+      count = rrmex('pipe_available', obj);
     end
     function index = get.Index(obj)
-      index = rrmex('pipe_about', obj.rr_h).index;
+      index = rrmex('pipe_about', obj).index;
     end
     function answer = get.IsOpen(obj)
-      answer = rrmex('pipe_about', obj.rr_h).is_open;
+      answer = rrmex('pipe_about', obj).is_open;
     end
     function count = get.LostCount(obj)
-      count = rrmex('pipe_about', obj.rr_h).lost_count;
+      count = rrmex('pipe_about', obj).lost_count;
     end
     function packet = ReceivePacket(obj)
       %RECEIVEPACKET The packet that has waited longest.
-      packet = rrmex('pipe_receive', obj.rr_h);
+      packet = rrmex('pipe_receive', obj);
     end
     function packet = ReceivePacketWait(obj, seconds)
       %RECEIVEPACKETWAIT The next packet, waited for; RobotRaconteur:OperationTimeout for none,
@@ -32,7 +32,7 @@ classdef RobotRaconteurPipeEndpoint < RobotRaconteurHandle
       if nargin < 2
         seconds = -1;
       end
-      [has_come, packet] = rrmex('pipe_receive_wait', obj.rr_h, seconds, false);
+      [has_come, packet] = rrmex('pipe_receive_wait', obj, seconds, false);
       if ~has_come && ~obj.IsOpen
         error('RobotRaconteur:InvalidOperation', 'the pipe endpoint is closed');
       elseif ~has_come
@@ -47,16 +47,16 @@ classdef RobotRaconteurPipeEndpoint < RobotRaconteurHandle
       if nargin < 3
         peek = false;
       end
-      [has_come, packet] = rrmex('pipe_receive_wait', obj.rr_h, seconds, peek);
+      [has_come, packet] = rrmex('pipe_receive_wait', obj, seconds, peek);
     end
     function number = SendPacket(obj, packet)
       %SENDPACKET Send a packet; its number.
-      number = rrmex('pipe_send', obj.rr_h, packet);
+      number = rrmex('pipe_send', obj, packet);
     end
     function SetQueueLimit(obj, packets, lost)
       %SETQUEUELIMIT When so many packets wait, the 'oldest' or 'newest' is lost, or the endpoint
       %   is closed: 'close', which is the default with 65,536 packets.
-      rrmex('pipe_queue_limit', obj.rr_h, packets, lost);
+      rrmex('pipe_queue_limit', obj, packets, lost);
     end
     function listener = addlistener(obj, event, handler)
       %ADDLISTENER addlistener(endpoint, 'PacketReceived', handler): handler(packet) for each
@@ -64,10 +64,10 @@ classdef RobotRaconteurPipeEndpoint < RobotRaconteurHandle
       if ~any(strcmp(event, {'PacketReceived', 'PacketReceivedEvent'}))
         error('RobotRaconteur:MemberNotFound', 'a pipe has the event PacketReceived only');
       end
-      listener = RobotRaconteurListener(rrmex('pipe_listen', obj.rr_h, handler));
+      listener = RobotRaconteurListener(rrmex('pipe_listen', obj, handler));
     end
     function Close(obj)
-      rrmex('pipe_close', obj.rr_h);
+      rrmex('pipe_close', obj);
     end
     function disp(obj)
       fprintf('  endpoint of a pipe\n');
