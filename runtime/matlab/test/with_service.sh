@@ -6,6 +6,7 @@ service=
 trap '[ -z "$service" ] || kill "$service" 2>/dev/null || true; rm -rf "$work"' EXIT
 
 start_service() {
+  : > "$work/service"
   "$1" --port 0 --seconds 390 > "$work/service" &
   service=$!
   for _ in $(seq 100); do
