@@ -53,7 +53,7 @@ set(robdef_layers
   "runtime/c: runtime/cpp/include/rr runtime/cpp/src/channel runtime/cpp/src/client runtime/cpp/src/endpoint runtime/cpp/src/service"
   "runtime/c/test: runtime/c/include runtime/cpp/include/rr runtime/cpp/src/node/testing runtime/cpp/src/client/definition_text.hpp"
   "runtime/matlab: runtime/cpp/include/rr"
-  "runtime/matlab/test: runtime/cpp/include/rr runtime/cpp/src/dynamic/testing"
+  "runtime/matlab/test: runtime/cpp/include/rr runtime/cpp/src/dynamic/testing runtime/matlab/src/queue.hpp"
   "runtime/cpp/src/tap: runtime/cpp/include/rr"
   "runtime/cpp/src/replay: runtime/cpp/include/rr runtime/cpp/src/channel/capabilities.hpp runtime/cpp/src/channel/layer.hpp runtime/cpp/src/channel/socket.hpp"
   "runtime/cpp/src/node/replay_test.cpp: runtime/cpp/include/rr runtime/cpp/src/node runtime/cpp/src/replay"

@@ -37,8 +37,15 @@ class Call {
   [[nodiscard]] std::span<const mxArray* const> rest(std::size_t index) const {
     return std::span(arguments_).subspan(std::min(index, arguments_.size()));
   }
+  /// The number of something held, or the toolbox's object that has it. A number that the toolbox
+  /// reads from its object costs more than the object itself; and after `clear all` Octave lets
+  /// methods of an object that is left not read it any more.
   [[nodiscard]] std::uint64_t handle(std::size_t index) const {
-    return read_number<std::uint64_t>((*this)[index]);
+    const mxArray* const given = (*this)[index];
+    if (mxIsNumeric(given)) return read_number<std::uint64_t>(given);
+    const mxArray* const number = mxGetProperty(given, 0, "rr_h");
+    if (number == nullptr) throw Misfit("expected an object, got " + described(given));
+    return read_number<std::uint64_t>(number);
   }
   [[nodiscard]] std::string text(std::size_t index) const { return read_text((*this)[index]); }
   /// Seconds; less than zero, and what is not given, mean no limit.
@@ -70,6 +77,7 @@ struct Command {
 std::vector<Command> session_commands();
 std::vector<Command> object_commands();
 std::vector<Command> async_commands();
+std::vector<Command> dotted_commands();
 std::vector<Command> event_commands();
 std::vector<Command> wire_commands();
 std::vector<Command> pipe_commands();

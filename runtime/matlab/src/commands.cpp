@@ -24,9 +24,9 @@ void run_command(Runtime& runtime, const std::string& name, Call& call) {
   static const Table table = [] {
     Table all;
     for (const auto& list :
-         {session_commands(), object_commands(), async_commands(), event_commands(),
-          wire_commands(), pipe_commands(), memory_commands(), generator_commands(),
-          lock_commands(), definition_commands(), subscription_commands(),
+         {session_commands(), object_commands(), async_commands(), dotted_commands(),
+          event_commands(), wire_commands(), pipe_commands(), memory_commands(),
+          generator_commands(), lock_commands(), definition_commands(), subscription_commands(),
           member_subscription_commands(), discovery_commands(), node_commands(), typed_commands(),
           record_commands(), service_commands(), served_commands()}) {
       for (const Command& command : list) all.emplace(command.name, command.run);

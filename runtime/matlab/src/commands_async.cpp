@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Members that are called without waiting: `object.async_move(arguments..., handler, parameter,
 // seconds)`.
+#include <algorithm>
+#include <utility>
+
 #include "rr/error.hpp"
+#include "runtime/matlab/src/access.hpp"
 #include "runtime/matlab/src/completions.hpp"
 
 namespace rr::matlab {
@@ -76,28 +80,40 @@ void start(Runtime& runtime, const AsyncCall& call, const Completions& completio
   }
 }
 
-// async(object, name, function, function's parameter, seconds, arguments...)
-void async(Runtime& runtime, Call& call) {
-  const auto object = object_of(runtime, call);
-  AsyncCall made{object, &object->resolve(call.text(1)), {}};
-  for (std::size_t i = 5; i < call.size(); ++i) made.arguments.push_back(call[i]);
-  start_call(runtime, object->connection(), {call[2], call[3]}, call.seconds(4),
-             [&](const Completions& completions) { start(runtime, made, completions); });
+// How many arguments stand before the handler.
+std::size_t parameter_count(const Resolved& member) {
+  if (member.use == Use::set) return 1;
+  if (member.use == Use::object) return member.member.index == IndexForm::none ? 0 : 1;
+  return member.parameters.size();
 }
 
-// parameter_count(object, name): how many arguments stand before the handler
-void parameter_count(Runtime& runtime, Call& call) {
-  const Resolved& member = object_of(runtime, call)->resolve(call.text(1));
-  std::size_t count = member.parameters.size();
-  if (member.use == Use::set) count = 1;
-  if (member.use == Use::object) count = member.member.index == IndexForm::none ? 0 : 1;
-  call.give(mxCreateDoubleScalar(static_cast<double>(count)));
+// async(object, name, arguments..., function, function's parameter, seconds)
+void async(Runtime& runtime, Call& call) {
+  start_member(runtime, object_of(runtime, call), call.text(1), call.rest(2));
 }
 
 }  // namespace
 
-std::vector<Command> async_commands() {
-  return {{"async", async}, {"parameter_count", parameter_count}};
+void start_member(Runtime& runtime, const std::shared_ptr<ObjectHandle>& object,
+                  const std::string& name, std::span<const mxArray* const> given) {
+  const Resolved& member = object->resolve(name);
+  const std::size_t count = std::min(parameter_count(member), given.size());
+  const auto behind = given.subspan(count);
+  if (behind.size() > 3) {
+    throw Error(ErrorCode::invalid_argument, "async_" + name + ": expected " +
+                                                 std::to_string(count) +
+                                                 " arguments, then handler, parameter, seconds");
+  }
+  const auto seconds = behind.size() > 2 ? to_milliseconds(read_number<double>(behind[2]))
+                                         : std::chrono::milliseconds::max();
+  const mxArray* const none = make_null();
+  const Handler handler{behind.empty() ? none : behind[0], behind.size() > 1 ? behind[1] : none};
+  const AsyncCall made{
+      object, &member, {given.begin(), given.begin() + static_cast<std::ptrdiff_t>(count)}};
+  start_call(runtime, object->connection(), handler, seconds,
+             [&](const Completions& completions) { start(runtime, made, completions); });
 }
+
+std::vector<Command> async_commands() { return {{"async", async}}; }
 
 }  // namespace rr::matlab

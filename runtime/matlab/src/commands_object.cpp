@@ -1,35 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Members of objects: what the user writes behind the dot.
 #include "rr/error.hpp"
-#include "runtime/matlab/src/objects.hpp"
+#include "runtime/matlab/src/access.hpp"
 
 namespace rr::matlab {
 namespace {
 
 using dynamic::Value;
 
-/// What `access` gives, and whether it has used the parentheses behind the name. Numbers that the
-/// toolbox knows, too.
-enum class Given : int {
-  value = 0,
-  result = 1,
-  nothing = 2,
-  object = 3,
-  generator = 4,
-  wire = 5,
-  pipe = 6,
-  memory = 7,
-};
-
-void give(Call& call, mxArray* value, Given kind) {
-  call.give(value);
-  call.give(mxCreateDoubleScalar(static_cast<double>(kind)));
-}
-
-void give_value(Call& call, const Value& value, const Resolved& member, ObjectHandle& object,
-                Given kind) {
-  if (member.plan == nullptr) return give(call, make_null(), Given::nothing);
-  give(call, to_mex(value, *member.plan, object.connection()->plans), kind);
+Accessed give_value(const Value& value, const Resolved& member, ObjectHandle& object, Given kind) {
+  if (member.plan == nullptr) return {make_null(), Given::nothing};
+  return {to_mex(value, *member.plan, object.connection()->plans), kind};
 }
 
 Value get(Runtime& runtime, const ObjectHandle& object, const std::string& name) {
@@ -79,58 +60,20 @@ mxArray* find_object(Runtime& runtime, const ObjectHandle& object, const Resolve
   return give_object(runtime, object.connection(), std::move(found));
 }
 
-// access(object, name, is_called, arguments...): [value, kind]
+// access(object, name, arguments...): [value, kind]
 void access(Runtime& runtime, Call& call) {
   const auto object = object_of(runtime, call);
-  const Resolved& member = object->resolve(call.text(1));
-  std::vector<const mxArray*> arguments;
-  for (std::size_t i = 3; i < call.size(); ++i) arguments.push_back(call[i]);
-  switch (member.use) {
-    case Use::get:
-      return give_value(call, get(runtime, *object, member.member.name), member, *object,
-                        Given::value);
-    case Use::set:
-      if (arguments.size() != 1) {
-        throw Error(ErrorCode::invalid_argument, member.subject + ": expected one value");
-      }
-      set(runtime, *object, member, arguments[0]);
-      return give(call, make_null(), Given::nothing);
-    case Use::call:
-      return give_value(
-          call, call_member(runtime, *object, member, read_arguments(*object, member, arguments)),
-          member, *object, Given::result);
-    case Use::generate:
-      return give(
-          call,
-          open_generator(runtime, *object, member, read_arguments(*object, member, arguments)),
-          Given::generator);
-    case Use::object:
-      return give(call, find_object(runtime, *object, member, arguments), Given::object);
-    case Use::wire:
-      return give(call, make_text(member.member.name), Given::wire);
-    case Use::pipe:
-      return give(call, make_text(member.member.name), Given::pipe);
-    case Use::memory:
-      return give(call, make_text(member.member.name), Given::memory);
-    case Use::callback:
-      return give(call, callback_function(*object, member), Given::value);
-    case Use::event:
-      throw Error(ErrorCode::member_format_mismatch,
-                  member.subject + ": it is an event; use addlistener(object, '" +
-                      member.member.name + "', function)");
-  }
+  const auto given = call.rest(2);
+  const Accessed accessed =
+      access_member(runtime, *object, call.text(1), {given.begin(), given.end()});
+  call.give(accessed.value);
+  call.give(mxCreateDoubleScalar(static_cast<double>(accessed.kind)));
 }
 
 // assign(object, name, value)
 void assign(Runtime& runtime, Call& call) {
   const auto object = object_of(runtime, call);
-  const Resolved& member = object->resolve(call.text(1));
-  if (member.use == Use::get || member.use == Use::set) {
-    return set(runtime, *object, member, call[2]);
-  }
-  if (member.use == Use::callback) return set_callback(runtime, *object, member, call[2]);
-  throw Error(ErrorCode::member_format_mismatch,
-              member.subject + ": only properties and callbacks can be assigned");
+  assign_member(runtime, *object, call.text(1), call[2]);
 }
 
 // kind(object, name): `property`, ...; '' for no member
@@ -182,6 +125,52 @@ void same(Runtime& runtime, Call& call) {
 }
 
 }  // namespace
+
+Accessed access_member(Runtime& runtime, ObjectHandle& object, const std::string& name,
+                       const std::vector<const mxArray*>& arguments) {
+  const Resolved& member = object.resolve(name);
+  switch (member.use) {
+    case Use::get:
+      return give_value(get(runtime, object, member.member.name), member, object, Given::value);
+    case Use::set:
+      if (arguments.size() != 1) {
+        throw Error(ErrorCode::invalid_argument, member.subject + ": expected one value");
+      }
+      set(runtime, object, member, arguments[0]);
+      return {make_null(), Given::nothing};
+    case Use::call:
+      return give_value(
+          call_member(runtime, object, member, read_arguments(object, member, arguments)), member,
+          object, Given::result);
+    case Use::generate:
+      return {open_generator(runtime, object, member, read_arguments(object, member, arguments)),
+              Given::generator};
+    case Use::object:
+      return {find_object(runtime, object, member, arguments), Given::object};
+    case Use::wire:
+      return {make_text(member.member.name), Given::wire};
+    case Use::pipe:
+      return {make_text(member.member.name), Given::pipe};
+    case Use::memory:
+      return {make_text(member.member.name), Given::memory};
+    case Use::callback:
+      return {callback_function(object, member), Given::value};
+    case Use::event:
+      break;
+  }
+  throw Error(ErrorCode::member_format_mismatch, member.subject +
+                                                     ": it is an event; use addlistener(object, '" +
+                                                     member.member.name + "', function)");
+}
+
+void assign_member(Runtime& runtime, ObjectHandle& object, const std::string& name,
+                   const mxArray* value) {
+  const Resolved& member = object.resolve(name);
+  if (member.use == Use::get || member.use == Use::set) return set(runtime, object, member, value);
+  if (member.use == Use::callback) return set_callback(runtime, object, member, value);
+  throw Error(ErrorCode::member_format_mismatch,
+              member.subject + ": only properties and callbacks can be assigned");
+}
 
 Value read_index(const Resolved& member, const mxArray* given) {
   if (given == nullptr) return {};

@@ -13,7 +13,7 @@
 #include "rr/matlab/module.hpp"
 #include "rr/registry.hpp"
 #include "rr/stub_beside.hpp"
-#include "runtime/matlab/src/objects.hpp"
+#include "runtime/matlab/src/access.hpp"
 
 namespace rr::matlab {
 namespace {
@@ -134,19 +134,6 @@ void typed(Runtime& runtime, Call& call) {
       runtime, std::make_shared<TypedHandle>(*object, std::move(names), std::move(stub), members)));
 }
 
-/// Runs another command with the arguments of this one behind `first`, and gives its result, unless
-/// it says that there is none.
-void forward(Runtime& runtime, const char* command, Call& call,
-             const std::vector<const mxArray*>& first) {
-  std::vector<const mxArray*> arguments = first;
-  for (std::size_t i = 2; i < call.size(); ++i) arguments.push_back(call[i]);
-  mxArray* results[] = {nullptr, nullptr};
-  Call inner(2, results, static_cast<int>(arguments.size()), arguments.data());
-  run_command(runtime, command, inner);
-  const bool is_nothing = results[1] != nullptr && read_number<int>(results[1]) == 2;
-  if (results[0] != nullptr && !is_nothing) call.give(results[0]);
-}
-
 // member(object, place, arguments...): a property's value, a function's result; a property with an
 // argument is set
 void member(Runtime& runtime, Call& call) {
@@ -166,9 +153,12 @@ void member(Runtime& runtime, Call& call) {
       if (running.has_begun()) throw;
     }
   }
-  const bool is_set = call.size() > 2 && object->resolve(name).use == Use::get;
-  if (is_set) return forward(runtime, "assign", call, {call[0], make_text(name)});
-  forward(runtime, "access", call, {call[0], make_text(name), mxCreateLogicalScalar(true)});
+  const auto given = call.rest(2);
+  if (!given.empty() && object->resolve(name).use == Use::get) {
+    return assign_member(runtime, *object, name, given[0]);
+  }
+  const Accessed accessed = access_member(runtime, *object, name, {given.begin(), given.end()});
+  if (accessed.kind != Given::nothing) call.give(accessed.value);
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include <thread>
 #include <utility>
 
+#include "runtime/matlab/src/ending_signals.hpp"
+
 #ifdef RR_OCTAVE
 #include <octave/quit.h>
 #else
@@ -34,6 +36,7 @@ struct Interrupts::State {
   std::condition_variable changed;
   bool is_ending = false;
   std::thread watcher;
+  EndingSignals ending;
 };
 
 void Interrupts::State::look() {
@@ -94,7 +97,7 @@ void Interrupts::end() { state_->is_waiting = false; }
 
 bool Interrupts::is_pending() {
 #ifdef RR_OCTAVE
-  return octave_interrupt_state > 0;
+  return octave_interrupt_state > 0 || EndingSignals::is_pending();
 #else
   return utIsInterruptPending();
 #endif

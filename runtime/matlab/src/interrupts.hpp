@@ -6,8 +6,9 @@
 
 namespace rr::matlab {
 
-/// Ctrl-C while a call waits. Both interpreters only set a flag, which somebody has to look at: in
-/// Octave a thread does while something waits; in MATLAB the interpreter's own thread must.
+/// Ctrl-C while a call waits, and in Octave the signals that end the interpreter (EndingSignals).
+/// Both interpreters only set a flag, which somebody has to look at: in Octave a thread does while
+/// something waits; in MATLAB the interpreter's own thread must.
 class Interrupts {
  public:
   /// `told` is called on a thread of this class, once for each interrupt while something waits.
@@ -19,7 +20,8 @@ class Interrupts {
   /// A call begins to wait, and has ended. On the interpreter's thread.
   void begin();
   void end();
-  /// Whether the interpreter was interrupted and has not seen it yet. On the interpreter's thread.
+  /// Whether the interpreter was interrupted and has not seen it yet. On any thread in Octave, in
+  /// MATLAB on the interpreter's.
   [[nodiscard]] static bool is_pending();
   /// Whether is_pending() has to be asked again and again, since nobody is told.
   [[nodiscard]] static bool must_be_asked();

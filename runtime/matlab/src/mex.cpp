@@ -9,6 +9,7 @@
 
 #include "rr/matlab/failure.hpp"
 #include "rr/matlab/module.hpp"
+#include "runtime/matlab/src/ending_signals.hpp"
 #include "runtime/matlab/src/node_options.hpp"
 #include "runtime/matlab/src/objects.hpp"
 
@@ -116,5 +117,6 @@ void rr::matlab::run_mex(std::span<const Module* const> modules, int result_coun
     if (!failure) return;
     failed = std::move(*failure);
   }
+  EndingSignals::end_interpreter();
   rr::matlab::raise(std::move(failed));
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/matlab/src/queue.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "rr/error.hpp"
@@ -34,27 +33,30 @@ void Queue::push(Work work, std::uint64_t key) {
   const std::lock_guard lock(mutex_);
   is_woken_ = true;
   changed_.notify_one();
-  if (key != 0) {
-    const auto same = std::find_if(entries_.begin(), entries_.end(),
-                                   [&](const Entry& entry) { return entry.key == key; });
-    if (same != entries_.end()) {
-      lost = std::exchange(same->work, std::move(work));
-      return;
-    }
+  const auto known = key != 0 ? numbers_.find(key) : numbers_.end();
+  if (known != numbers_.end()) {
+    lost = std::exchange(entries_[known->second - taken_].work, std::move(work));
+    return;
   }
   entries_.push_back({key, std::move(work)});
+  if (key != 0) numbers_.emplace(key, taken_ + entries_.size() - 1);
   if (entries_.size() <= limit) return;
-  lost = std::move(entries_.front().work);
-  entries_.pop_front();
+  lost = take_oldest();
   ++lost_;
+}
+
+Queue::Work Queue::take_oldest() {
+  if (entries_.empty()) return {};
+  Entry oldest = std::move(entries_.front());
+  entries_.pop_front();
+  ++taken_;
+  if (oldest.key != 0) numbers_.erase(oldest.key);
+  return std::move(oldest.work);
 }
 
 Queue::Work Queue::pop() {
   const std::lock_guard lock(mutex_);
-  if (entries_.empty()) return {};
-  Work work = std::move(entries_.front().work);
-  entries_.pop_front();
-  return work;
+  return take_oldest();
 }
 
 std::size_t Queue::size() const {
@@ -137,6 +139,8 @@ void Queue::wake() {
 void Queue::clear() {
   std::deque<Entry> entries;  // destroyed behind the lock
   const std::lock_guard lock(mutex_);
+  taken_ += entries_.size();
+  numbers_.clear();
   entries.swap(entries_);
 }
 

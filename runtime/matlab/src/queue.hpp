@@ -9,6 +9,7 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -52,7 +53,7 @@ class Queue {
   static constexpr std::size_t limit = 65'536;
 
   /// Something that the interpreter's thread will run. Of several with the same `key`, unless it is
-  /// 0, only the newest is kept, at the place of the first.
+  /// 0, only the newest is kept, at the place of the first. Takes the same time however many wait.
   void push(Work work, std::uint64_t key = 0);
   /// Empty when there is none.
   Work pop();
@@ -82,10 +83,16 @@ class Queue {
     std::uint64_t key;
     Work work;
   };
+  /// The oldest, if there is one; nobody else has its key then.
+  Work take_oldest();
+
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   bool is_woken_ = false;
   std::deque<Entry> entries_;
+  /// How many entries have left at the front: the place of an entry plus this stays the same.
+  std::uint64_t taken_ = 0;
+  std::unordered_map<std::uint64_t, std::uint64_t> numbers_;  ///< of entries with a key, by it
   std::deque<std::shared_ptr<PendingCall>> calls_;
   std::vector<std::weak_ptr<PendingCall>> running_;
   std::uint64_t lost_ = 0;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "rr/serial.hpp"
+#include "runtime/matlab/src/ending_signals.hpp"
 #include "runtime/matlab/src/objects.hpp"
 
 namespace rr::matlab {
@@ -34,6 +35,7 @@ Runtime::~Runtime() {
 }
 
 Runtime::Waiting::Waiting(Runtime& runtime) : runtime_(runtime) {
+  EndingSignals::prepare();
   const std::lock_guard lock(runtime.waiting_mutex_);
   runtime.waiting_.push_back(cancellation);
   if (runtime.waiting_.size() == 1) runtime.interrupts_->begin();
@@ -84,6 +86,7 @@ bool Runtime::wait_until(const std::function<bool()>& is_true, std::chrono::mill
   const auto end = is_limited ? Clock::now() + limit : Clock::time_point::max();
   while (true) {
     run_calls();
+    EndingSignals::prepare();
     if (is_true()) return true;
     if (waiting.cancellation.is_cancelled() || Interrupts::is_pending()) {
       throw Error(ErrorCode::operation_cancelled, "interrupted");

@@ -170,7 +170,10 @@ auto Runtime::call(Direct&& direct, Start&& start, std::optional<std::chrono::mi
     queue->wake();
   });
   wait_until([&] { return answer->has_come.load(); }, std::chrono::milliseconds::max());
-  if (answer->error) std::rethrow_exception(answer->error);
+  // The call may have seen the interrupt first.
+  waiting.run([&] {
+    if (answer->error) std::rethrow_exception(answer->error);
+  });
   if constexpr (sizeof...(Result) == 1) return std::move(std::get<0>(answer->result));
 }
 

@@ -120,7 +120,7 @@
 %!error id=RobotRaconteur:ConnectionError RobotRaconteur.Connect('rr+tcp://127.0.0.1:1/?service=x')
 %!error id=RobotRaconteur:InvalidArgument RobotRaconteur.Connect('nonsense')
 %!error id=RobotRaconteur:ServiceNotFound rr_bench('nothing')
-%!error id=RobotRaconteur:InvalidOperation rrmex('access', uint64(12345), 'x', false)
+%!error id=RobotRaconteur:InvalidOperation rrmex('access', uint64(12345), 'x')
 %!error id=RobotRaconteur:InvalidArgument rrmex('no such command')
 %!error id=RobotRaconteur:DataTypeMismatch rrmex()
 %!error id=RobotRaconteur:DataTypeMismatch rrmex('access')

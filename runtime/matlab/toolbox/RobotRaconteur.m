@@ -25,35 +25,35 @@ classdef RobotRaconteur
     end
     function DisconnectService(obj)
       %DISCONNECTSERVICE End the session of an object. It also ends when no variable is left of it.
-      if isa(obj, 'RobotRaconteurObject') || isa(obj, 'RobotRaconteurStub')
-        rrmex('disconnect', obj.rr_h);
+      if isa(obj, 'RobotRaconteurStub')
+        rrmex('disconnect', obj);
       else
         obj.Close();
       end
     end
     function Authenticate(obj, username, credentials)
       %AUTHENTICATE Log in at the service of an object.
-      rrmex('authenticate', obj.rr_h, username, credentials);
+      rrmex('authenticate', obj, username, credentials);
     end
     function Logout(obj)
-      rrmex('logout', obj.rr_h);
+      rrmex('logout', obj);
     end
     function [found, varvalues] = GetServiceAttributes(obj)
       %GETSERVICEATTRIBUTES What the service tells of itself, as a containers.Map; as it was when
       %   the object was connected. varvalues has each as a RobotRaconteurVarValue, which tells its
       %   type.
-      [found, varvalues] = rrmex('attributes', obj.rr_h);
+      [found, varvalues] = rrmex('attributes', obj);
     end
     function listener = AddClientServiceListener(obj, handler)
       %ADDCLIENTSERVICELISTENER Hear of what happens to the session of an object, from Poll:
       %   handler('ClientClosed', why) when it has ended, whoever ended it,
       %   handler('ServicePathReleased', path) when the service has released an object.
-      listener = RobotRaconteurListener(rrmex('session_listen', obj.rr_h, handler));
+      listener = RobotRaconteurListener(rrmex('session_listen', obj, handler));
     end
     function type = FindObjectType(obj, member, varargin)
       %FINDOBJECTTYPE RobotRaconteur.FindObjectType(obj, objref, index): what type of object is
       %   there, as the service says, without getting it.
-      type = rrmex('find_object_type', obj.rr_h, member, varargin{:});
+      type = rrmex('find_object_type', obj, member, varargin{:});
     end
 
     function count = Poll(seconds)
@@ -71,7 +71,7 @@ classdef RobotRaconteur
     function EnableEvents(obj)
       %ENABLEEVENTS Events are delivered, which they are anyway, and at Octave's prompt without Poll.
       persistent is_hooked
-      rrmex('events', obj.rr_h, true);
+      rrmex('events', obj, true);
       if isempty(is_hooked) && exist('OCTAVE_VERSION', 'builtin') && isguirunning_or_prompt()
         add_input_event_hook(@() RobotRaconteur.Poll(0));
         is_hooked = true;
@@ -79,7 +79,7 @@ classdef RobotRaconteur
     end
     function DisableEvents(obj)
       %DISABLEEVENTS Events of the object's session are dropped until EnableEvents.
-      rrmex('events', obj.rr_h, false);
+      rrmex('events', obj, false);
     end
 
     function RequestObjectLock(obj, kind)
@@ -87,42 +87,42 @@ classdef RobotRaconteur
       if nargin < 2
         kind = 'User';
       end
-      rrmex('lock', obj.rr_h, kind);
+      rrmex('lock', obj, kind);
     end
     function ReleaseObjectLock(obj)
-      rrmex('unlock', obj.rr_h);
+      rrmex('unlock', obj);
     end
     function MonitorEnter(obj, seconds)
       %MONITORENTER Wait until this session alone may use the object.
       if nargin < 2
         seconds = -1;
       end
-      rrmex('monitor_enter', obj.rr_h, seconds);
+      rrmex('monitor_enter', obj, seconds);
     end
     function MonitorExit(obj)
-      rrmex('monitor_exit', obj.rr_h);
+      rrmex('monitor_exit', obj);
     end
 
     function made = CreateStructure(obj, name)
       %CREATESTRUCTURE A struct, pod or namedarray of a definition with all fields: 0, '', [].
-      made = rrmex('create', obj.rr_h, name);
+      made = rrmex('create', obj, name);
     end
     function found = GetConstants(obj, service)
       %GETCONSTANTS Constants and enums of a definition, in a struct; those of its structs and
       %   objects are structs in it.
       if nargin < 2
-        name = rrmex('about', obj.rr_h).type;
+        name = rrmex('about', obj).type;
         service = name(1:find(name == '.', 1, 'last') - 1);
       end
-      found = rrmex('constants', obj.rr_h, service);
+      found = rrmex('constants', obj, service);
     end
     function names = GetPulledServiceTypes(obj)
       %GETPULLEDSERVICETYPES Names of the definitions that the service has sent.
-      names = rrmex('definitions', obj.rr_h);
+      names = rrmex('definitions', obj);
     end
     function text = GetPulledServiceType(obj, name)
       %GETPULLEDSERVICETYPE The text of one of them.
-      text = rrmex('definition', obj.rr_h, name);
+      text = rrmex('definition', obj, name);
     end
 
     function sub = SubscribeService(url, username, credentials, object_type)

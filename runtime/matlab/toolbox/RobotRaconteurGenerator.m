@@ -7,7 +7,7 @@ classdef RobotRaconteurGenerator < RobotRaconteurHandle
     function value = Next(obj, varargin)
       %NEXT The next value; `parameter` for generators that take one. RobotRaconteur:StopIteration
       %   at the end.
-      [is_there, value] = rrmex('generator_next', obj.rr_h, varargin{:});
+      [is_there, value] = rrmex('generator_next', obj, varargin{:});
       if ~is_there
         RobotRaconteur.ThrowError(struct('name', 'RobotRaconteur.StopIteration', ...
                                          'message', 'the generator has ended'));
@@ -15,7 +15,7 @@ classdef RobotRaconteurGenerator < RobotRaconteurHandle
     end
     function [is_there, value] = TryNext(obj, varargin)
       %TRYNEXT [is_there, value], or with one result the cell {is_there, value}.
-      [is_there, value] = rrmex('generator_next', obj.rr_h, varargin{:});
+      [is_there, value] = rrmex('generator_next', obj, varargin{:});
       if nargout < 2
         is_there = {is_there, value};
       end
@@ -23,10 +23,10 @@ classdef RobotRaconteurGenerator < RobotRaconteurHandle
     function values = NextAll(obj)
       %NEXTALL All values that are left, in a column of cells.
       values = cell(0, 1);
-      [is_there, value] = rrmex('generator_next', obj.rr_h);
+      [is_there, value] = rrmex('generator_next', obj);
       while is_there
         values{end + 1, 1} = value;
-        [is_there, value] = rrmex('generator_next', obj.rr_h);
+        [is_there, value] = rrmex('generator_next', obj);
       end
     end
     function async_Next(obj, varargin)
@@ -40,15 +40,15 @@ classdef RobotRaconteurGenerator < RobotRaconteurHandle
       if isempty(varargin{3})
         varargin{3} = -1;
       end
-      rrmex('generator_async_next', obj.rr_h, varargin{1:3}, given{:});
+      rrmex('generator_async_next', obj, varargin{1:3}, given{:});
     end
     function Close(obj)
       %CLOSE No more values are wanted; the service ends its work in order.
-      rrmex('generator_end', obj.rr_h, false);
+      rrmex('generator_end', obj, false);
     end
     function Abort(obj)
       %ABORT The service is to break off.
-      rrmex('generator_end', obj.rr_h, true);
+      rrmex('generator_end', obj, true);
     end
   end
 end

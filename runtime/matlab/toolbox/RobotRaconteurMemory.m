@@ -16,26 +16,26 @@ classdef RobotRaconteurMemory < handle
     end
     function items = Read(obj, first, count)
       %READ m.Read([2 1], [3 1]): so many items in each dimension, from those counted from 1 on.
-      items = rrmex('memory_read', obj.rr_object.rr_h, obj.rr_name, first - 1, count);
+      items = rrmex('memory_read', obj.rr_object, obj.rr_name, first - 1, count);
     end
     function Write(obj, first, items)
       %WRITE m.Write([2 1], items): an array, to the place that begins there.
-      rrmex('memory_write', obj.rr_object.rr_h, obj.rr_name, first - 1, items);
+      rrmex('memory_write', obj.rr_object, obj.rr_name, first - 1, items);
     end
     function count = Length(obj)
       %LENGTH Items of a memory of one dimension.
-      count = rrmex('memory_length', obj.rr_object.rr_h, obj.rr_name);
+      count = rrmex('memory_length', obj.rr_object, obj.rr_name);
     end
     function dims = Dimensions(obj)
       %DIMENSIONS A row of sizes, as the service has them; size(m) has two at least.
-      dims = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
+      dims = rrmex('memory_dims', obj.rr_object, obj.rr_name);
     end
     function count = DimCount(obj)
       %DIMCOUNT How many dimensions it has.
-      count = rrmex('memory_dim_count', obj.rr_object.rr_h, obj.rr_name);
+      count = rrmex('memory_dim_count', obj.rr_object, obj.rr_name);
     end
     function varargout = size(obj, dimension)
-      dims = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
+      dims = rrmex('memory_dims', obj.rr_object, obj.rr_name);
       if nargin == 2
         varargout = rr_sizes(dims, 1, dimension);
       else
@@ -56,7 +56,7 @@ classdef RobotRaconteurMemory < handle
       answer = 1;
     end
     function last = end(obj, k, n)
-      dims = rrmex('memory_dims', obj.rr_object.rr_h, obj.rr_name);
+      dims = rrmex('memory_dims', obj.rr_object, obj.rr_name);
       dims(end + 1:n) = 1;
       last = dims(k);
       if n == 1
@@ -69,7 +69,7 @@ classdef RobotRaconteurMemory < handle
         return
       end
       [first, count, picked] = rr_memory_ranges(s(1), obj);
-      items = rrmex('memory_read', obj.rr_object.rr_h, obj.rr_name, first - 1, count);
+      items = rrmex('memory_read', obj.rr_object, obj.rr_name, first - 1, count);
       items = rr_memory_pick(items, count, picked, numel(s(1).subs));
       if numel(s) > 1
         items = subsref(items, s(2:end));
@@ -87,7 +87,7 @@ classdef RobotRaconteurMemory < handle
       end
       items = rr_memory_shape(items, count);
       if prod(count) ~= 0
-        rrmex('memory_write', obj.rr_object.rr_h, obj.rr_name, first - 1, items);
+        rrmex('memory_write', obj.rr_object, obj.rr_name, first - 1, items);
       end
     end
     function disp(obj)

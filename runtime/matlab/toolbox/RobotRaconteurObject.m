@@ -1,4 +1,4 @@
-classdef RobotRaconteurObject < handle
+classdef RobotRaconteurObject < RobotRaconteurStub
   %ROBOTRACONTEUROBJECT An object of a service, with the members that the service says it has.
   %   value = obj.property;  obj.property = value;
   %   result = obj.function_name(arguments);  obj.function_name
@@ -7,106 +7,26 @@ classdef RobotRaconteurObject < handle
   %   obj.callback = @f;  l = addlistener(obj, 'event', @f);
   %   obj.async_function_name(arguments, @handler, parameter, seconds)
   %   methods(obj) lists the members. See also RobotRaconteur.
-  properties (Hidden)
-    rr_h = uint64(0);
-  end
   methods
     function obj = RobotRaconteurObject(number)
       obj.rr_h = number;
     end
 
     function varargout = subsref(obj, s)
-      if ~strcmp(s(1).type, '.')
-        error('RobotRaconteur:InvalidOperation', 'an object of a service has no index');
-      end
-      name = s(1).subs;
-      if strncmp(name, 'rr_', 3)
-        [varargout{1:nargout}] = builtin('subsref', obj, s);
-        return
-      end
-      called = numel(s) > 1 && strcmp(s(2).type, '()');
-      given = {};
-      if called
-        given = s(2).subs;
-      end
-      if strncmp(name, 'async_', 6)
-        rr_start(obj, name(7:end), given);
-        varargout = {};
-        return
-      end
-      if any(strcmp(name, {'delete', 'disp', 'isvalid', 'addlistener'}))
-        [varargout{1:nargout}] = feval(name, obj, given{:});
-        return
-      end
-      [value, kind] = rrmex('access', obj.rr_h, name, called, given{:});
-      used = 1;
-      switch kind
-        case 1
-          used = 1 + called;
-        case 2
-          varargout = {};
-          return
-        case {3, 4}
-          value = rr_wrap(obj, value, kind);
-          used = 1 + called;
-        otherwise
-          value = rr_wrap(obj, value, kind);
-      end
-      if numel(s) > used
-        if called && used == 1 && isempty(given)
-          used = 2;
-        end
-      end
-      if numel(s) > used
-        rest = s(used + 1:end);
-        count = max(nargout, 1);
-        if nargout == 0 && rr_is_void(rest)
-          count = 0;
-        end
-        [varargout{1:count}] = subsref(value, rest);
+      % Each line here takes the interpreter longer than the MEX file needs for all of it.
+      [value, left] = rrmex('subsref', obj, s);
+      if left
+        varargout = rr_go_on(obj, s, nargout, value, left);
       else
         varargout = {value};
       end
     end
 
     function obj = subsasgn(obj, s, value)
-      if ~strcmp(s(1).type, '.')
-        error('RobotRaconteur:InvalidOperation', 'an object of a service has no index');
+      left = rrmex('subsasgn', obj, s, value);
+      if left
+        obj = rr_assign_rest(obj, s, value, left);
       end
-      name = s(1).subs;
-      if strncmp(name, 'rr_', 3)
-        obj = builtin('subsasgn', obj, s, value);
-        return
-      end
-      if numel(s) > 1
-        part = subsref(obj, s(1));
-        value = subsasgn(part, s(2:end), value);
-        if isa(part, 'RobotRaconteurMemory') || isa(part, 'RobotRaconteurWire')
-          return
-        end
-      end
-      rrmex('assign', obj.rr_h, name, value);
-    end
-
-    function listener = addlistener(obj, event, handler)
-      %ADDLISTENER Call handler(parameters...) for each event; delete(listener) ends it.
-      listener = RobotRaconteurListener(rrmex('listen', obj.rr_h, event, handler));
-    end
-
-    function delete(obj)
-      if obj.rr_h ~= 0
-        rrmex('close', obj.rr_h);
-        obj.rr_h = uint64(0);
-      end
-    end
-
-    function answer = eq(a, b)
-      answer = isa(a, 'RobotRaconteurObject') && isa(b, 'RobotRaconteurObject') && ...
-               rrmex('same', a.rr_h, b.rr_h);
-    end
-
-    function answer = ne(a, b)
-      answer = ~(a == b);
     end
 
     function answer = numel(obj, varargin)
@@ -119,7 +39,7 @@ classdef RobotRaconteurObject < handle
 
     function names = properties(obj)
       %PROPERTIES Names of the properties, wires, pipes, memories and callbacks.
-      [names, declarations] = rrmex('members', obj.rr_h);
+      [names, declarations] = rrmex('members', obj);
       names = names(cellfun(@isempty, regexp(declarations, '^(function|objref|event)')));
       if nargout == 0
         fprintf('  %s\n', names{:});
@@ -129,9 +49,9 @@ classdef RobotRaconteurObject < handle
 
     function found = methods(obj)
       %METHODS The members as their definition declares them; with a result, how they are called.
-      [names, declarations] = rrmex('members', obj.rr_h);
+      [names, declarations] = rrmex('members', obj);
       if nargout == 0
-        fprintf('Members of %s:\n', rrmex('about', obj.rr_h).type);
+        fprintf('Members of %s:\n', rrmex('about', obj).type);
         fprintf('  %s\n', declarations{:});
         return
       end
@@ -146,36 +66,8 @@ classdef RobotRaconteurObject < handle
       end
     end
 
-    function answer = ismethod(obj, name)
-      answer = any(strcmp(name, methods(obj)));
-    end
-
-    function answer = isprop(obj, name)
-      answer = any(strcmp(name, properties(obj)));
-    end
-
     function names = fieldnames(obj)
       names = properties(obj);
-    end
-
-    function text = type(obj)
-      %TYPE The type of the object, in full.
-      text = rrmex('about', obj.rr_h).type;
-    end
-
-    function text = members(obj)
-      %MEMBERS The declarations of the members, one in each cell.
-      [names, text] = rrmex('members', obj.rr_h);
-    end
-
-    function text = servicedef(obj)
-      %SERVICEDEF The definition in which the object is declared, as the service has sent it.
-      name = rrmex('about', obj.rr_h).type;
-      text = rrmex('definition', obj.rr_h, name(1:find(name == '.', 1, 'last') - 1));
-    end
-
-    function disp(obj)
-      rr_show(obj);
     end
 
     function display(obj)
@@ -185,26 +77,45 @@ classdef RobotRaconteurObject < handle
     end
   end
   methods (Access = private)
-    function rr_start(obj, name, given)
-      count = rrmex('parameter_count', obj.rr_h, name);
-      handler = [];
-      parameter = [];
-      seconds = -1;
-      if numel(given) > count
-        handler = given{count + 1};
+    function results = rr_go_on(obj, s, count, value, left)
+      % What the MEX file leaves to do, by the number that it gives: see commands_dotted.cpp.
+      results = {};
+      switch left(1)
+        case 2
+          return
+        case 8
+          [results{1:count}] = builtin('subsref', obj, s);
+          return
+        case 9
+          given = {};
+          if left(2) == 2
+            given = s(2).subs;
+          end
+          [results{1:count}] = feval(s(1).subs, obj, given{:});
+          return
       end
-      if numel(given) > count + 1
-        parameter = given{count + 2};
+      value = rr_wrap(obj, value, left(1));
+      rest = s(left(2) + 1:end);
+      if isempty(rest)
+        results = {value};
+        return
       end
-      if numel(given) > count + 2
-        seconds = given{count + 3};
+      if count == 0 && ~rr_is_void(rest)
+        count = 1;
       end
-      if numel(given) > count + 3
-        error('RobotRaconteur:InvalidArgument', ...
-              'async_%s: expected %d arguments, then handler, parameter, seconds', name, count);
+      [results{1:count}] = subsref(value, rest);
+    end
+
+    function obj = rr_assign_rest(obj, s, value, left)
+      if left == 8
+        obj = builtin('subsasgn', obj, s, value);
+        return
       end
-      rrmex('async', obj.rr_h, name, handler, parameter, seconds, ...
-            given{1:min(count, numel(given))});
+      part = subsref(obj, s(1));
+      value = subsasgn(part, s(2:end), value);
+      if ~isa(part, 'RobotRaconteurMemory') && ~isa(part, 'RobotRaconteurWire')
+        rrmex('assign', obj, s(1).subs, value);
+      end
     end
   end
 end

@@ -15,7 +15,7 @@ classdef RobotRaconteurPipe < handle
         index = -1;
       end
       endpoint = RobotRaconteurPipeEndpoint( ...
-        rrmex('pipe_connect', obj.rr_object.rr_h, obj.rr_name, index));
+        rrmex('pipe_connect', obj.rr_object, obj.rr_name, index));
     end
     function disp(obj)
       fprintf('  pipe %s\n', obj.rr_name);

@@ -13,37 +13,41 @@ classdef RobotRaconteurPipeEndpoint < RobotRaconteurHandle
       obj.rr_h = number;
     end
     function count = get.Available(obj)
-      count = rrmex('pipe_available', obj.rr_h);
+      count = rrmex('pipe_available', obj);
     end
     function index = get.Index(obj)
-      index = rrmex('pipe_about', obj.rr_h).index;
+      index = rrmex('pipe_about', obj).index;
     end
     function answer = get.IsOpen(obj)
-      answer = rrmex('pipe_about', obj.rr_h).is_open;
+      answer = rrmex('pipe_about', obj).is_open;
     end
     function count = get.LostCount(obj)
-      count = rrmex('pipe_about', obj.rr_h).lost_count;
+      count = rrmex('pipe_about', obj).lost_count;
     end
     function answer = get.IsUnreliable(obj)
-      answer = rrmex('pipe_about', obj.rr_h).is_unreliable;
+      answer = rrmex('pipe_about', obj).is_unreliable;
     end
     function answer = get.RequestPacketAck(obj)
-      answer = rrmex('pipe_about', obj.rr_h).wants_acks;
+      answer = rrmex('pipe_about', obj).wants_acks;
     end
     function set.RequestPacketAck(obj, is_on)
-      rrmex('pipe_ask_acks', obj.rr_h, is_on);
+      rrmex('pipe_ask_acks', obj, is_on);
     end
     function packet = ReceivePacket(obj)
       %RECEIVEPACKET The packet that has waited longest.
-      packet = rrmex('pipe_receive', obj.rr_h);
+      packet = rrmex('pipe_receive', obj);
     end
     function packet = ReceivePacketWait(obj, seconds)
-      %RECEIVEPACKETWAIT The next packet, waited for; RobotRaconteur:OperationTimeout for none.
+      %RECEIVEPACKETWAIT The next packet, waited for; RobotRaconteur:OperationTimeout for none,
+      %   InvalidOperation when the endpoint is closed.
       if nargin < 2
         seconds = -1;
       end
-      [has_come, packet] = rrmex('pipe_receive_wait', obj.rr_h, seconds, false);
-      if ~has_come
+      [has_come, packet] = rrmex('pipe_receive_wait', obj, seconds, false);
+      if ~has_come && ~obj.IsOpen
+        RobotRaconteur.ThrowError(struct('name', 'RobotRaconteur.InvalidOperation', ...
+                                         'message', 'the pipe endpoint is closed'));
+      elseif ~has_come
         RobotRaconteur.ThrowError(struct('name', 'RobotRaconteur.OperationTimeout', ...
                                          'message', 'no packet has come'));
       end
@@ -56,16 +60,16 @@ classdef RobotRaconteurPipeEndpoint < RobotRaconteurHandle
       if nargin < 3
         peek = false;
       end
-      [has_come, packet] = rrmex('pipe_receive_wait', obj.rr_h, seconds, peek);
+      [has_come, packet] = rrmex('pipe_receive_wait', obj, seconds, peek);
     end
     function number = SendPacket(obj, packet)
       %SENDPACKET Send a packet; its number.
-      number = rrmex('pipe_send', obj.rr_h, packet);
+      number = rrmex('pipe_send', obj, packet);
     end
     function SetQueueLimit(obj, packets, lost)
       %SETQUEUELIMIT When so many packets wait, the 'oldest' or 'newest' is lost, or the endpoint
       %   is closed: 'close', which is the default with 65,536 packets.
-      rrmex('pipe_queue_limit', obj.rr_h, packets, lost);
+      rrmex('pipe_queue_limit', obj, packets, lost);
     end
     function listener = addlistener(obj, event, handler)
       %ADDLISTENER addlistener(endpoint, 'PacketReceived', handler): handler(packet) for each
@@ -74,11 +78,11 @@ classdef RobotRaconteurPipeEndpoint < RobotRaconteurHandle
       %   service has it. 'PipeEndpointClosed': handler() when the endpoint is closed.
       switch event
         case {'PacketReceived', 'PacketReceivedEvent'}
-          number = rrmex('pipe_listen', obj.rr_h, handler);
+          number = rrmex('pipe_listen', obj, handler);
         case 'PacketAckReceived'
-          number = rrmex('pipe_hear', obj.rr_h, 'acknowledged', handler);
+          number = rrmex('pipe_hear', obj, 'acknowledged', handler);
         case 'PipeEndpointClosed'
-          number = rrmex('pipe_hear', obj.rr_h, 'closed', handler);
+          number = rrmex('pipe_hear', obj, 'closed', handler);
         otherwise
           error('RobotRaconteur:MemberNotFound', ...
                 'a pipe has the events PacketReceived, PacketAckReceived, PipeEndpointClosed');
@@ -86,7 +90,7 @@ classdef RobotRaconteurPipeEndpoint < RobotRaconteurHandle
       listener = RobotRaconteurListener(number);
     end
     function Close(obj)
-      rrmex('pipe_close', obj.rr_h);
+      rrmex('pipe_close', obj);
     end
     function disp(obj)
       fprintf('  endpoint of a pipe\n');

@@ -8,13 +8,13 @@ classdef RobotRaconteurPipeSubscription < RobotRaconteurHandle
       obj.rr_h = number;
     end
     function count = get.Available(obj)
-      count = rrmex('pipe_sub_available', obj.rr_h);
+      count = rrmex('pipe_sub_available', obj);
     end
     function [packet, client] = ReceivePacketWait(obj, seconds)
       if nargin < 2
         seconds = -1;
       end
-      [has_come, packet, client] = rrmex('pipe_sub_receive', obj.rr_h, seconds);
+      [has_come, packet, client] = rrmex('pipe_sub_receive', obj, seconds);
       if ~has_come
         RobotRaconteur.ThrowError(struct('name', 'RobotRaconteur.OperationTimeout', ...
                                          'message', 'no packet has come'));
@@ -27,14 +27,14 @@ classdef RobotRaconteurPipeSubscription < RobotRaconteurHandle
       if nargin < 2
         seconds = 0;
       end
-      [has_come, packet, client] = rrmex('pipe_sub_receive', obj.rr_h, seconds);
+      [has_come, packet, client] = rrmex('pipe_sub_receive', obj, seconds);
     end
     function count = SendPacketAll(obj, packet)
       %SENDPACKETALL Send to all clients that are connected now; how many these are.
-      count = rrmex('pipe_sub_send', obj.rr_h, packet);
+      count = rrmex('pipe_sub_send', obj, packet);
     end
     function text = GetLastError(obj)
-      text = rrmex('member_sub_error', obj.rr_h, 'pipe');
+      text = rrmex('member_sub_error', obj, 'pipe');
     end
     function Close(obj)
       delete(obj);

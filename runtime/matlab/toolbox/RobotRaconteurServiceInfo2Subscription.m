@@ -6,14 +6,14 @@ classdef RobotRaconteurServiceInfo2Subscription < RobotRaconteurHandle
     end
     function found = GetDetectedServiceInfo2(obj)
       %GETDETECTEDSERVICEINFO2 Those that are there now, as a struct array.
-      found = rrmex('info_services', obj.rr_h);
+      found = rrmex('info_services', obj);
     end
     function listener = addlistener(obj, event, handler)
       %ADDLISTENER ServiceDetected and ServiceLost: handler(service).
-      listener = RobotRaconteurListener(rrmex('info_listen', obj.rr_h, event, handler));
+      listener = RobotRaconteurListener(rrmex('info_listen', obj, event, handler));
     end
     function Close(obj)
-      rrmex('info_close', obj.rr_h);
+      rrmex('info_close', obj);
     end
   end
 end

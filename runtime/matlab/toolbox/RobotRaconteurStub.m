@@ -1,31 +1,26 @@
-classdef RobotRaconteurStub < handle
-  %ROBOTRACONTEURSTUB The base of the classes that robdef generates for the objects of a definition.
-  %   They are used as a RobotRaconteurObject, and in its place wherever one is taken, but their
-  %   members are listed in the class, with help, and faster.
-  properties (Hidden)
-    rr_h = uint64(0);
-  end
+classdef RobotRaconteurStub < RobotRaconteurHandle
+  %ROBOTRACONTEURSTUB An object of a service, whatever is known of its members.
+  %   The base of RobotRaconteurObject and of the classes that robdef generates for the objects of
+  %   a definition. These are used in its place wherever one is taken, but their members are
+  %   listed in the class, with help, and faster.
   methods
     function obj = RobotRaconteurStub(type, names, varargin)
+      if nargin == 0
+        return  % the number is known already
+      end
       if isempty(varargin)
         error('RobotRaconteur:InvalidArgument', 'expected a URL, or an object');
       end
       other = varargin{1};
-      if ~isa(other, 'RobotRaconteurObject') && ~isa(other, 'RobotRaconteurStub')
+      if ~isa(other, 'RobotRaconteurStub')
         other = RobotRaconteur.ConnectService(varargin{:});
       end
-      obj.rr_h = rrmex('typed', other.rr_h, type, names);
-    end
-
-    function delete(obj)
-      if obj.rr_h ~= 0
-        rrmex('close', obj.rr_h);
-        obj.rr_h = uint64(0);
-      end
+      obj.rr_h = rrmex('typed', other, type, names);
     end
 
     function answer = eq(a, b)
-      answer = rrmex('same', a.rr_h, b.rr_h);
+      answer = isa(a, 'RobotRaconteurStub') && isa(b, 'RobotRaconteurStub') && ...
+               rrmex('same', a, b);
     end
 
     function answer = ne(a, b)
@@ -34,7 +29,7 @@ classdef RobotRaconteurStub < handle
 
     function listener = addlistener(obj, event, handler)
       %ADDLISTENER Call handler(parameters...) for each event; delete(listener) ends it.
-      listener = RobotRaconteurListener(rrmex('listen', obj.rr_h, event, handler));
+      listener = RobotRaconteurListener(rrmex('listen', obj, event, handler));
     end
 
     function answer = ismethod(obj, name)
@@ -47,18 +42,18 @@ classdef RobotRaconteurStub < handle
 
     function text = type(obj)
       %TYPE The type of the object, in full; it may be one that implements the class's.
-      text = rrmex('about', obj.rr_h).type;
+      text = rrmex('about', obj).type;
     end
 
     function text = members(obj)
       %MEMBERS The declarations of the members, one in each cell.
-      [names, text] = rrmex('members', obj.rr_h);
+      [names, text] = rrmex('members', obj);
     end
 
     function text = servicedef(obj)
       %SERVICEDEF The definition in which the object is declared, as the service has sent it.
-      name = rrmex('about', obj.rr_h).type;
-      text = rrmex('definition', obj.rr_h, name(1:find(name == '.', 1, 'last') - 1));
+      name = rrmex('about', obj).type;
+      text = rrmex('definition', obj, name(1:find(name == '.', 1, 'last') - 1));
     end
 
     function disp(obj)
@@ -66,29 +61,23 @@ classdef RobotRaconteurStub < handle
     end
 
     function value = rr_access(obj, name, varargin)
-      [value, kind] = rrmex('access', obj.rr_h, name, true, varargin{:});
+      [value, kind] = rrmex('access', obj, name, varargin{:});
       value = rr_wrap(obj, value, kind);
     end
 
     function rr_assign(obj, name, value)
-      rrmex('assign', obj.rr_h, name, value);
+      rrmex('assign', obj, name, value);
     end
 
     function rr_written(obj, name, value)
       % The part of a memory has been written when the memory itself comes back.
       if ~isa(value, 'RobotRaconteurMemory')
-        rrmex('assign', obj.rr_h, name, value);
+        rrmex('assign', obj, name, value);
       end
     end
 
     function rr_async(obj, name, given, handler, more)
-      if numel(more) > 2
-        error('RobotRaconteur:InvalidArgument', ...
-              '%s: expected handler, parameter, seconds', name);
-      end
-      rest = {[], -1};
-      rest(1:numel(more)) = more;
-      rrmex('async', obj.rr_h, name(7:end), handler, rest{:}, given{:});
+      rrmex('async', obj, name(7:end), given{:}, handler, more{:});
     end
   end
 

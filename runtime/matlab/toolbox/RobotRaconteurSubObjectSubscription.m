@@ -8,13 +8,13 @@ classdef RobotRaconteurSubObjectSubscription < RobotRaconteurHandle
       if nargin < 2
         seconds = -1;
       end
-      client = RobotRaconteurObject(rrmex('object_sub_wait', obj.rr_h, seconds));
+      client = RobotRaconteurObject(rrmex('object_sub_wait', obj, seconds));
     end
     function client = GetDefaultClient(obj)
       client = GetDefaultClientWait(obj, 0);
     end
     function text = GetLastError(obj)
-      text = rrmex('member_sub_error', obj.rr_h, 'objects');
+      text = rrmex('member_sub_error', obj, 'objects');
     end
     function Close(obj)
       delete(obj);

@@ -6,11 +6,11 @@ classdef RobotRaconteurSubscription < RobotRaconteurHandle
     end
     function client = GetDefaultClient(obj)
       %GETDEFAULTCLIENT The client that is connected longest.
-      client = RobotRaconteurObject(rrmex('sub_default', obj.rr_h));
+      client = RobotRaconteurObject(rrmex('sub_default', obj));
     end
     function [has_one, client] = TryGetDefaultClient(obj)
       %TRYGETDEFAULTCLIENT [has_one, client]
-      number = rrmex('sub_try_default', obj.rr_h);
+      number = rrmex('sub_try_default', obj);
       has_one = number ~= 0;
       client = [];
       if has_one
@@ -22,44 +22,44 @@ classdef RobotRaconteurSubscription < RobotRaconteurHandle
       if nargin < 2
         seconds = -1;
       end
-      client = RobotRaconteurObject(rrmex('sub_wait', obj.rr_h, seconds));
+      client = RobotRaconteurObject(rrmex('sub_wait', obj, seconds));
     end
     function found = GetConnectedClients(obj)
       %GETCONNECTEDCLIENTS Cells of structs with NodeID, ServiceName, Client.
-      [found, numbers] = rrmex('sub_clients', obj.rr_h);
+      [found, numbers] = rrmex('sub_clients', obj);
       for i = 1:numel(found)
         found{i}.Client = RobotRaconteurObject(numbers{i});
       end
     end
     function found = GetClientConnectFailures(obj)
       %GETCLIENTCONNECTFAILURES Cells of structs with URLs, Message, Identifier, Failures.
-      found = rrmex('sub_failures', obj.rr_h);
+      found = rrmex('sub_failures', obj);
     end
     function claim = ClaimClient(obj, client)
       %CLAIMCLIENT Keep a client when the subscription is closed; ReleaseClient gives it back.
-      claim = rrmex('sub_claim', obj.rr_h, client.rr_h);
+      claim = rrmex('sub_claim', obj, client.rr_h);
     end
     function ReleaseClient(obj, claim)
-      rrmex('sub_release', obj.rr_h, claim);
+      rrmex('sub_release', obj, claim);
     end
     function UpdateServiceURL(obj, urls)
-      rrmex('sub_update_urls', obj.rr_h, urls);
+      rrmex('sub_update_urls', obj, urls);
     end
     function UpdateServiceByType(obj, types, filter)
       if nargin < 3
         filter = struct();
       end
-      rrmex('sub_update_types', obj.rr_h, types, filter);
+      rrmex('sub_update_types', obj, types, filter);
     end
     function SetConnectRetryDelay(obj, seconds)
-      rrmex('sub_retry_delay', obj.rr_h, seconds);
+      rrmex('sub_retry_delay', obj, seconds);
     end
     function wire = SubscribeWire(obj, name, path)
       %SUBSCRIBEWIRE A wire of all clients, now and later; path as '*.tool'.
       if nargin < 3
         path = '';
       end
-      wire = RobotRaconteurWireSubscription(rrmex('wire_sub', obj.rr_h, name, path));
+      wire = RobotRaconteurWireSubscription(rrmex('wire_sub', obj, name, path));
     end
     function pipe = SubscribePipe(obj, name, path, most)
       %SUBSCRIBEPIPE A pipe likewise; at most so many packets wait, 0 for any number.
@@ -69,19 +69,19 @@ classdef RobotRaconteurSubscription < RobotRaconteurHandle
       if nargin < 4
         most = 0;
       end
-      pipe = RobotRaconteurPipeSubscription(rrmex('pipe_sub', obj.rr_h, name, path, most));
+      pipe = RobotRaconteurPipeSubscription(rrmex('pipe_sub', obj, name, path, most));
     end
     function objects = SubscribeSubObject(obj, path)
       %SUBSCRIBESUBOBJECT An object below the root, as '*.tool'.
-      objects = RobotRaconteurSubObjectSubscription(rrmex('object_sub', obj.rr_h, path));
+      objects = RobotRaconteurSubObjectSubscription(rrmex('object_sub', obj, path));
     end
     function listener = addlistener(obj, event, handler)
       %ADDLISTENER ClientConnected and ClientDisconnected: handler(id, why); ClientConnectFailed:
       %   handler(url, why). From RobotRaconteur.Poll.
-      listener = RobotRaconteurListener(rrmex('sub_listen', obj.rr_h, event, handler));
+      listener = RobotRaconteurListener(rrmex('sub_listen', obj, event, handler));
     end
     function Close(obj)
-      rrmex('sub_close', obj.rr_h);
+      rrmex('sub_close', obj);
     end
     function disp(obj)
       fprintf('  subscription\n');

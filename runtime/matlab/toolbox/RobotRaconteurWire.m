@@ -11,19 +11,19 @@ classdef RobotRaconteurWire < handle
     end
     function connection = Connect(obj)
       %CONNECT From now on values arrive in the background.
-      connection = RobotRaconteurWireConnection(rrmex('wire_connect', obj.rr_object.rr_h, obj.rr_name));
+      connection = RobotRaconteurWireConnection(rrmex('wire_connect', obj.rr_object, obj.rr_name));
     end
     function [value, time] = PeekInValue(obj)
       %PEEKINVALUE The service's value now, and when it was set.
-      [value, time] = rrmex('wire_peek', obj.rr_object.rr_h, obj.rr_name, false);
+      [value, time] = rrmex('wire_peek', obj.rr_object, obj.rr_name, false);
     end
     function [value, time] = PeekOutValue(obj)
       %PEEKOUTVALUE The value that the service has received last.
-      [value, time] = rrmex('wire_peek', obj.rr_object.rr_h, obj.rr_name, true);
+      [value, time] = rrmex('wire_peek', obj.rr_object, obj.rr_name, true);
     end
     function PokeOutValue(obj, value)
       %POKEOUTVALUE Send a value without connecting.
-      rrmex('wire_poke', obj.rr_object.rr_h, obj.rr_name, value);
+      rrmex('wire_poke', obj.rr_object, obj.rr_name, value);
     end
     function disp(obj)
       fprintf('  wire %s\n', obj.rr_name);

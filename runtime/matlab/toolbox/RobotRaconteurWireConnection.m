@@ -17,41 +17,41 @@ classdef RobotRaconteurWireConnection < RobotRaconteurHandle
       obj.rr_h = number;
     end
     function value = get.InValue(obj)
-      value = rrmex('wire_in', obj.rr_h);
+      value = rrmex('wire_in', obj);
     end
     function value = get.OutValue(obj)
-      value = rrmex('wire_out', obj.rr_h);
+      value = rrmex('wire_out', obj);
     end
     function set.OutValue(obj, value)
-      rrmex('wire_set_out', obj.rr_h, value);
+      rrmex('wire_set_out', obj, value);
     end
     function answer = get.InValueValid(obj)
-      answer = rrmex('wire_try_in', obj.rr_h);
+      answer = rrmex('wire_try_in', obj);
     end
     function answer = get.OutValueValid(obj)
-      answer = rrmex('wire_has_out', obj.rr_h);
+      answer = rrmex('wire_has_out', obj);
     end
     function seconds = get.InValueLifespan(obj)
-      seconds = rrmex('wire_lifespan', obj.rr_h);
+      seconds = rrmex('wire_lifespan', obj);
     end
     function set.InValueLifespan(obj, seconds)
-      rrmex('wire_lifespan', obj.rr_h, seconds);
+      rrmex('wire_lifespan', obj, seconds);
     end
     function time = get.LastValueReceivedTime(obj)
-      [value, time] = rrmex('wire_in', obj.rr_h);
+      [value, time] = rrmex('wire_in', obj);
     end
     function time = get.LastValueSentTime(obj)
-      [value, time] = rrmex('wire_out', obj.rr_h);
+      [value, time] = rrmex('wire_out', obj);
     end
     function answer = get.IsOpen(obj)
-      answer = rrmex('wire_is_open', obj.rr_h);
+      answer = rrmex('wire_is_open', obj);
     end
     function [is_valid, value, time] = TryGetInValue(obj)
       %TRYGETINVALUE [is_valid, value, time]
       value = [];
       time = [];
-      if rrmex('wire_try_in', obj.rr_h)
-        [is_valid, value, time] = rrmex('wire_try_in', obj.rr_h);
+      if rrmex('wire_try_in', obj)
+        [is_valid, value, time] = rrmex('wire_try_in', obj);
       else
         is_valid = false;
       end
@@ -61,7 +61,7 @@ classdef RobotRaconteurWireConnection < RobotRaconteurHandle
       if nargin < 2
         seconds = -1;
       end
-      answer = rrmex('wire_wait', obj.rr_h, seconds);
+      answer = rrmex('wire_wait', obj, seconds);
     end
     function listener = addlistener(obj, event, handler)
       %ADDLISTENER addlistener(wire, 'WireValueChanged', handler): handler(value, time) for the
@@ -69,9 +69,9 @@ classdef RobotRaconteurWireConnection < RobotRaconteurHandle
       %   connection is closed.
       switch event
         case 'WireValueChanged'
-          number = rrmex('wire_listen', obj.rr_h, handler);
+          number = rrmex('wire_listen', obj, handler);
         case 'WireConnectionClosed'
-          number = rrmex('wire_hear', obj.rr_h, handler);
+          number = rrmex('wire_hear', obj, handler);
         otherwise
           error('RobotRaconteur:MemberNotFound', ...
                 'a wire has the events WireValueChanged, WireConnectionClosed');
@@ -79,7 +79,7 @@ classdef RobotRaconteurWireConnection < RobotRaconteurHandle
       listener = RobotRaconteurListener(number);
     end
     function Close(obj)
-      rrmex('wire_close', obj.rr_h);
+      rrmex('wire_close', obj);
     end
     function disp(obj)
       fprintf('  connected wire\n');

@@ -8,7 +8,7 @@ end
 subs = s.subs;
 dims = Inf;  % the service says what lies outside
 if ~rr_says_all(subs, memory)
-  dims = rrmex('memory_dims', memory.rr_object.rr_h, memory.rr_name);
+  dims = rrmex('memory_dims', memory.rr_object, memory.rr_name);
 end
 rank = numel(dims);
 is_all = @(x) ischar(x) && strcmp(x, ':');
@@ -52,7 +52,7 @@ function answer = rr_says_all(subs, memory)
 % Whether the service need not be asked how large the memory is.
 answer = numel(subs) == 1 && isnumeric(subs{1}) && ~isempty(subs{1}) && ...
          all(subs{1}(:) >= 1 & subs{1}(:) == fix(subs{1}(:))) && ...
-         rrmex('memory_is_flat', memory.rr_object.rr_h, memory.rr_name);
+         rrmex('memory_is_flat', memory.rr_object, memory.rr_name);
 end
 
 function answer = rr_is_one(index)

@@ -4,13 +4,13 @@ function rr_show(obj)
     fprintf('  closed object of a service\n');
     return
   end
-  about = rrmex('about', obj.rr_h);
+  about = rrmex('about', obj);
   fprintf('  %s at %s\n', about.type, about.path);
   if ~about.is_open
     fprintf('  the connection has ended\n');
     return
   end
-  [names, declarations] = rrmex('members', obj.rr_h);
+  [names, declarations] = rrmex('members', obj);
   for i = 1:numel(names)
     fprintf('    %s%s\n', declarations{i}, rr_shown_value(obj, names{i}, declarations{i}));
   end

@@ -4,9 +4,9 @@ text = '';
 kind = strtok(declaration);
 try
   if strcmp(kind, 'property')
-    value = rrmex('access', obj.rr_h, name, false);
+    value = rrmex('access', obj, name);
   elseif strcmp(kind, 'wire')
-    value = rrmex('wire_peek', obj.rr_h, name, false);
+    value = rrmex('wire_peek', obj, name, false);
   else
     return
   end

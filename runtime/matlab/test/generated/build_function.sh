@@ -1,28 +1,28 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs a build, generates classes with the installed compiler, builds their MEX file with the build
-# function that stands beside them, and uses it. For `./check --long`: it takes a minute or two.
-# Usage: build_function.sh BUILD
+# As a user does it: installs a build, generates classes with the installed compiler, builds their MEX
+# file with the function that stands beside them, and uses a service with it.
+# Usage: build_function.sh BUILD [OCTAVE]
 set -euo pipefail
 build=$(cd "$1" && pwd)
-top=$(cd "$(dirname "$0")/../../../.." && pwd)
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+octave=${2:-octave-cli}
+here=$(cd "$(dirname "$0")" && pwd)
+source "$here/../with_service.sh"
+start_service "$build/tests/matlab_test_service"
+
 cmake --install "$build" --prefix "$work/installed" > "$work/install.log"
-"$work/installed/bin/robdef" generate --lang matlab -o "$work/classes" \
-  "$top/conformance/definitions/RobotCameraHost_interface.robdef"
-cd "$work/classes"
+"$work/installed/bin/robdef" generate --lang matlab -o "$work/classes" "$here/../experimental.bench.robdef"
 toolbox=$work/installed/share/robdef/matlab
-octave-cli --norc --path "$toolbox" --eval \
-  "build_RobotCameraHost_interface_client('$work/installed')"
-octave-cli --norc --path "$work/classes" --path "$toolbox" --eval "
+cd "$work/classes"
+"$octave" --norc --path "$toolbox" --eval "build_experimental_bench_client('$work/installed', '-O0')"
+# From elsewhere: nothing of the build is beside it.
+cd "$work"
+"$octave" --norc --path "$work/classes" --path "$toolbox" --eval "
   assert(which('rrmex'), '$work/classes/rrmex.mex');
-  value = RobotCameraHost_interface.CameraBitmap('width', 3);
-  assert(value.width, int32(3));
-  try
-    RobotCameraHost_interface.CameraHost('rr+tcp://127.0.0.1:1/?service=x');
-    error('connected');
-  catch err
-    assert(err.identifier, 'RobotRaconteur:ConnectionError');
-  end"
+  r = experimental.bench.Report('count', 3);
+  c = experimental.bench.Bench('rr+tcp://127.0.0.1:$RR_TEST_PORT/?service=bench');
+  assert(c.fixed, int32(17));
+  c.report = r;
+  assert(c.report.count, int32(3));
+  assert(c.get_tool().say('x'), 'the tool: x');"
 echo "built with the function beside the classes, and used"

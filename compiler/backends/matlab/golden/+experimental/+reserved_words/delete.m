@@ -318,10 +318,10 @@ classdef delete < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.alignas(obj)
-            value = rrmex('member', obj.rr_h, 0);
+            value = rrmex('member', obj, 0);
         end
         function set.alignas(obj, value)
-            rrmex('member', obj.rr_h, 0, value);
+            rrmex('member', obj, 0, value);
         end
         function value = get_alignas(obj)
             %get_alignas The same as object.alignas.
@@ -340,10 +340,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_alignas', {value}, handler, varargin);
         end
         function value = get.alignof(obj)
-            value = rrmex('member', obj.rr_h, 1);
+            value = rrmex('member', obj, 1);
         end
         function set.alignof(obj, value)
-            rrmex('member', obj.rr_h, 1, value);
+            rrmex('member', obj, 1, value);
         end
         function value = get_alignof(obj)
             %get_alignof The same as object.alignof.
@@ -362,10 +362,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_alignof', {value}, handler, varargin);
         end
         function value = get.and(obj)
-            value = rrmex('member', obj.rr_h, 2);
+            value = rrmex('member', obj, 2);
         end
         function set.and(obj, value)
-            rrmex('member', obj.rr_h, 2, value);
+            rrmex('member', obj, 2, value);
         end
         function value = get_and(obj)
             %get_and The same as object.and.
@@ -384,10 +384,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_and', {value}, handler, varargin);
         end
         function value = get.and_eq(obj)
-            value = rrmex('member', obj.rr_h, 3);
+            value = rrmex('member', obj, 3);
         end
         function set.and_eq(obj, value)
-            rrmex('member', obj.rr_h, 3, value);
+            rrmex('member', obj, 3, value);
         end
         function value = get_and_eq(obj)
             %get_and_eq The same as object.and_eq.
@@ -406,10 +406,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_and_eq', {value}, handler, varargin);
         end
         function value = get.asm(obj)
-            value = rrmex('member', obj.rr_h, 4);
+            value = rrmex('member', obj, 4);
         end
         function set.asm(obj, value)
-            rrmex('member', obj.rr_h, 4, value);
+            rrmex('member', obj, 4, value);
         end
         function value = get_asm(obj)
             %get_asm The same as object.asm.
@@ -428,10 +428,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_asm', {value}, handler, varargin);
         end
         function value = get.auto(obj)
-            value = rrmex('member', obj.rr_h, 5);
+            value = rrmex('member', obj, 5);
         end
         function set.auto(obj, value)
-            rrmex('member', obj.rr_h, 5, value);
+            rrmex('member', obj, 5, value);
         end
         function value = get_auto(obj)
             %get_auto The same as object.auto.
@@ -450,10 +450,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_auto', {value}, handler, varargin);
         end
         function value = get.bitand(obj)
-            value = rrmex('member', obj.rr_h, 6);
+            value = rrmex('member', obj, 6);
         end
         function set.bitand(obj, value)
-            rrmex('member', obj.rr_h, 6, value);
+            rrmex('member', obj, 6, value);
         end
         function value = get_bitand(obj)
             %get_bitand The same as object.bitand.
@@ -472,10 +472,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_bitand', {value}, handler, varargin);
         end
         function value = get.bitor(obj)
-            value = rrmex('member', obj.rr_h, 7);
+            value = rrmex('member', obj, 7);
         end
         function set.bitor(obj, value)
-            rrmex('member', obj.rr_h, 7, value);
+            rrmex('member', obj, 7, value);
         end
         function value = get_bitor(obj)
             %get_bitor The same as object.bitor.
@@ -494,10 +494,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_bitor', {value}, handler, varargin);
         end
         function value = get.break_(obj)
-            value = rrmex('member', obj.rr_h, 8);
+            value = rrmex('member', obj, 8);
         end
         function set.break_(obj, value)
-            rrmex('member', obj.rr_h, 8, value);
+            rrmex('member', obj, 8, value);
         end
         function value = get_break(obj)
             %get_break The same as object.break_.
@@ -516,10 +516,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_break', {value}, handler, varargin);
         end
         function value = get.case_(obj)
-            value = rrmex('member', obj.rr_h, 9);
+            value = rrmex('member', obj, 9);
         end
         function set.case_(obj, value)
-            rrmex('member', obj.rr_h, 9, value);
+            rrmex('member', obj, 9, value);
         end
         function value = get_case(obj)
             %get_case The same as object.case_.
@@ -538,10 +538,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_case', {value}, handler, varargin);
         end
         function value = get.catch_(obj)
-            value = rrmex('member', obj.rr_h, 10);
+            value = rrmex('member', obj, 10);
         end
         function set.catch_(obj, value)
-            rrmex('member', obj.rr_h, 10, value);
+            rrmex('member', obj, 10, value);
         end
         function value = get_catch(obj)
             %get_catch The same as object.catch_.
@@ -560,10 +560,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_catch', {value}, handler, varargin);
         end
         function value = get.char(obj)
-            value = rrmex('member', obj.rr_h, 11);
+            value = rrmex('member', obj, 11);
         end
         function set.char(obj, value)
-            rrmex('member', obj.rr_h, 11, value);
+            rrmex('member', obj, 11, value);
         end
         function value = get_char(obj)
             %get_char The same as object.char.
@@ -582,10 +582,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_char', {value}, handler, varargin);
         end
         function value = get.char16_t(obj)
-            value = rrmex('member', obj.rr_h, 12);
+            value = rrmex('member', obj, 12);
         end
         function set.char16_t(obj, value)
-            rrmex('member', obj.rr_h, 12, value);
+            rrmex('member', obj, 12, value);
         end
         function value = get_char16_t(obj)
             %get_char16_t The same as object.char16_t.
@@ -604,10 +604,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_char16_t', {value}, handler, varargin);
         end
         function value = get.char32_t(obj)
-            value = rrmex('member', obj.rr_h, 13);
+            value = rrmex('member', obj, 13);
         end
         function set.char32_t(obj, value)
-            rrmex('member', obj.rr_h, 13, value);
+            rrmex('member', obj, 13, value);
         end
         function value = get_char32_t(obj)
             %get_char32_t The same as object.char32_t.
@@ -626,10 +626,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_char32_t', {value}, handler, varargin);
         end
         function value = get.char8_t(obj)
-            value = rrmex('member', obj.rr_h, 14);
+            value = rrmex('member', obj, 14);
         end
         function set.char8_t(obj, value)
-            rrmex('member', obj.rr_h, 14, value);
+            rrmex('member', obj, 14, value);
         end
         function value = get_char8_t(obj)
             %get_char8_t The same as object.char8_t.
@@ -648,10 +648,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_char8_t', {value}, handler, varargin);
         end
         function value = get.class(obj)
-            value = rrmex('member', obj.rr_h, 15);
+            value = rrmex('member', obj, 15);
         end
         function set.class(obj, value)
-            rrmex('member', obj.rr_h, 15, value);
+            rrmex('member', obj, 15, value);
         end
         function value = get_class(obj)
             %get_class The same as object.class.
@@ -670,10 +670,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_class', {value}, handler, varargin);
         end
         function value = get.co_await(obj)
-            value = rrmex('member', obj.rr_h, 16);
+            value = rrmex('member', obj, 16);
         end
         function set.co_await(obj, value)
-            rrmex('member', obj.rr_h, 16, value);
+            rrmex('member', obj, 16, value);
         end
         function value = get_co_await(obj)
             %get_co_await The same as object.co_await.
@@ -692,10 +692,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_co_await', {value}, handler, varargin);
         end
         function value = get.co_return(obj)
-            value = rrmex('member', obj.rr_h, 17);
+            value = rrmex('member', obj, 17);
         end
         function set.co_return(obj, value)
-            rrmex('member', obj.rr_h, 17, value);
+            rrmex('member', obj, 17, value);
         end
         function value = get_co_return(obj)
             %get_co_return The same as object.co_return.
@@ -714,10 +714,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_co_return', {value}, handler, varargin);
         end
         function value = get.co_yield(obj)
-            value = rrmex('member', obj.rr_h, 18);
+            value = rrmex('member', obj, 18);
         end
         function set.co_yield(obj, value)
-            rrmex('member', obj.rr_h, 18, value);
+            rrmex('member', obj, 18, value);
         end
         function value = get_co_yield(obj)
             %get_co_yield The same as object.co_yield.
@@ -736,10 +736,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_co_yield', {value}, handler, varargin);
         end
         function value = get.compl(obj)
-            value = rrmex('member', obj.rr_h, 19);
+            value = rrmex('member', obj, 19);
         end
         function set.compl(obj, value)
-            rrmex('member', obj.rr_h, 19, value);
+            rrmex('member', obj, 19, value);
         end
         function value = get_compl(obj)
             %get_compl The same as object.compl.
@@ -758,10 +758,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_compl', {value}, handler, varargin);
         end
         function value = get.concept(obj)
-            value = rrmex('member', obj.rr_h, 20);
+            value = rrmex('member', obj, 20);
         end
         function set.concept(obj, value)
-            rrmex('member', obj.rr_h, 20, value);
+            rrmex('member', obj, 20, value);
         end
         function value = get_concept(obj)
             %get_concept The same as object.concept.
@@ -780,10 +780,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_concept', {value}, handler, varargin);
         end
         function value = get.const(obj)
-            value = rrmex('member', obj.rr_h, 21);
+            value = rrmex('member', obj, 21);
         end
         function set.const(obj, value)
-            rrmex('member', obj.rr_h, 21, value);
+            rrmex('member', obj, 21, value);
         end
         function value = get_const(obj)
             %get_const The same as object.const.
@@ -802,10 +802,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_const', {value}, handler, varargin);
         end
         function value = get.const_cast(obj)
-            value = rrmex('member', obj.rr_h, 22);
+            value = rrmex('member', obj, 22);
         end
         function set.const_cast(obj, value)
-            rrmex('member', obj.rr_h, 22, value);
+            rrmex('member', obj, 22, value);
         end
         function value = get_const_cast(obj)
             %get_const_cast The same as object.const_cast.
@@ -824,10 +824,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_const_cast', {value}, handler, varargin);
         end
         function value = get.consteval(obj)
-            value = rrmex('member', obj.rr_h, 23);
+            value = rrmex('member', obj, 23);
         end
         function set.consteval(obj, value)
-            rrmex('member', obj.rr_h, 23, value);
+            rrmex('member', obj, 23, value);
         end
         function value = get_consteval(obj)
             %get_consteval The same as object.consteval.
@@ -846,10 +846,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_consteval', {value}, handler, varargin);
         end
         function value = get.constexpr(obj)
-            value = rrmex('member', obj.rr_h, 24);
+            value = rrmex('member', obj, 24);
         end
         function set.constexpr(obj, value)
-            rrmex('member', obj.rr_h, 24, value);
+            rrmex('member', obj, 24, value);
         end
         function value = get_constexpr(obj)
             %get_constexpr The same as object.constexpr.
@@ -868,10 +868,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_constexpr', {value}, handler, varargin);
         end
         function value = get.constinit(obj)
-            value = rrmex('member', obj.rr_h, 25);
+            value = rrmex('member', obj, 25);
         end
         function set.constinit(obj, value)
-            rrmex('member', obj.rr_h, 25, value);
+            rrmex('member', obj, 25, value);
         end
         function value = get_constinit(obj)
             %get_constinit The same as object.constinit.
@@ -890,10 +890,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_constinit', {value}, handler, varargin);
         end
         function value = get.continue_(obj)
-            value = rrmex('member', obj.rr_h, 26);
+            value = rrmex('member', obj, 26);
         end
         function set.continue_(obj, value)
-            rrmex('member', obj.rr_h, 26, value);
+            rrmex('member', obj, 26, value);
         end
         function value = get_continue(obj)
             %get_continue The same as object.continue_.
@@ -912,10 +912,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_continue', {value}, handler, varargin);
         end
         function value = get.decltype(obj)
-            value = rrmex('member', obj.rr_h, 27);
+            value = rrmex('member', obj, 27);
         end
         function set.decltype(obj, value)
-            rrmex('member', obj.rr_h, 27, value);
+            rrmex('member', obj, 27, value);
         end
         function value = get_decltype(obj)
             %get_decltype The same as object.decltype.
@@ -934,10 +934,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_decltype', {value}, handler, varargin);
         end
         function value = get.default(obj)
-            value = rrmex('member', obj.rr_h, 28);
+            value = rrmex('member', obj, 28);
         end
         function set.default(obj, value)
-            rrmex('member', obj.rr_h, 28, value);
+            rrmex('member', obj, 28, value);
         end
         function value = get_default(obj)
             %get_default The same as object.default.
@@ -956,10 +956,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_default', {value}, handler, varargin);
         end
         function value = get.delete_(obj)
-            value = rrmex('member', obj.rr_h, 29);
+            value = rrmex('member', obj, 29);
         end
         function set.delete_(obj, value)
-            rrmex('member', obj.rr_h, 29, value);
+            rrmex('member', obj, 29, value);
         end
         function value = get_delete(obj)
             %get_delete The same as object.delete_.
@@ -978,10 +978,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_delete', {value}, handler, varargin);
         end
         function value = get.do_(obj)
-            value = rrmex('member', obj.rr_h, 30);
+            value = rrmex('member', obj, 30);
         end
         function set.do_(obj, value)
-            rrmex('member', obj.rr_h, 30, value);
+            rrmex('member', obj, 30, value);
         end
         function value = get_do(obj)
             %get_do The same as object.do_.
@@ -1000,10 +1000,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_do', {value}, handler, varargin);
         end
         function value = get.dynamic_cast(obj)
-            value = rrmex('member', obj.rr_h, 31);
+            value = rrmex('member', obj, 31);
         end
         function set.dynamic_cast(obj, value)
-            rrmex('member', obj.rr_h, 31, value);
+            rrmex('member', obj, 31, value);
         end
         function value = get_dynamic_cast(obj)
             %get_dynamic_cast The same as object.dynamic_cast.
@@ -1022,10 +1022,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_dynamic_cast', {value}, handler, varargin);
         end
         function value = get.else_(obj)
-            value = rrmex('member', obj.rr_h, 32);
+            value = rrmex('member', obj, 32);
         end
         function set.else_(obj, value)
-            rrmex('member', obj.rr_h, 32, value);
+            rrmex('member', obj, 32, value);
         end
         function value = get_else(obj)
             %get_else The same as object.else_.
@@ -1044,10 +1044,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_else', {value}, handler, varargin);
         end
         function value = get.explicit(obj)
-            value = rrmex('member', obj.rr_h, 33);
+            value = rrmex('member', obj, 33);
         end
         function set.explicit(obj, value)
-            rrmex('member', obj.rr_h, 33, value);
+            rrmex('member', obj, 33, value);
         end
         function value = get_explicit(obj)
             %get_explicit The same as object.explicit.
@@ -1066,10 +1066,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_explicit', {value}, handler, varargin);
         end
         function value = get.export(obj)
-            value = rrmex('member', obj.rr_h, 34);
+            value = rrmex('member', obj, 34);
         end
         function set.export(obj, value)
-            rrmex('member', obj.rr_h, 34, value);
+            rrmex('member', obj, 34, value);
         end
         function value = get_export(obj)
             %get_export The same as object.export.
@@ -1088,10 +1088,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_export', {value}, handler, varargin);
         end
         function value = get.extern(obj)
-            value = rrmex('member', obj.rr_h, 35);
+            value = rrmex('member', obj, 35);
         end
         function set.extern(obj, value)
-            rrmex('member', obj.rr_h, 35, value);
+            rrmex('member', obj, 35, value);
         end
         function value = get_extern(obj)
             %get_extern The same as object.extern.
@@ -1110,10 +1110,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_extern', {value}, handler, varargin);
         end
         function value = get.false(obj)
-            value = rrmex('member', obj.rr_h, 36);
+            value = rrmex('member', obj, 36);
         end
         function set.false(obj, value)
-            rrmex('member', obj.rr_h, 36, value);
+            rrmex('member', obj, 36, value);
         end
         function value = get_false(obj)
             %get_false The same as object.false.
@@ -1132,10 +1132,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_false', {value}, handler, varargin);
         end
         function value = get.float(obj)
-            value = rrmex('member', obj.rr_h, 37);
+            value = rrmex('member', obj, 37);
         end
         function set.float(obj, value)
-            rrmex('member', obj.rr_h, 37, value);
+            rrmex('member', obj, 37, value);
         end
         function value = get_float(obj)
             %get_float The same as object.float.
@@ -1154,10 +1154,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_float', {value}, handler, varargin);
         end
         function value = get.for_(obj)
-            value = rrmex('member', obj.rr_h, 38);
+            value = rrmex('member', obj, 38);
         end
         function set.for_(obj, value)
-            rrmex('member', obj.rr_h, 38, value);
+            rrmex('member', obj, 38, value);
         end
         function value = get_for(obj)
             %get_for The same as object.for_.
@@ -1176,10 +1176,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_for', {value}, handler, varargin);
         end
         function value = get.friend(obj)
-            value = rrmex('member', obj.rr_h, 39);
+            value = rrmex('member', obj, 39);
         end
         function set.friend(obj, value)
-            rrmex('member', obj.rr_h, 39, value);
+            rrmex('member', obj, 39, value);
         end
         function value = get_friend(obj)
             %get_friend The same as object.friend.
@@ -1198,10 +1198,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_friend', {value}, handler, varargin);
         end
         function value = get.goto(obj)
-            value = rrmex('member', obj.rr_h, 40);
+            value = rrmex('member', obj, 40);
         end
         function set.goto(obj, value)
-            rrmex('member', obj.rr_h, 40, value);
+            rrmex('member', obj, 40, value);
         end
         function value = get_goto(obj)
             %get_goto The same as object.goto.
@@ -1220,10 +1220,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_goto', {value}, handler, varargin);
         end
         function value = get.if_(obj)
-            value = rrmex('member', obj.rr_h, 41);
+            value = rrmex('member', obj, 41);
         end
         function set.if_(obj, value)
-            rrmex('member', obj.rr_h, 41, value);
+            rrmex('member', obj, 41, value);
         end
         function value = get_if(obj)
             %get_if The same as object.if_.
@@ -1242,10 +1242,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_if', {value}, handler, varargin);
         end
         function value = get.inline(obj)
-            value = rrmex('member', obj.rr_h, 42);
+            value = rrmex('member', obj, 42);
         end
         function set.inline(obj, value)
-            rrmex('member', obj.rr_h, 42, value);
+            rrmex('member', obj, 42, value);
         end
         function value = get_inline(obj)
             %get_inline The same as object.inline.
@@ -1264,10 +1264,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_inline', {value}, handler, varargin);
         end
         function value = get.int(obj)
-            value = rrmex('member', obj.rr_h, 43);
+            value = rrmex('member', obj, 43);
         end
         function set.int(obj, value)
-            rrmex('member', obj.rr_h, 43, value);
+            rrmex('member', obj, 43, value);
         end
         function value = get_int(obj)
             %get_int The same as object.int.
@@ -1286,10 +1286,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_int', {value}, handler, varargin);
         end
         function value = get.long(obj)
-            value = rrmex('member', obj.rr_h, 44);
+            value = rrmex('member', obj, 44);
         end
         function set.long(obj, value)
-            rrmex('member', obj.rr_h, 44, value);
+            rrmex('member', obj, 44, value);
         end
         function value = get_long(obj)
             %get_long The same as object.long.
@@ -1308,10 +1308,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_long', {value}, handler, varargin);
         end
         function value = get.mutable(obj)
-            value = rrmex('member', obj.rr_h, 45);
+            value = rrmex('member', obj, 45);
         end
         function set.mutable(obj, value)
-            rrmex('member', obj.rr_h, 45, value);
+            rrmex('member', obj, 45, value);
         end
         function value = get_mutable(obj)
             %get_mutable The same as object.mutable.
@@ -1330,10 +1330,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_mutable', {value}, handler, varargin);
         end
         function value = get.namespace(obj)
-            value = rrmex('member', obj.rr_h, 46);
+            value = rrmex('member', obj, 46);
         end
         function set.namespace(obj, value)
-            rrmex('member', obj.rr_h, 46, value);
+            rrmex('member', obj, 46, value);
         end
         function value = get_namespace(obj)
             %get_namespace The same as object.namespace.
@@ -1352,10 +1352,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_namespace', {value}, handler, varargin);
         end
         function value = get.new(obj)
-            value = rrmex('member', obj.rr_h, 47);
+            value = rrmex('member', obj, 47);
         end
         function set.new(obj, value)
-            rrmex('member', obj.rr_h, 47, value);
+            rrmex('member', obj, 47, value);
         end
         function value = get_new(obj)
             %get_new The same as object.new.
@@ -1374,10 +1374,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_new', {value}, handler, varargin);
         end
         function value = get.noexcept(obj)
-            value = rrmex('member', obj.rr_h, 48);
+            value = rrmex('member', obj, 48);
         end
         function set.noexcept(obj, value)
-            rrmex('member', obj.rr_h, 48, value);
+            rrmex('member', obj, 48, value);
         end
         function value = get_noexcept(obj)
             %get_noexcept The same as object.noexcept.
@@ -1396,10 +1396,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_noexcept', {value}, handler, varargin);
         end
         function value = get.not(obj)
-            value = rrmex('member', obj.rr_h, 49);
+            value = rrmex('member', obj, 49);
         end
         function set.not(obj, value)
-            rrmex('member', obj.rr_h, 49, value);
+            rrmex('member', obj, 49, value);
         end
         function value = get_not(obj)
             %get_not The same as object.not.
@@ -1418,10 +1418,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_not', {value}, handler, varargin);
         end
         function value = get.not_eq(obj)
-            value = rrmex('member', obj.rr_h, 50);
+            value = rrmex('member', obj, 50);
         end
         function set.not_eq(obj, value)
-            rrmex('member', obj.rr_h, 50, value);
+            rrmex('member', obj, 50, value);
         end
         function value = get_not_eq(obj)
             %get_not_eq The same as object.not_eq.
@@ -1440,10 +1440,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_not_eq', {value}, handler, varargin);
         end
         function value = get.nullptr(obj)
-            value = rrmex('member', obj.rr_h, 51);
+            value = rrmex('member', obj, 51);
         end
         function set.nullptr(obj, value)
-            rrmex('member', obj.rr_h, 51, value);
+            rrmex('member', obj, 51, value);
         end
         function value = get_nullptr(obj)
             %get_nullptr The same as object.nullptr.
@@ -1462,10 +1462,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_nullptr', {value}, handler, varargin);
         end
         function value = get.operator(obj)
-            value = rrmex('member', obj.rr_h, 52);
+            value = rrmex('member', obj, 52);
         end
         function set.operator(obj, value)
-            rrmex('member', obj.rr_h, 52, value);
+            rrmex('member', obj, 52, value);
         end
         function value = get_operator(obj)
             %get_operator The same as object.operator.
@@ -1484,10 +1484,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_operator', {value}, handler, varargin);
         end
         function value = get.or(obj)
-            value = rrmex('member', obj.rr_h, 53);
+            value = rrmex('member', obj, 53);
         end
         function set.or(obj, value)
-            rrmex('member', obj.rr_h, 53, value);
+            rrmex('member', obj, 53, value);
         end
         function value = get_or(obj)
             %get_or The same as object.or.
@@ -1506,10 +1506,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_or', {value}, handler, varargin);
         end
         function value = get.or_eq(obj)
-            value = rrmex('member', obj.rr_h, 54);
+            value = rrmex('member', obj, 54);
         end
         function set.or_eq(obj, value)
-            rrmex('member', obj.rr_h, 54, value);
+            rrmex('member', obj, 54, value);
         end
         function value = get_or_eq(obj)
             %get_or_eq The same as object.or_eq.
@@ -1528,10 +1528,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_or_eq', {value}, handler, varargin);
         end
         function value = get.private(obj)
-            value = rrmex('member', obj.rr_h, 55);
+            value = rrmex('member', obj, 55);
         end
         function set.private(obj, value)
-            rrmex('member', obj.rr_h, 55, value);
+            rrmex('member', obj, 55, value);
         end
         function value = get_private(obj)
             %get_private The same as object.private.
@@ -1550,10 +1550,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_private', {value}, handler, varargin);
         end
         function value = get.protected(obj)
-            value = rrmex('member', obj.rr_h, 56);
+            value = rrmex('member', obj, 56);
         end
         function set.protected(obj, value)
-            rrmex('member', obj.rr_h, 56, value);
+            rrmex('member', obj, 56, value);
         end
         function value = get_protected(obj)
             %get_protected The same as object.protected.
@@ -1572,10 +1572,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_protected', {value}, handler, varargin);
         end
         function value = get.public(obj)
-            value = rrmex('member', obj.rr_h, 57);
+            value = rrmex('member', obj, 57);
         end
         function set.public(obj, value)
-            rrmex('member', obj.rr_h, 57, value);
+            rrmex('member', obj, 57, value);
         end
         function value = get_public(obj)
             %get_public The same as object.public.
@@ -1594,10 +1594,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_public', {value}, handler, varargin);
         end
         function value = get.register(obj)
-            value = rrmex('member', obj.rr_h, 58);
+            value = rrmex('member', obj, 58);
         end
         function set.register(obj, value)
-            rrmex('member', obj.rr_h, 58, value);
+            rrmex('member', obj, 58, value);
         end
         function value = get_register(obj)
             %get_register The same as object.register.
@@ -1616,10 +1616,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_register', {value}, handler, varargin);
         end
         function value = get.reinterpret_cast(obj)
-            value = rrmex('member', obj.rr_h, 59);
+            value = rrmex('member', obj, 59);
         end
         function set.reinterpret_cast(obj, value)
-            rrmex('member', obj.rr_h, 59, value);
+            rrmex('member', obj, 59, value);
         end
         function value = get_reinterpret_cast(obj)
             %get_reinterpret_cast The same as object.reinterpret_cast.
@@ -1638,10 +1638,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_reinterpret_cast', {value}, handler, varargin);
         end
         function value = get.requires(obj)
-            value = rrmex('member', obj.rr_h, 60);
+            value = rrmex('member', obj, 60);
         end
         function set.requires(obj, value)
-            rrmex('member', obj.rr_h, 60, value);
+            rrmex('member', obj, 60, value);
         end
         function value = get_requires(obj)
             %get_requires The same as object.requires.
@@ -1660,10 +1660,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_requires', {value}, handler, varargin);
         end
         function value = get.return_(obj)
-            value = rrmex('member', obj.rr_h, 61);
+            value = rrmex('member', obj, 61);
         end
         function set.return_(obj, value)
-            rrmex('member', obj.rr_h, 61, value);
+            rrmex('member', obj, 61, value);
         end
         function value = get_return(obj)
             %get_return The same as object.return_.
@@ -1682,10 +1682,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_return', {value}, handler, varargin);
         end
         function value = get.short(obj)
-            value = rrmex('member', obj.rr_h, 62);
+            value = rrmex('member', obj, 62);
         end
         function set.short(obj, value)
-            rrmex('member', obj.rr_h, 62, value);
+            rrmex('member', obj, 62, value);
         end
         function value = get_short(obj)
             %get_short The same as object.short.
@@ -1704,10 +1704,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_short', {value}, handler, varargin);
         end
         function value = get.signed(obj)
-            value = rrmex('member', obj.rr_h, 63);
+            value = rrmex('member', obj, 63);
         end
         function set.signed(obj, value)
-            rrmex('member', obj.rr_h, 63, value);
+            rrmex('member', obj, 63, value);
         end
         function value = get_signed(obj)
             %get_signed The same as object.signed.
@@ -1726,10 +1726,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_signed', {value}, handler, varargin);
         end
         function value = get.sizeof(obj)
-            value = rrmex('member', obj.rr_h, 64);
+            value = rrmex('member', obj, 64);
         end
         function set.sizeof(obj, value)
-            rrmex('member', obj.rr_h, 64, value);
+            rrmex('member', obj, 64, value);
         end
         function value = get_sizeof(obj)
             %get_sizeof The same as object.sizeof.
@@ -1748,10 +1748,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_sizeof', {value}, handler, varargin);
         end
         function value = get.static(obj)
-            value = rrmex('member', obj.rr_h, 65);
+            value = rrmex('member', obj, 65);
         end
         function set.static(obj, value)
-            rrmex('member', obj.rr_h, 65, value);
+            rrmex('member', obj, 65, value);
         end
         function value = get_static(obj)
             %get_static The same as object.static.
@@ -1770,10 +1770,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_static', {value}, handler, varargin);
         end
         function value = get.static_assert(obj)
-            value = rrmex('member', obj.rr_h, 66);
+            value = rrmex('member', obj, 66);
         end
         function set.static_assert(obj, value)
-            rrmex('member', obj.rr_h, 66, value);
+            rrmex('member', obj, 66, value);
         end
         function value = get_static_assert(obj)
             %get_static_assert The same as object.static_assert.
@@ -1792,10 +1792,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_static_assert', {value}, handler, varargin);
         end
         function value = get.static_cast(obj)
-            value = rrmex('member', obj.rr_h, 67);
+            value = rrmex('member', obj, 67);
         end
         function set.static_cast(obj, value)
-            rrmex('member', obj.rr_h, 67, value);
+            rrmex('member', obj, 67, value);
         end
         function value = get_static_cast(obj)
             %get_static_cast The same as object.static_cast.
@@ -1814,10 +1814,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_static_cast', {value}, handler, varargin);
         end
         function value = get.switch_(obj)
-            value = rrmex('member', obj.rr_h, 68);
+            value = rrmex('member', obj, 68);
         end
         function set.switch_(obj, value)
-            rrmex('member', obj.rr_h, 68, value);
+            rrmex('member', obj, 68, value);
         end
         function value = get_switch(obj)
             %get_switch The same as object.switch_.
@@ -1836,10 +1836,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_switch', {value}, handler, varargin);
         end
         function value = get.template(obj)
-            value = rrmex('member', obj.rr_h, 69);
+            value = rrmex('member', obj, 69);
         end
         function set.template(obj, value)
-            rrmex('member', obj.rr_h, 69, value);
+            rrmex('member', obj, 69, value);
         end
         function value = get_template(obj)
             %get_template The same as object.template.
@@ -1858,10 +1858,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_template', {value}, handler, varargin);
         end
         function value = get.thread_local(obj)
-            value = rrmex('member', obj.rr_h, 70);
+            value = rrmex('member', obj, 70);
         end
         function set.thread_local(obj, value)
-            rrmex('member', obj.rr_h, 70, value);
+            rrmex('member', obj, 70, value);
         end
         function value = get_thread_local(obj)
             %get_thread_local The same as object.thread_local.
@@ -1880,10 +1880,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_thread_local', {value}, handler, varargin);
         end
         function value = get.throw(obj)
-            value = rrmex('member', obj.rr_h, 71);
+            value = rrmex('member', obj, 71);
         end
         function set.throw(obj, value)
-            rrmex('member', obj.rr_h, 71, value);
+            rrmex('member', obj, 71, value);
         end
         function value = get_throw(obj)
             %get_throw The same as object.throw.
@@ -1902,10 +1902,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_throw', {value}, handler, varargin);
         end
         function value = get.true(obj)
-            value = rrmex('member', obj.rr_h, 72);
+            value = rrmex('member', obj, 72);
         end
         function set.true(obj, value)
-            rrmex('member', obj.rr_h, 72, value);
+            rrmex('member', obj, 72, value);
         end
         function value = get_true(obj)
             %get_true The same as object.true.
@@ -1924,10 +1924,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_true', {value}, handler, varargin);
         end
         function value = get.try_(obj)
-            value = rrmex('member', obj.rr_h, 73);
+            value = rrmex('member', obj, 73);
         end
         function set.try_(obj, value)
-            rrmex('member', obj.rr_h, 73, value);
+            rrmex('member', obj, 73, value);
         end
         function value = get_try(obj)
             %get_try The same as object.try_.
@@ -1946,10 +1946,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_try', {value}, handler, varargin);
         end
         function value = get.typedef(obj)
-            value = rrmex('member', obj.rr_h, 74);
+            value = rrmex('member', obj, 74);
         end
         function set.typedef(obj, value)
-            rrmex('member', obj.rr_h, 74, value);
+            rrmex('member', obj, 74, value);
         end
         function value = get_typedef(obj)
             %get_typedef The same as object.typedef.
@@ -1968,10 +1968,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_typedef', {value}, handler, varargin);
         end
         function value = get.typeid(obj)
-            value = rrmex('member', obj.rr_h, 75);
+            value = rrmex('member', obj, 75);
         end
         function set.typeid(obj, value)
-            rrmex('member', obj.rr_h, 75, value);
+            rrmex('member', obj, 75, value);
         end
         function value = get_typeid(obj)
             %get_typeid The same as object.typeid.
@@ -1990,10 +1990,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_typeid', {value}, handler, varargin);
         end
         function value = get.typename(obj)
-            value = rrmex('member', obj.rr_h, 76);
+            value = rrmex('member', obj, 76);
         end
         function set.typename(obj, value)
-            rrmex('member', obj.rr_h, 76, value);
+            rrmex('member', obj, 76, value);
         end
         function value = get_typename(obj)
             %get_typename The same as object.typename.
@@ -2012,10 +2012,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_typename', {value}, handler, varargin);
         end
         function value = get.union(obj)
-            value = rrmex('member', obj.rr_h, 77);
+            value = rrmex('member', obj, 77);
         end
         function set.union(obj, value)
-            rrmex('member', obj.rr_h, 77, value);
+            rrmex('member', obj, 77, value);
         end
         function value = get_union(obj)
             %get_union The same as object.union.
@@ -2034,10 +2034,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_union', {value}, handler, varargin);
         end
         function value = get.unsigned(obj)
-            value = rrmex('member', obj.rr_h, 78);
+            value = rrmex('member', obj, 78);
         end
         function set.unsigned(obj, value)
-            rrmex('member', obj.rr_h, 78, value);
+            rrmex('member', obj, 78, value);
         end
         function value = get_unsigned(obj)
             %get_unsigned The same as object.unsigned.
@@ -2056,10 +2056,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_unsigned', {value}, handler, varargin);
         end
         function value = get.virtual(obj)
-            value = rrmex('member', obj.rr_h, 79);
+            value = rrmex('member', obj, 79);
         end
         function set.virtual(obj, value)
-            rrmex('member', obj.rr_h, 79, value);
+            rrmex('member', obj, 79, value);
         end
         function value = get_virtual(obj)
             %get_virtual The same as object.virtual.
@@ -2078,10 +2078,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_virtual', {value}, handler, varargin);
         end
         function value = get.volatile(obj)
-            value = rrmex('member', obj.rr_h, 80);
+            value = rrmex('member', obj, 80);
         end
         function set.volatile(obj, value)
-            rrmex('member', obj.rr_h, 80, value);
+            rrmex('member', obj, 80, value);
         end
         function value = get_volatile(obj)
             %get_volatile The same as object.volatile.
@@ -2100,10 +2100,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_volatile', {value}, handler, varargin);
         end
         function value = get.wchar_t(obj)
-            value = rrmex('member', obj.rr_h, 81);
+            value = rrmex('member', obj, 81);
         end
         function set.wchar_t(obj, value)
-            rrmex('member', obj.rr_h, 81, value);
+            rrmex('member', obj, 81, value);
         end
         function value = get_wchar_t(obj)
             %get_wchar_t The same as object.wchar_t.
@@ -2122,10 +2122,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_wchar_t', {value}, handler, varargin);
         end
         function value = get.while_(obj)
-            value = rrmex('member', obj.rr_h, 82);
+            value = rrmex('member', obj, 82);
         end
         function set.while_(obj, value)
-            rrmex('member', obj.rr_h, 82, value);
+            rrmex('member', obj, 82, value);
         end
         function value = get_while(obj)
             %get_while The same as object.while_.
@@ -2144,10 +2144,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_while', {value}, handler, varargin);
         end
         function value = get.xor(obj)
-            value = rrmex('member', obj.rr_h, 83);
+            value = rrmex('member', obj, 83);
         end
         function set.xor(obj, value)
-            rrmex('member', obj.rr_h, 83, value);
+            rrmex('member', obj, 83, value);
         end
         function value = get_xor(obj)
             %get_xor The same as object.xor.
@@ -2166,10 +2166,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_xor', {value}, handler, varargin);
         end
         function value = get.xor_eq(obj)
-            value = rrmex('member', obj.rr_h, 84);
+            value = rrmex('member', obj, 84);
         end
         function set.xor_eq(obj, value)
-            rrmex('member', obj.rr_h, 84, value);
+            rrmex('member', obj, 84, value);
         end
         function value = get_xor_eq(obj)
             %get_xor_eq The same as object.xor_eq.
@@ -2188,10 +2188,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_xor_eq', {value}, handler, varargin);
         end
         function value = get.assert(obj)
-            value = rrmex('member', obj.rr_h, 85);
+            value = rrmex('member', obj, 85);
         end
         function set.assert(obj, value)
-            rrmex('member', obj.rr_h, 85, value);
+            rrmex('member', obj, 85, value);
         end
         function value = get_assert(obj)
             %get_assert The same as object.assert.
@@ -2210,10 +2210,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_assert', {value}, handler, varargin);
         end
         function value = get.errno(obj)
-            value = rrmex('member', obj.rr_h, 86);
+            value = rrmex('member', obj, 86);
         end
         function set.errno(obj, value)
-            rrmex('member', obj.rr_h, 86, value);
+            rrmex('member', obj, 86, value);
         end
         function value = get_errno(obj)
             %get_errno The same as object.errno.
@@ -2232,10 +2232,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_errno', {value}, handler, varargin);
         end
         function value = get.linux(obj)
-            value = rrmex('member', obj.rr_h, 87);
+            value = rrmex('member', obj, 87);
         end
         function set.linux(obj, value)
-            rrmex('member', obj.rr_h, 87, value);
+            rrmex('member', obj, 87, value);
         end
         function value = get_linux(obj)
             %get_linux The same as object.linux.
@@ -2254,10 +2254,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_linux', {value}, handler, varargin);
         end
         function value = get.unix(obj)
-            value = rrmex('member', obj.rr_h, 88);
+            value = rrmex('member', obj, 88);
         end
         function set.unix(obj, value)
-            rrmex('member', obj.rr_h, 88, value);
+            rrmex('member', obj, 88, value);
         end
         function value = get_unix(obj)
             %get_unix The same as object.unix.
@@ -2276,10 +2276,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_unix', {value}, handler, varargin);
         end
         function value = get.major(obj)
-            value = rrmex('member', obj.rr_h, 89);
+            value = rrmex('member', obj, 89);
         end
         function set.major(obj, value)
-            rrmex('member', obj.rr_h, 89, value);
+            rrmex('member', obj, 89, value);
         end
         function value = get_major(obj)
             %get_major The same as object.major.
@@ -2298,10 +2298,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_major', {value}, handler, varargin);
         end
         function value = get.minor(obj)
-            value = rrmex('member', obj.rr_h, 90);
+            value = rrmex('member', obj, 90);
         end
         function set.minor(obj, value)
-            rrmex('member', obj.rr_h, 90, value);
+            rrmex('member', obj, 90, value);
         end
         function value = get_minor(obj)
             %get_minor The same as object.minor.
@@ -2320,10 +2320,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_minor', {value}, handler, varargin);
         end
         function value = get.EOF(obj)
-            value = rrmex('member', obj.rr_h, 91);
+            value = rrmex('member', obj, 91);
         end
         function set.EOF(obj, value)
-            rrmex('member', obj.rr_h, 91, value);
+            rrmex('member', obj, 91, value);
         end
         function value = get_EOF(obj)
             %get_EOF The same as object.EOF.
@@ -2342,10 +2342,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_EOF', {value}, handler, varargin);
         end
         function value = get.NULL(obj)
-            value = rrmex('member', obj.rr_h, 92);
+            value = rrmex('member', obj, 92);
         end
         function set.NULL(obj, value)
-            rrmex('member', obj.rr_h, 92, value);
+            rrmex('member', obj, 92, value);
         end
         function value = get_NULL(obj)
             %get_NULL The same as object.NULL.
@@ -2364,10 +2364,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_NULL', {value}, handler, varargin);
         end
         function value = get.INFINITY(obj)
-            value = rrmex('member', obj.rr_h, 93);
+            value = rrmex('member', obj, 93);
         end
         function set.INFINITY(obj, value)
-            rrmex('member', obj.rr_h, 93, value);
+            rrmex('member', obj, 93, value);
         end
         function value = get_INFINITY(obj)
             %get_INFINITY The same as object.INFINITY.
@@ -2386,10 +2386,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_INFINITY', {value}, handler, varargin);
         end
         function value = get.NAN(obj)
-            value = rrmex('member', obj.rr_h, 94);
+            value = rrmex('member', obj, 94);
         end
         function set.NAN(obj, value)
-            rrmex('member', obj.rr_h, 94, value);
+            rrmex('member', obj, 94, value);
         end
         function value = get_NAN(obj)
             %get_NAN The same as object.NAN.
@@ -2408,10 +2408,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_NAN', {value}, handler, varargin);
         end
         function value = get.RAND_MAX(obj)
-            value = rrmex('member', obj.rr_h, 95);
+            value = rrmex('member', obj, 95);
         end
         function set.RAND_MAX(obj, value)
-            rrmex('member', obj.rr_h, 95, value);
+            rrmex('member', obj, 95, value);
         end
         function value = get_RAND_MAX(obj)
             %get_RAND_MAX The same as object.RAND_MAX.
@@ -2430,10 +2430,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_RAND_MAX', {value}, handler, varargin);
         end
         function value = get.BUFSIZ(obj)
-            value = rrmex('member', obj.rr_h, 96);
+            value = rrmex('member', obj, 96);
         end
         function set.BUFSIZ(obj, value)
-            rrmex('member', obj.rr_h, 96, value);
+            rrmex('member', obj, 96, value);
         end
         function value = get_BUFSIZ(obj)
             %get_BUFSIZ The same as object.BUFSIZ.
@@ -2452,10 +2452,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_BUFSIZ', {value}, handler, varargin);
         end
         function value = get.SIGINT(obj)
-            value = rrmex('member', obj.rr_h, 97);
+            value = rrmex('member', obj, 97);
         end
         function set.SIGINT(obj, value)
-            rrmex('member', obj.rr_h, 97, value);
+            rrmex('member', obj, 97, value);
         end
         function value = get_SIGINT(obj)
             %get_SIGINT The same as object.SIGINT.
@@ -2474,10 +2474,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_SIGINT', {value}, handler, varargin);
         end
         function value = get.final(obj)
-            value = rrmex('member', obj.rr_h, 98);
+            value = rrmex('member', obj, 98);
         end
         function set.final(obj, value)
-            rrmex('member', obj.rr_h, 98, value);
+            rrmex('member', obj, 98, value);
         end
         function value = get_final(obj)
             %get_final The same as object.final.
@@ -2496,10 +2496,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_final', {value}, handler, varargin);
         end
         function value = get.override(obj)
-            value = rrmex('member', obj.rr_h, 99);
+            value = rrmex('member', obj, 99);
         end
         function set.override(obj, value)
-            rrmex('member', obj.rr_h, 99, value);
+            rrmex('member', obj, 99, value);
         end
         function value = get_override(obj)
             %get_override The same as object.override.
@@ -2518,10 +2518,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_override', {value}, handler, varargin);
         end
         function value = get.module(obj)
-            value = rrmex('member', obj.rr_h, 100);
+            value = rrmex('member', obj, 100);
         end
         function set.module(obj, value)
-            rrmex('member', obj.rr_h, 100, value);
+            rrmex('member', obj, 100, value);
         end
         function value = get_module(obj)
             %get_module The same as object.module.
