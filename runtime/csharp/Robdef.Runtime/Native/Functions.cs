@@ -8,7 +8,7 @@ namespace Robdef.Runtime.Native;
 internal static unsafe partial class Functions
 {
     private const string Library = "robdef_runtime";
-    private const uint Version = 0x00010000;
+    private const uint Version = 0x00010001;
 
     static Functions()
     {

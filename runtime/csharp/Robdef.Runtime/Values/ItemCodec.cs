@@ -50,6 +50,9 @@ public abstract class ItemCodec<T> : ValueCodec<T>
     /// <summary>Puts an array in front of what the writer holds.</summary>
     public abstract void WriteItems(ElementWriter writer, scoped in ElementKey key, scoped ReadOnlySpan<T> items);
 
+    /// <summary>The same for a whole array, which may stay where it is.</summary>
+    internal virtual void WriteArray(ElementWriter writer, scoped in ElementKey key, T[] items) => WriteItems(writer, key, items);
+
     /// <summary>How many items an element holds. Throws when it holds none of this type.</summary>
     public abstract int CountItems(scoped in Element element);
 

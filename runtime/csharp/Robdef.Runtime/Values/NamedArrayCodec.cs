@@ -52,6 +52,13 @@ public sealed class NamedArrayCodec<T, TNumber> : ItemCodec<T>, IRecordCodec
         writer.EndElement(begin, key, ElementType.NamedArray, _name, 1);
     }
 
+    internal override void WriteArray(ElementWriter writer, scoped in ElementKey key, T[] items)
+    {
+        int begin = writer.BeginElement();
+        writer.PrependArray("array"u8, _number.ArrayType, items, checked(items.Length * NumbersPerItem));
+        writer.EndElement(begin, key, ElementType.NamedArray, _name, 1);
+    }
+
     /// <inheritdoc/>
     public override T Read(scoped in Element element)
     {

@@ -36,6 +36,9 @@ internal sealed class NumberCodec<T>(ElementType type) : ItemCodec<T>
         writer.EndElement(begin, key, type, default, items.Length);
     }
 
+    internal override void WriteArray(ElementWriter writer, scoped in ElementKey key, T[] items) =>
+        writer.PrependArray(key, type, items, items.Length);
+
     public override int CountItems(scoped in Element element)
     {
         element.Expect(type);
