@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 using System;
+using System.Collections.Generic;
 using System.Diagnostics;
 using System.Globalization;
 using System.IO;
@@ -52,6 +53,32 @@ public sealed class EndingTests
         Held before = Held.Now();
         await Come(node, pair.Url, Cycles, isAsync);
         AssertNothingIsLeft(before);
+    }
+
+    [Fact]
+    public async Task A_disposed_client_has_let_go_of_its_socket_while_its_stub_is_held()
+    {
+        using var pair = new Pair();
+        using var node = new Node();
+        await Come(node, pair.Url, 20, isAsync: false);
+        int before = Held.Now().Files;
+        var stubs = new List<ArmStub>();
+        for (int i = 0; i < 30; ++i)
+        {
+            using Client<ArmStub> client = node.Connect<ArmStub>(pair.Url);
+            stubs.Add(client.Root);
+            client.Root.GetJoints(3).GetAngle();
+        }
+        int after = 0;
+        Assert.True(SpinWait.SpinUntil(() => (after = Directory.GetFiles("/proc/self/fd").Length) <= before, TimeSpan.FromSeconds(20)),
+            $"{before} files before, {after} after");
+        foreach (ArmStub stub in stubs)
+        {
+            RobdefException error = Assert.Throws<RobdefException>(() => stub.GetSpeed());
+            Assert.Equal(ErrorCode.ConnectionError, error.Code);
+            error = await Assert.ThrowsAsync<RobdefException>(() => stub.GetSpeedAsync());
+            Assert.Equal(ErrorCode.ConnectionError, error.Code);
+        }
     }
 
     [Fact]

@@ -29,6 +29,7 @@ internal sealed unsafe class MemoryTransfer<T>(Stub stub, string member, MemberA
 
     public void Read(ReadOnlySpan<ulong> position, ReadOnlySpan<ulong> count, Span<T> items)
     {
+        using RemoteUse target = _object.Use();
         ArgumentOutOfRangeException.ThrowIfNotEqual(count.Length, position.Length);
         using var name = new NativeText(member);
         RrMemoryType type = Type;
@@ -39,15 +40,16 @@ internal sealed unsafe class MemoryTransfer<T>(Stub stub, string member, MemberA
             {
                 fixed (byte* first = Bytes(items))
                 {
-                    int status = Functions.rr_memory_read(_object.Native, name.Value, &type, where, many, (nuint)position.Length,
+                    int status = Functions.rr_memory_read(target.Native, name.Value, &type, where, many, (nuint)position.Length,
                         first, (nuint)((long)items.Length * Unsafe.SizeOf<T>()), null, &error);
                     Failure.Check(status, error, _object.Types);
                 }
                 return;
             }
+            RemoteHandle remote = target.Native;
             var buffer = new T[items.Length];
             var pieces = new MemoryPieces<T>(codec, _object, buffer, count.ToArray(), isMulti);
-            Transfer(pieces, native => Functions.rr_memory_read_pieces(_object.Native, native.Name, native.Type, native.Position, native.Count,
+            Transfer(pieces, native => Functions.rr_memory_read_pieces(remote, native.Name, native.Type, native.Position, native.Count,
                 native.Dims, native.Pieces, null, native.Error), name.Value, &type, where, many, position.Length);
             buffer.CopyTo(items);
         }
@@ -55,6 +57,7 @@ internal sealed unsafe class MemoryTransfer<T>(Stub stub, string member, MemberA
 
     public void Write(ReadOnlySpan<ulong> position, ReadOnlySpan<ulong> count, ReadOnlySpan<T> items)
     {
+        using RemoteUse target = _object.Use();
         ArgumentOutOfRangeException.ThrowIfNotEqual(count.Length, position.Length);
         using var name = new NativeText(member);
         RrMemoryType type = Type;
@@ -65,14 +68,15 @@ internal sealed unsafe class MemoryTransfer<T>(Stub stub, string member, MemberA
             {
                 fixed (byte* first = Bytes(items))
                 {
-                    int status = Functions.rr_memory_write(_object.Native, name.Value, &type, where, many, (nuint)position.Length,
+                    int status = Functions.rr_memory_write(target.Native, name.Value, &type, where, many, (nuint)position.Length,
                         first, (nuint)((long)items.Length * Unsafe.SizeOf<T>()), null, &error);
                     Failure.Check(status, error, _object.Types);
                 }
                 return;
             }
+            RemoteHandle remote = target.Native;
             var pieces = new MemoryPieces<T>(codec, _object, items.ToArray(), count.ToArray(), isMulti);
-            Transfer(pieces, native => Functions.rr_memory_write_pieces(_object.Native, native.Name, native.Type, native.Position, native.Count,
+            Transfer(pieces, native => Functions.rr_memory_write_pieces(remote, native.Name, native.Type, native.Position, native.Count,
                 native.Dims, native.Pieces, null, native.Error), name.Value, &type, where, many, position.Length);
         }
     }
@@ -89,10 +93,11 @@ internal sealed unsafe class MemoryTransfer<T>(Stub stub, string member, MemberA
     private Task MoveAsync(bool isRead, ulong[] position, ulong[] count, ReadOnlyMemory<T> items, CancellationToken cancel)
     {
         ArgumentOutOfRangeException.ThrowIfNotEqual(count.Length, position.Length);
-        if (cancel.IsCancellationRequested)
+        if (_object.Refusal<bool>(cancel) is { } refused)
         {
-            return Task.FromCanceled(cancel);
+            return refused;
         }
+        using RemoteUse target = _object.Use();
         var completion = new TaskCompletion<bool>(_object.Types, static _ => true, cancel);
         MemoryHandle pinned = items.Pin();
         RrMemoryType type = Type;
@@ -106,8 +111,8 @@ internal sealed unsafe class MemoryTransfer<T>(Stub stub, string member, MemberA
         {
             var memberName = new RrStr { Data = name, Size = (nuint)_name.Length };
             status = isRead
-                ? Functions.rr_memory_read_async(_object.Native, memberName, &type, where, many, (nuint)position.Length, pinned.Pointer, size, &options, &native, &error)
-                : Functions.rr_memory_write_async(_object.Native, memberName, &type, where, many, (nuint)position.Length, pinned.Pointer, size, &options, &native, &error);
+                ? Functions.rr_memory_read_async(target.Native, memberName, &type, where, many, (nuint)position.Length, pinned.Pointer, size, &options, &native, &error)
+                : Functions.rr_memory_write_async(target.Native, memberName, &type, where, many, (nuint)position.Length, pinned.Pointer, size, &options, &native, &error);
         }
         Task task = status == 0 ? completion.Task : Task.FromException(completion.Abandon(native, status, error));
         task.ContinueWith(static (_, place) => ((MemoryHandle)place!).Dispose(), pinned, CancellationToken.None,
