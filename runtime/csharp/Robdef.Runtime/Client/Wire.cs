@@ -13,6 +13,24 @@ namespace Robdef.Runtime;
 /// <param name="Time">By the sender's clock.</param>
 public readonly record struct WireValue<T>(T Value, DateTimeOffset Time);
 
+/// <summary>Values of wires as the native runtime gives them.</summary>
+internal static class WireValues
+{
+    /// <summary>False when the status says that there is none; throws for any other failure.</summary>
+    public static bool TryTake<T>(int status, nint error, nint data, in RrTime time, ValueCodec<T> codec, KnownTypes types, out WireValue<T> value)
+    {
+        if (status == (int)ErrorCode.ValueNotSet)
+        {
+            _ = Failure.Take(status, error, types);
+            value = default;
+            return false;
+        }
+        Failure.Check(status, error, types);
+        value = new WireValue<T>(Elements.Take(data, codec, types.Registry), Times.ToDateTime(time));
+        return true;
+    }
+}
+
 /// <summary>A wire of an object on another node: of its values only the newest counts.</summary>
 /// <typeparam name="T">The value.</typeparam>
 public sealed class Wire<T>

@@ -247,6 +247,30 @@ internal static unsafe partial class Functions
     public static partial int rr_wire_subscription_received(SafeHandle wire, out nint value, RrTime* time, nint* error);
     [LibraryImport(Library)]
     public static partial int rr_wire_subscription_wait(SafeHandle wire, int timeoutMs);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_subscription_set_handler(SafeHandle wire, RrSubscriptionHandler* handler, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_subscribe(SafeHandle subscription, RrStr member, RrStr path, nuint maxReceived, out nint pipe, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_pipe_subscription_release(nint pipe);
+    [LibraryImport(Library)]
+    public static partial void rr_pipe_subscription_close(SafeHandle pipe);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_subscription_send(SafeHandle pipe, RrElements* packet, nuint* count, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_subscription_receive(SafeHandle pipe, out nint packet, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_subscription_wait(SafeHandle pipe, int timeoutMs);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_subscription_set_handler(SafeHandle pipe, RrSubscriptionHandler* handler, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_object_subscribe(SafeHandle subscription, RrStr path, out nint found, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_object_subscription_release(nint found);
+    [LibraryImport(Library)]
+    public static partial void rr_object_subscription_close(SafeHandle found);
+    [LibraryImport(Library)]
+    public static partial int rr_object_subscription_get(SafeHandle found, int waitMs, out nint remote, nint* error);
 
     [LibraryImport(Library)]
     public static partial int rr_definition_new(RrStr text, nint* imports, nuint count, out nint definition, nint* error);

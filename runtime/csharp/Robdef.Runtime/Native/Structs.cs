@@ -216,6 +216,16 @@ internal unsafe struct RrWireHandler
     public delegate* unmanaged[Cdecl]<nint, void> Drop;
 }
 
+/// <summary>rr_wire_subscription_handler and rr_pipe_subscription_handler, which differ in their function.</summary>
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct RrSubscriptionHandler
+{
+    public nuint Size;
+    public nint Context;
+    public void* OnReceived;
+    public delegate* unmanaged[Cdecl]<nint, void> Drop;
+}
+
 [StructLayout(LayoutKind.Sequential)]
 internal struct RrMember
 {
