@@ -83,7 +83,7 @@ void write_element(Writer& writer, const ElementName& name, const Element& eleme
                    const Origin& origin);
 
 /// How a Raw travels. Stands for every type of a definition.
-class RawType final : public Type {
+class RawType : public Type {
  public:
   constexpr RawType() = default;
   [[nodiscard]] ElementType element_type() const override { return ElementType::void_; }

@@ -227,7 +227,7 @@ internal unsafe struct RrSubscriptionHandler
 }
 
 [StructLayout(LayoutKind.Sequential)]
-internal struct RrMember
+internal unsafe struct RrMember
 {
     public RrStr Name;
     public uint Kind;
@@ -238,6 +238,8 @@ internal struct RrMember
     public uint Reserved;
     public RrStr ObjectType;
     public RrMemoryType Memory;
+    public delegate* unmanaged[Cdecl]<nint, RrElements*, int> Check;
+    public nint CheckContext;
 }
 
 [StructLayout(LayoutKind.Sequential)]

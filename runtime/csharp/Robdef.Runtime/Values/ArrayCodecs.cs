@@ -21,12 +21,26 @@ internal sealed class ArrayCodec<T>(ItemCodec<T> item, int fewest, int most) : V
 
     public override T[] Read(scoped in Element element)
     {
+        CheckCount(element);
+        return item.ReadItems(element);
+    }
+
+    internal override void Check(scoped in Element element)
+    {
+        CheckCount(element);
+        if (!item.ArePacked)
+        {
+            item.ReadItems(element);
+        }
+    }
+
+    private void CheckCount(scoped in Element element)
+    {
         int count = item.CountItems(element);
         if (count < fewest || count > most)
         {
             throw element.Error(ErrorCode.DataTypeError, $"has {count} items, and {Allowed}");
         }
-        return item.ReadItems(element);
     }
 
     private string Allowed => fewest == most ? $"{most} are due" : $"{most} are allowed";

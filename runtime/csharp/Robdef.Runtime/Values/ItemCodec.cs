@@ -28,6 +28,9 @@ public abstract class ItemCodec<T> : ValueCodec<T>
     /// <summary>The qualified name that goes with these types; empty for numbers.</summary>
     internal abstract ReadOnlySpan<byte> TypeName { get; }
 
+    /// <summary>Whether any bytes are items, so that nothing but their number can be wrong.</summary>
+    internal virtual bool ArePacked => false;
+
     /// <summary>Bytes that an item counts for against the limit of a memory's request.</summary>
     internal abstract uint TransferSize { get; }
 

@@ -38,6 +38,8 @@ public sealed class NamedArrayCodec<T, TNumber> : ItemCodec<T>, IRecordCodec
 
     internal override ReadOnlySpan<byte> TypeName => _name;
 
+    internal override bool ArePacked => true;
+
     internal override uint TransferSize => (uint)Unsafe.SizeOf<TNumber>();
 
     private static int NumbersPerItem => Unsafe.SizeOf<T>() / Unsafe.SizeOf<TNumber>();

@@ -15,6 +15,8 @@ internal sealed class NumberCodec<T>(ElementType type) : ItemCodec<T>
 
     internal override ReadOnlySpan<byte> TypeName => default;
 
+    internal override bool ArePacked => true;
+
     internal override uint TransferSize => (uint)Unsafe.SizeOf<T>();
 
     public override T Read(scoped in Element element)
