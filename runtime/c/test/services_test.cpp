@@ -3,6 +3,9 @@
 // of pods.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "runtime/c/test/den.hpp"
 #include "runtime/c/test/silent_service.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
@@ -262,86 +265,35 @@ TEST(Memories, OfPodsAreTransferredInPieces) {
               RR_OK);
     EXPECT_EQ(state.pieces, 3);
     EXPECT_EQ(state.sum, 24 * 25 / 2 + 25 * 0.5);
+    // The same without waiting, to its end, and to a failure of the program's.
+    const auto later = [&](auto begin) {
+      std::atomic<int> ended = -1;
+      Done done([&](rr_status status, void*) { ended = status; });
+      const rr_completion completion = done.completion();
+      EXPECT_EQ(begin(root.get(), view("points"), &type, position, count, 1, &pieces, nullptr,
+                      &completion, nullptr),
+                RR_OK);
+      EXPECT_TRUE(eventually([&] { return ended != -1; }));
+      return ended.load();
+    };
+    state.pieces = 0;
+    std::fill(std::begin(den.points), std::end(den.points), 0);
+    EXPECT_EQ(later(rr_memory_write_pieces_async), RR_OK);
+    EXPECT_EQ(state.pieces, 3);
+    EXPECT_EQ(den.points[29], 24.5);
+    state.pieces = 0;
+    state.sum = 0;
+    EXPECT_EQ(later(rr_memory_read_pieces_async), RR_OK);
+    EXPECT_EQ(state.pieces, 3);
+    EXPECT_EQ(state.sum, 24 * 25 / 2 + 25 * 0.5);
     pieces.take = [](void*, std::uint64_t, const std::uint64_t*, std::size_t, const rr_elements*) {
       return rr_status{RR_DATA_TYPE_ERROR};
     };
+    EXPECT_EQ(later(rr_memory_read_pieces_async), RR_DATA_TYPE_ERROR);
     EXPECT_EQ(rr_memory_read_pieces(root.get(), view("points"), &type, position, count, 1, &pieces,
                                     nullptr, nullptr),
               RR_DATA_TYPE_ERROR);
   }
-}
-
-// One wire, whose values are doubles.
-struct Checked {
-  explicit Checked(std::size_t member_size = sizeof(rr_member)) {
-    ::rr_definition* definition = nullptr;
-    rr_definition_new(view("service test.checked\nobject Checked\n  wire double level\nend\n"),
-                      nullptr, 0, &definition, nullptr);
-    const DefinitionHandle definition_owner(definition);
-    rr_member member{};
-    member.name = view("level");
-    member.kind = RR_WIRE;
-    member.check_context = this;
-    member.check = [](void* context, const rr_elements* value) -> rr_status {
-      ++static_cast<Checked*>(context)->looked;
-      unpacked element{};
-      const bool is_double = unpack(value, nullptr, &element) != 0 && element.type == 1;
-      return is_double ? RR_OK : RR_DATA_TYPE_MISMATCH;
-    };
-    rr_object_type* type = nullptr;
-    rr_object_type_new(definition, view("Checked"), &member, 1, member_size, &type, nullptr);
-    const TypeHandle type_owner(type);
-    rr_object_handler handler{};
-    handler.size = sizeof handler;
-    handler.on_request = [](void*, rr_request* request, const rr_request_info*) {
-      rr_request_release(request);
-    };
-    rr_served_object* made = nullptr;
-    rr_served_object_new(type, &handler, &made, nullptr);
-    object.reset(made);
-    rr_service* offered = nullptr;
-    rr_service_register(server.get(), view("checked"), made, nullptr, &offered, nullptr);
-    service.reset(offered);
-    client = connect(node, listen(server), "checked");
-    root = root_of(client);
-  }
-  rr_status poke(Packed& value) {
-    return rr_wire_poke_out(root.get(), view("level"), &value, nullptr, nullptr);
-  }
-
-  std::atomic<int> looked = 0;
-  NodeHandle server = make_node();
-  NodeHandle node = make_node();
-  ServedHandle object;
-  ServiceHandle service;
-  ClientHandle client;
-  ObjectHandle root;
-};
-
-TEST(Checks, RefuseWhatIsNotOfTheMembersType) {
-  Checked checked;
-  Packed right;
-  right.number("", 2.5);
-  Packed wrong;
-  wrong.words("", "two and a half");
-  EXPECT_EQ(checked.poke(right), RR_OK);
-  EXPECT_EQ(checked.poke(wrong), RR_DATA_TYPE_MISMATCH);
-  rr_data* data = nullptr;
-  ASSERT_EQ(rr_wire_peek_out(checked.root.get(), view("level"), nullptr, &data, nullptr, nullptr),
-            RR_OK);
-  const DataHandle value(data);
-  const rr_elements elements = rr_data_elements(data);
-  EXPECT_EQ(unpack_double(&elements, nullptr), 2.5);
-  EXPECT_EQ(checked.looked, 2);
-}
-
-// A table of version 1.0 of the interface.
-TEST(Checks, AreNotMadeForProgramsThatKnowNoneOfThem) {
-  Checked checked(offsetof(rr_member, check));
-  Packed any;
-  any.words("", "two and a half");
-  EXPECT_EQ(checked.poke(any), RR_OK);
-  EXPECT_EQ(checked.looked, 0);
 }
 
 }  // namespace

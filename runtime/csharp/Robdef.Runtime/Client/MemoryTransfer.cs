@@ -84,11 +84,11 @@ internal sealed unsafe class MemoryTransfer<T>(Stub stub, string member, MemberA
     /// <summary>Items stay where they are until it has ended, which it does with a cancellation too.</summary>
     public Task ReadAsync(ulong[] position, ulong[] count, Memory<T> items, CancellationToken cancel) => IsNumbers
         ? MoveAsync(isRead: true, position, count, items, cancel)
-        : Task.Run(() => Read(position, count, items.Span), cancel);
+        : MovePiecesAsync(isRead: true, position, count, items, cancel);
 
     public Task WriteAsync(ulong[] position, ulong[] count, ReadOnlyMemory<T> items, CancellationToken cancel) => IsNumbers
         ? MoveAsync(isRead: false, position, count, items, cancel)
-        : Task.Run(() => Write(position, count, items.Span), cancel);
+        : MovePiecesAsync(isRead: false, position, count, MemoryMarshal.AsMemory(items), cancel);
 
     private Task MoveAsync(bool isRead, ulong[] position, ulong[] count, ReadOnlyMemory<T> items, CancellationToken cancel)
     {
@@ -120,6 +120,34 @@ internal sealed unsafe class MemoryTransfer<T>(Stub stub, string member, MemberA
         return task;
     }
 
+    private Task MovePiecesAsync(bool isRead, ulong[] position, ulong[] count, Memory<T> items, CancellationToken cancel)
+    {
+        ArgumentOutOfRangeException.ThrowIfNotEqual(count.Length, position.Length);
+        if (_object.Refusal<bool>(cancel) is { } refused)
+        {
+            return refused;
+        }
+        using RemoteUse target = _object.Use();
+        var pieces = new MemoryPieces<T>(codec, _object, items, count, isMulti);
+        var completion = new TaskCompletion<bool>(_object.Types, static _ => true, cancel);
+        nint context = Context.Of(pieces);
+        RrMemoryPieces called = MemoryPieces.Native(context);
+        RrMemoryType type = Type;
+        var options = new RrCallOptions { Size = (nuint)sizeof(RrCallOptions), Cancellation = completion.Cancellation };
+        RrCompletion native = completion.Native;
+        nint error;
+        int status;
+        fixed (byte* name = _name)
+        fixed (ulong* where = position, many = count)
+        {
+            var memberName = new RrStr { Data = name, Size = (nuint)_name.Length };
+            status = isRead
+                ? Functions.rr_memory_read_pieces_async(target.Native, memberName, &type, where, many, (nuint)position.Length, &called, &options, &native, &error)
+                : Functions.rr_memory_write_pieces_async(target.Native, memberName, &type, where, many, (nuint)position.Length, &called, &options, &native, &error);
+        }
+        return PieceEnds.After(status == 0 ? completion.Task : Task.FromException(completion.Abandon(native, status, error)), pieces, context);
+    }
+
     private Call Question(string what) => new Call(_object, _name, GetParameter, MemberAccess.None)
         .With("parameter"u8, ValueCodec.String, what);
 
@@ -141,13 +169,7 @@ internal sealed unsafe class MemoryTransfer<T>(Stub stub, string member, MemberA
         nint context = Context.Of(pieces);
         try
         {
-            var native = new RrMemoryPieces
-            {
-                Size = (nuint)sizeof(RrMemoryPieces),
-                Context = context,
-                Take = &MemoryPieces.OnTake,
-                Give = &MemoryPieces.OnGive,
-            };
+            RrMemoryPieces native = MemoryPieces.Native(context);
             nint error = 0;
             int status = run(new PieceArguments(name, type, position, count, (nuint)dims, &native, &error));
             if (status != 0)
@@ -155,6 +177,27 @@ internal sealed unsafe class MemoryTransfer<T>(Stub stub, string member, MemberA
                 RobdefException failure = Failure.Take(status, error, _object.Types);
                 throw pieces.Failed ?? failure;
             }
+        }
+        finally
+        {
+            Context.Free(context);
+        }
+    }
+}
+
+/// <summary>What is left to do when the last piece has gone.</summary>
+internal static class PieceEnds
+{
+    /// <summary>Frees the context; what a function of the program has thrown comes instead of what the native runtime made of it.</summary>
+    public static async Task After(Task transfer, MemoryPieces pieces, nint context)
+    {
+        try
+        {
+            await transfer.ConfigureAwait(false);
+        }
+        catch (RobdefException) when (pieces.Failed is not null)
+        {
+            throw pieces.Failed;
         }
         finally
         {

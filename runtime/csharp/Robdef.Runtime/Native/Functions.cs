@@ -153,6 +153,12 @@ internal static unsafe partial class Functions
     [LibraryImport(Library)]
     public static partial int rr_memory_write_pieces(SafeHandle handle, RrStr member, RrMemoryType* type, ulong* position, ulong* count, nuint dims, RrMemoryPieces* pieces, RrCallOptions* options, nint* error);
     [LibraryImport(Library)]
+    public static partial int rr_memory_read_pieces_async(SafeHandle remote, RrStr member, RrMemoryType* type, ulong* position, ulong* count,
+        nuint dims, RrMemoryPieces* pieces, RrCallOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_memory_write_pieces_async(SafeHandle remote, RrStr member, RrMemoryType* type, ulong* position, ulong* count,
+        nuint dims, RrMemoryPieces* pieces, RrCallOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
     public static partial int rr_piece_set(nint piece, RrElements* data, nint* error);
 
     [LibraryImport(Library)]
