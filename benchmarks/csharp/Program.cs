@@ -2,6 +2,7 @@
 // csharp_bench PEER: calls of a C# client beside those of a C++ client and beside a plain socket, of one service in C++,
 // in turns. Prints medians of the rounds and ratios of the same round.
 using System;
+using System.Buffers.Binary;
 using System.Collections.Generic;
 using System.Diagnostics;
 using System.Globalization;
@@ -38,17 +39,22 @@ for (int round = -2; round < Rounds; ++round)
     native.WaitForExit();
     double blocking = Median(Gets, () => arm.GetSpeed());
     double asynchronous = await MedianAsync(Gets, () => arm.GetSpeedAsync());
-    double array = Median(Arrays, () => arm.Numbers(values));
+    double both = Median(Arrays, () => arm.Numbers(values));
+    (double to, double toCpu) = MedianAndCpu(Arrays, () => arm.SetTrace(values));
+    (double from, double fromCpu) = MedianAndCpu(Arrays, () => arm.GetTrace());
     // The other side takes one connection at a time.
     using var raw = new Socket(AddressFamily.InterNetwork, SocketType.Stream, ProtocolType.Tcp) { NoDelay = true };
     raw.Connect(IPAddress.Loopback, int.Parse(addresses[1], CultureInfo.InvariantCulture));
-    double echo = Median(Arrays, () => Echo(raw, block));
+    double rawBoth = Median(Arrays, () => Move(raw, block, ArrayBytes));
+    (double rawTo, double rawToCpu) = MedianAndCpu(Arrays, () => Move(raw, block, 1));
+    (double rawFrom, double rawFromCpu) = MedianAndCpu(Arrays, () => Move(raw, block.AsSpan(0, 1), ArrayBytes));
     raw.Close();
     // The first rounds are for the just-in-time compiler.
     if (round >= 0)
     {
         rows.Add([1e6 * cpp[0], 1e6 * blocking, 1e6 * asynchronous, blocking / cpp[0], asynchronous / cpp[0],
-            ArrayBytes / cpp[1] / 1e6, ArrayBytes / array / 1e6, ArrayBytes / echo / 1e6, echo / array]);
+            1e3 * both, 1e3 * to, 1e3 * from, rawBoth / both, rawTo / to, rawFrom / from,
+            cpp[4] / cpp[1], cpp[5] / cpp[2], cpp[6] / cpp[3], 1e3 * toCpu, 1e3 * rawToCpu, 1e3 * fromCpu, 1e3 * rawFromCpu]);
     }
 }
 long before = GC.GetAllocatedBytesForCurrentThread();
@@ -58,15 +64,18 @@ long bytes = (GC.GetAllocatedBytesForCurrentThread() - before - (Gets * sizeof(d
 string[] names =
 [
     "property get, C++, us", "property get, C# blocking, us", "property get, C# async, us", "blocking / C++", "async / C++",
-    "10 MB there and back, C++, MB/s", "10 MB there and back, C#, MB/s", "10 MB, plain socket in C#, MB/s", "C# / plain socket",
+    "10 MB there and back, C#, ms", "10 MB to the service, C#, ms", "10 MB from the service, C#, ms",
+    "there and back, C# / plain socket", "to the service, C# / plain socket", "from the service, C# / plain socket",
+    "the same in C++: there and back", "to the service", "from the service",
+    "CPU time of the client, to the service, C#, ms", "plain socket, ms", "from the service, C#, ms", "plain socket, ms",
 ];
 for (int i = 0; i < names.Length; ++i)
 {
     double[] column = [.. rows.Select(row => row[i]).Order()];
     Console.WriteLine(string.Create(CultureInfo.InvariantCulture,
-        $"{names[i],-34} {column[Rounds / 2],9:F2}   ({column[0]:F2} to {column[^1]:F2})"));
+        $"{names[i],-46} {column[Rounds / 2],9:F2}   ({column[0]:F2} to {column[^1]:F2})"));
 }
-Console.WriteLine($"{"bytes allocated for a blocking get",-34} {bytes,6}");
+Console.WriteLine($"{"bytes allocated for a blocking get",-46} {bytes,6}");
 peer.StandardInput.Close();
 peer.WaitForExit();
 return 0;
@@ -87,6 +96,14 @@ static double Median(int count, Action call)
     return times[count / 2];
 }
 
+// The CPU time of this process, its garbage collector included, is what other programs disturb least.
+static (double Median, double Cpu) MedianAndCpu(int count, Action call)
+{
+    TimeSpan before = Environment.CpuUsage.TotalTime;
+    double median = Median(count, call);
+    return (median, (Environment.CpuUsage.TotalTime - before).TotalSeconds / count);
+}
+
 static async Task<double> MedianAsync<T>(int count, Func<Task<T>> call)
 {
     double[] times = new double[count];
@@ -100,15 +117,19 @@ static async Task<double> MedianAsync<T>(int count, Func<Task<T>> call)
     return times[count / 2];
 }
 
-static void Echo(Socket socket, byte[] block)
+// Sends a block, and receives another one as a program has to that keeps it: in an array of its own.
+static void Move(Socket socket, ReadOnlySpan<byte> block, int wanted)
 {
-    socket.Send(BitConverter.GetBytes((long)block.Length));
-    for (int sent = 0; sent < block.Length;)
+    Span<byte> sizes = stackalloc byte[16];
+    BinaryPrimitives.WriteInt64LittleEndian(sizes, block.Length);
+    BinaryPrimitives.WriteInt64LittleEndian(sizes[8..], wanted);
+    socket.Send(sizes);
+    while (!block.IsEmpty)
     {
-        sent += socket.Send(block, sent, block.Length - sent, SocketFlags.None);
+        block = block[socket.Send(block)..];
     }
-    for (int received = 0; received < block.Length;)
+    for (Span<byte> room = GC.AllocateUninitializedArray<byte>(wanted); !room.IsEmpty;)
     {
-        received += socket.Receive(block, received, block.Length - received, SocketFlags.None);
+        room = room[socket.Receive(room)..];
     }
 }

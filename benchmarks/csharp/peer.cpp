@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The other side of the C# benchmark, in C++:
-//   csharp_bench_peer serve                serves the arm, and echoes over a plain socket; prints
-//   URL and port csharp_bench_peer measure URL PORT     measures itself as the C# program does;
-//   prints three numbers
+//   csharp_bench_peer serve              serves the arm, and blocks over a plain socket; prints URL
+//                                        and port
+//   csharp_bench_peer measure URL PORT   measures itself as the C# program does; prints seconds: a
+//                                        get, an array there and back, to the service, from it, and
+//                                        the same three over the plain socket
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
@@ -62,10 +64,16 @@ sockaddr_in loopback(std::uint16_t port) {
   return address;
 }
 
-/// Echoes blocks of 8 bytes of length and so much behind it, to one client after the other.
-class RawEcho {
+/// What a client of RawBlocks says first: how much it sends, and how much it wants.
+struct Sizes {
+  std::uint64_t sent;
+  std::uint64_t wanted;
+};
+
+/// Takes blocks and gives blocks, to one client after the other.
+class RawBlocks {
  public:
-  RawEcho() : listener_(socket(AF_INET, SOCK_STREAM, 0)) {
+  RawBlocks() : listener_(socket(AF_INET, SOCK_STREAM, 0)) {
     sockaddr_in address = loopback(0);
     socklen_t size = sizeof address;
     check(bind(listener_, reinterpret_cast<sockaddr*>(&address), size) == 0);
@@ -74,9 +82,9 @@ class RawEcho {
     port_ = ntohs(address.sin_port);
     thread_ = std::thread([this] { serve(); });
   }
-  RawEcho(const RawEcho&) = delete;
-  RawEcho& operator=(const RawEcho&) = delete;
-  ~RawEcho() {
+  RawBlocks(const RawBlocks&) = delete;
+  RawBlocks& operator=(const RawBlocks&) = delete;
+  ~RawBlocks() {
     shutdown(listener_, SHUT_RDWR);
     thread_.join();
     close(listener_);
@@ -85,13 +93,14 @@ class RawEcho {
 
  private:
   void serve() {
+    std::vector<char> block(array_bytes);
     for (int client; (client = accept(listener_, nullptr, nullptr)) >= 0; close(client)) {
       try {
-        std::vector<char> block;
-        for (std::uint64_t size;; write_all(client, block.data(), block.size())) {
-          read_all(client, &size, sizeof size);
-          block.resize(std::min<std::uint64_t>(size, 2 * array_bytes));
-          read_all(client, block.data(), block.size());
+        for (Sizes sizes{};;) {
+          read_all(client, &sizes, sizeof sizes);
+          if (std::max(sizes.sent, sizes.wanted) > block.size()) break;
+          read_all(client, block.data(), sizes.sent);
+          write_all(client, block.data(), sizes.wanted);
         }
       } catch (const std::exception&) {
         // It has left.
@@ -109,7 +118,7 @@ class Arm final : public a::ArmDefault {
 };
 
 int serve() {
-  const RawEcho raw;
+  const RawBlocks raw;
   rr::Node node;
   const rr::Service service = node.register_service("arm", std::make_shared<Arm>());
   std::printf("rr+tcp://127.0.0.1:%d/?service=arm %d\n",
@@ -139,7 +148,9 @@ int measure(const char* url, std::uint16_t port) {
   for (int i = 0; i < 300; ++i) arm->get_speed();
   const double get = median(get_count, [&] { arm->get_speed(); });
   const rr::Array<double> values(array_bytes / sizeof(double));
-  const double array = median(array_count, [&] { arm->numbers(values); });
+  const double both = median(array_count, [&] { arm->numbers(values); });
+  const double to = median(array_count, [&] { arm->set_trace(values); });
+  const double from = median(array_count, [&] { arm->get_trace(); });
 
   const int raw = socket(AF_INET, SOCK_STREAM, 0);
   const sockaddr_in address = loopback(port);
@@ -147,14 +158,20 @@ int measure(const char* url, std::uint16_t port) {
   const int on = 1;
   check(setsockopt(raw, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on) == 0);
   std::vector<char> block(array_bytes);
-  const std::uint64_t size = block.size();
-  const double echo = median(array_count, [&] {
-    write_all(raw, &size, sizeof size);
-    write_all(raw, block.data(), block.size());
-    read_all(raw, block.data(), block.size());
-  });
+  const auto move = [&](std::size_t sent, std::size_t wanted) {
+    return median(array_count, [&] {
+      const Sizes sizes{sent, wanted};
+      write_all(raw, &sizes, sizeof sizes);
+      write_all(raw, block.data(), sent);
+      read_all(raw, block.data(), wanted);
+    });
+  };
+  const double raw_both = move(array_bytes, array_bytes);
+  const double raw_to = move(array_bytes, 1);
+  const double raw_from = move(1, array_bytes);
   close(raw);
-  std::printf("%.9f %.9f %.9f\n", get, array, echo);
+  std::printf("%.9f %.9f %.9f %.9f %.9f %.9f %.9f\n", get, both, to, from, raw_both, raw_to,
+              raw_from);
   return 0;
 }
 

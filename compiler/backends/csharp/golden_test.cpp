@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The feature definitions of conformance/ and what is generated from them, and the findings of the
-// backend. The goldens are one output folder, as a user has it; they are also compiled.
+// The feature definitions of conformance/ and those of C# alone, what is generated from them, and
+// the findings of the backend. The goldens are one output folder, as a user has it, and compiled.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,8 +23,10 @@ const fs::path golden_folder = ROBDEF_GOLDEN_DIR;
 
 FileSet generated() {
   std::vector<std::string> texts;
-  const GoldenCorpus corpus(ROBDEF_DEFINITIONS_DIR);
-  for (const fs::path& input : corpus.inputs()) texts.push_back(GoldenCorpus::read(input));
+  for (const fs::path folder : {ROBDEF_DEFINITIONS_DIR, ROBDEF_OWN_DEFINITIONS_DIR}) {
+    const GoldenCorpus corpus(folder);
+    for (const fs::path& input : corpus.inputs()) texts.push_back(GoldenCorpus::read(input));
+  }
   const model::Compiled compiled = model::compiled(texts);
   EXPECT_TRUE(compiled.errors().empty());
   Report report;

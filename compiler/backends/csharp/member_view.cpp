@@ -262,6 +262,9 @@ class MemberMaker {
       more.push_back("Memory = " + runtime("MemoryType") + ".Of(" + view.item_codec + ", " +
                      (view.is_multi ? "true" : "false") + ")");
     }
+    if (!view.handle_served.empty() && !view.is_memory) {
+      more.push_back("Check = " + runtime("ValueCheck") + ".Of(" + view.codec + ")");
+    }
     const std::string head = "new(\"" + member.name + "\", " + runtime("MemberKind") + "." + kind +
                              ", " + view.access + ")";
     return head + (more.empty() ? "" : " { " + join(more, ", ") + " }") + ",";

@@ -50,10 +50,35 @@ Data write_again(Decoder& decoder, std::span<const std::byte> bytes, std::uint32
   Writer writer;
   writer.reset(decoder.version());
   for (std::size_t i = elements.size(); i-- != 0;) {
-    write_element(writer, name_of(elements[i]), elements[i], decoder.version(), &decoder, {});
+    write_element(writer, name_of(elements[i]), elements[i],
+                  {.version = decoder.version(), .codes = &decoder});
   }
   if (writer.failed()) throw endpoint::latched(writer);
   return Data::copy(writer.copy(), count, number_of(decoder.version()));
+}
+
+// The element that a reference stands for, or the one that is none. Throws for an array that cannot
+// be.
+Element follow(const Element& element) {
+  if (element.metadata != RR_REFERENCE) return element;
+  rr_array_reference reference{};
+  if (element.type != ElementType::uint8 || element.payload.size() != sizeof reference) {
+    throw not_elements("a reference is of another form");
+  }
+  std::memcpy(&reference, element.payload.data(), sizeof reference);
+  const auto type = static_cast<ElementType>(reference.type);
+  const std::size_t size = reference.type <= UINT16_MAX ? item_size(type) : 0;
+  if (size == 0) throw not_elements("a reference to items of no packed type");
+  if (reference.count > UINT32_MAX / size) throw not_elements("a reference to too many items");
+  if (reference.items == nullptr && reference.count != 0) {
+    throw not_elements("a reference to nothing");
+  }
+  Element result = element;
+  result.type = type;
+  result.metadata = {};
+  result.count = static_cast<std::uint32_t>(reference.count);
+  result.payload = {static_cast<const std::byte*>(reference.items), size * reference.count};
+  return result;
 }
 
 // One element of a message. Where it begins is not known, but what its header usually looks like:
@@ -62,8 +87,10 @@ Data receive(Decoder& decoder, const Element& element) {
   const bool is_plain = !has_codes(decoder, element);
   Writer writer;
   writer.reset(decoder.version());
-  write_element(writer, name_of(element), element, decoder.version(), is_plain ? nullptr : &decoder,
-                decoder.owner());
+  write_element(writer, name_of(element), element,
+                {.version = decoder.version(),
+                 .codes = is_plain ? nullptr : &decoder,
+                 .owner = decoder.owner()});
   if (writer.failed()) throw endpoint::latched(writer);
   if (is_plain && decoder.owner() && element.payload.size() >= Writer::attach_threshold) {
     const std::span<const Piece> pieces = writer.pieces();
@@ -93,24 +120,27 @@ Data Data::copy(std::span<const std::byte> bytes, std::uint32_t count, std::uint
 Data Data::text(std::string_view text) { return copy(std::as_bytes(std::span(text)), 0, 0); }
 
 void write_element(Writer& writer, const ElementName& name, const Element& element,
-                   MessageVersion version, const Decoder* codes, const MemoryRef& owner) {
+                   const Origin& origin) {
   const std::size_t end = writer.position();
-  if (is_nested(element.type) && (codes != nullptr || version != writer.version())) {
+  if (is_nested(element.type) &&
+      (origin.codes != nullptr || origin.has_references || origin.version != writer.version())) {
     const Descent descent(writer, element.name);
     if (!descent) return;
-    Decoder decoder(version, codes != nullptr ? codes->strings() : nullptr);
+    Decoder decoder(origin.version, origin.codes != nullptr ? origin.codes->strings() : nullptr);
     ElementReader reader(decoder, element);
     std::vector<Element> nested;
-    for (Element item; reader.next(item);) nested.push_back(item);
+    for (Element item; reader.next(item);) {
+      nested.push_back(origin.has_references ? follow(item) : item);
+    }
     if (decoder.failed()) {
       writer.fail(ErrorCode::data_serialization_error, "no element", element.name);
       return;
     }
     for (std::size_t i = nested.size(); i-- != 0;) {
-      write_element(writer, name_of(nested[i]), nested[i], version, codes, owner);
+      write_element(writer, name_of(nested[i]), nested[i], origin);
     }
   } else {
-    writer.prepend_array(element.payload, owner);
+    writer.prepend_array(element.payload, origin.owner);
   }
   writer.element(name, element.type, element.type_name, element.metadata, element.extended,
                  element.count, end);
@@ -118,8 +148,10 @@ void write_element(Writer& writer, const ElementName& name, const Element& eleme
 
 void RawType::write(Writer& writer, const ElementName& name, const void* value) const {
   const Raw& raw = *static_cast<const Raw*>(value);
-  const MemoryRef owner = raw.data ? raw.data.get()->owner : MemoryRef();
-  write_element(writer, name, raw.element, raw.version, nullptr, owner);
+  write_element(writer, name, raw.element,
+                {.version = raw.version,
+                 .has_references = raw.has_references,
+                 .owner = raw.data ? raw.data.get()->owner : MemoryRef()});
 }
 
 bool RawType::read(Decoder& decoder, const Element& element, void* value) const {
@@ -133,11 +165,13 @@ bool RawType::read(Decoder& decoder, const Element& element, void* value) const 
 
 Values::Values(const rr_elements* elements) {
   if (elements == nullptr || elements->count == 0) return;
-  if (elements->version != 2 && elements->version != 4) {
+  has_references_ = (elements->version & RR_WITH_REFERENCES) != 0;
+  const std::uint32_t version = elements->version & ~std::uint32_t{RR_WITH_REFERENCES};
+  if (version != 2 && version != 4) {
     throw not_elements("there is no version " + std::to_string(elements->version));
   }
   if (elements->data == nullptr) throw not_elements("there are no bytes");
-  version_ = static_cast<MessageVersion>(elements->version);
+  version_ = static_cast<MessageVersion>(version);
   bytes_ = {reinterpret_cast<const std::byte*>(elements->data), elements->size};
   Decoder decoder(version_);
   if (!check_elements(decoder, bytes_, elements->count, Limits())) {
@@ -148,6 +182,8 @@ Values::Values(const rr_elements* elements) {
   while (reader.next(raws_[count_].element)) {
     Raw& raw = raws_[count_];
     raw.version = version_;
+    raw.has_references = has_references_;
+    if (has_references_) raw.element = follow(raw.element);
     parameters_[count_] = {raw.element.name, &raw_type};
     places_[count_] = &raw;
     if (++count_ == elements->count) break;
@@ -164,6 +200,11 @@ void Values::make_room(std::size_t count) {
   places_ = places_memory_.data();
 }
 
+std::span<const std::byte> Values::bytes() const {
+  if (has_references_) throw not_elements("arrays of this value cannot lie elsewhere");
+  return bytes_;
+}
+
 const Raw& Values::single() const {
   if (count_ != 1) {
     throw Error(ErrorCode::data_serialization_error,
@@ -177,7 +218,9 @@ Raw keep(const Raw& raw) {
   Raw kept;
   Writer writer;
   writer.reset(raw.version);
-  write_element(writer, name_of(raw.element), raw.element, raw.version, nullptr, {});
+  write_element(writer, name_of(raw.element), raw.element,
+                {.version = raw.version, .has_references = raw.has_references});
+  if (writer.failed()) throw endpoint::latched(writer);
   kept.data = Data::copy(writer.copy(), 1, number_of(raw.version));
   kept.version = raw.version;
   Decoder decoder(raw.version);

@@ -66,15 +66,24 @@ struct Raw {
   Element element;
   MessageVersion version = MessageVersion::v4;
   Data data;  ///< none: the bytes are the caller's
+  bool has_references = false;
 };
 
-/// Writes an element under a name, in the writer's version of the format. `codes` spells out those
-/// that are in it; null when there are none. What cannot be read fails the writer.
+/// What an element is written from besides itself.
+struct Origin {
+  MessageVersion version = MessageVersion::v4;
+  const Decoder* codes = nullptr;  ///< spells out those that are in it; null when there are none
+  bool has_references = false;     ///< stand for arrays inside of it
+  MemoryRef owner{};               ///< keeps the bytes; may be none
+};
+
+/// Writes an element under a name, in the writer's version of the format. What cannot be read fails
+/// the writer.
 void write_element(Writer& writer, const ElementName& name, const Element& element,
-                   MessageVersion version, const Decoder* codes, const MemoryRef& owner);
+                   const Origin& origin);
 
 /// How a Raw travels. Stands for every type of a definition.
-class RawType final : public Type {
+class RawType : public Type {
  public:
   constexpr RawType() = default;
   [[nodiscard]] ElementType element_type() const override { return ElementType::void_; }
@@ -93,7 +102,8 @@ class Values {
 
   [[nodiscard]] std::size_t count() const { return count_; }
   [[nodiscard]] MessageVersion version() const { return version_; }
-  [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
+  /// Throws rr::Error (data_serialization_error) when an array lies elsewhere.
+  [[nodiscard]] std::span<const std::byte> bytes() const;
   [[nodiscard]] std::span<const Parameter> parameters() const { return {parameters_, count_}; }
   [[nodiscard]] const void* const* places() const { return places_; }
   /// The only one. Throws rr::Error (data_serialization_error) unless there is just one.
@@ -105,6 +115,7 @@ class Values {
 
   std::span<const std::byte> bytes_;
   MessageVersion version_ = MessageVersion::v4;
+  bool has_references_ = false;
   std::size_t count_ = 0;
   Raw* raws_ = few_raws_.data();
   Parameter* parameters_ = few_parameters_.data();

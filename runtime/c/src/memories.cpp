@@ -8,15 +8,14 @@
 #include "rr/type.hpp"
 #include "runtime/c/src/node.hpp"
 #include "runtime/c/src/piece.hpp"
-#include "runtime/cpp/src/client/memory_transfer.hpp"
+#include "runtime/c/src/piece_transfer.hpp"
 #include "runtime/cpp/src/client/session.hpp"
-#include "runtime/cpp/src/endpoint/values.hpp"
 
 namespace rr::capi {
 namespace {
 
 using Numbers = std::span<const std::uint64_t>;
-using Direction = client::MemoryTransfer::Direction;
+using Direction = PieceTransfer::Direction;
 
 class RawMemory : public MemoryMember {
  public:
@@ -63,13 +62,15 @@ class Part {
   [[nodiscard]] RawMemory& memory() { return memory_; }
   [[nodiscard]] Numbers position() const { return position_; }
   [[nodiscard]] Numbers count() const { return count_; }
-  void transfer_pieces(Direction direction, const rr_memory_pieces& pieces);
+  /// Of pods or namedarrays.
+  [[nodiscard]] std::shared_ptr<PieceTransfer> pieces(Direction direction,
+                                                      const rr_memory_pieces* given) {
+    if (items_.item_size() != 0) refuse_argument("numbers are not transferred in pieces");
+    return std::make_shared<PieceTransfer>(stub_, member_, direction, position_, count_,
+                                           RawMemory::size_of(count_), given);
+  }
 
  private:
-  void ask_limit(const client::MemoryTransfer& transfer, std::uint32_t& limit) const;
-  void read_piece(client::MemoryTransfer& transfer, const rr_memory_pieces& pieces) const;
-  void write_piece(client::MemoryTransfer& transfer, const rr_memory_pieces& pieces) const;
-
   RawStub& stub_;
   const MemoryItems& items_;
   const Member& member_;
@@ -78,67 +79,12 @@ class Part {
   Numbers count_;
 };
 
-void check_status(rr_status status) {
-  if (status != RR_OK) throw Error(piece_error(status));
-}
-
-void Part::read_piece(client::MemoryTransfer& transfer, const rr_memory_pieces& pieces) const {
-  Raw data;
-  const Session::AnswerReader read = [&data](Decoder& decoder, const Message&, const Entry& entry) {
-    endpoint::read_value(decoder, entry, "data", raw_type, &data);
-  };
-  stub_.rr_session()->call(transfer.request(), read, stub_.rr_timeout());
-  const rr_elements elements = data.data.elements();
-  check_status(pieces.take(pieces.context, transfer.offset(), transfer.count().data(),
-                           transfer.count().size(), &elements));
-}
-
-void Part::write_piece(client::MemoryTransfer& transfer, const rr_memory_pieces& pieces) const {
-  rr_piece piece;
-  check_status(pieces.give(pieces.context, transfer.offset(), transfer.count().data(),
-                           transfer.count().size(), &piece));
-  const Raw data = piece.take();
-  Outgoing request = transfer.request();
-  std::vector<Parameter> parameters(request.parameters.begin(), request.parameters.end());
-  std::vector<const void*> values(request.values, request.values + parameters.size());
-  parameters.back().type = &raw_type;
-  values.back() = &data;
-  request.parameters = parameters;
-  request.values = values.data();
-  stub_.rr_session()->call(request, Incoming{}, stub_.rr_timeout());
-}
-
-void Part::transfer_pieces(Direction direction, const rr_memory_pieces& pieces) {
-  if (items_.item_size() != 0) refuse_argument("numbers are not transferred in pieces");
-  Session& session = *stub_.rr_session();
-  client::MemoryTransfer transfer(stub_.rr_path(), member_, direction, position_, count_, nullptr,
-                                  RawMemory::size_of(count_), session.memory_transfer_limit());
-  while (!transfer.is_done()) {
-    std::uint32_t limit = 0;
-    session.call(transfer.question(), Incoming{"return", &type_of<std::uint32_t>, &limit},
-                 stub_.rr_timeout());
-    if (!transfer.fits(limit)) continue;
-    if (direction == Direction::read) {
-      read_piece(transfer, pieces);
-    } else {
-      write_piece(transfer, pieces);
-    }
-    transfer.advance();
-  }
-}
-
 const Member& any_memory(RawStub& stub, rr_str member) {
   return stub.tables().member(text(member), MemberKind::memory, 0, true,
                               &type_of<Array<std::uint8_t>>);
 }
 
 }  // namespace
-
-Error piece_error(rr_status status) {
-  const auto code =
-      status > 0 && status <= 0xFFFF ? static_cast<ErrorCode>(status) : ErrorCode::operation_failed;
-  return {code, "the program has not transferred the piece"};
-}
 
 }  // namespace rr::capi
 
@@ -148,6 +94,7 @@ using rr::capi::output;
 using rr::capi::Part;
 using rr::capi::stub_of;
 using rr::capi::Terms;
+using Direction = rr::capi::PieceTransfer::Direction;
 
 extern "C" {
 
@@ -237,11 +184,9 @@ rr_status rr_memory_read_pieces(rr_object* object, rr_str member, const rr_memor
                                 const rr_memory_pieces* pieces, const rr_call_options* options,
                                 rr_error** error) {
   return guarded(error, [&] {
-    const rr_memory_pieces functions = rr::capi::known(pieces, true);
-    need(functions.take, "a function is NULL that is needed");
     const Terms terms(options);
-    Part(object, member, type, position, count, dim_count)
-        .transfer_pieces(rr::capi::Direction::read, functions);
+    Part part(object, member, type, position, count, dim_count);
+    part.pieces(Direction::read, pieces)->run();
   });
 }
 
@@ -250,11 +195,33 @@ rr_status rr_memory_write_pieces(rr_object* object, rr_str member, const rr_memo
                                  const rr_memory_pieces* pieces, const rr_call_options* options,
                                  rr_error** error) {
   return guarded(error, [&] {
-    const rr_memory_pieces functions = rr::capi::known(pieces, true);
-    need(functions.give, "a function is NULL that is needed");
     const Terms terms(options);
-    Part(object, member, type, position, count, dim_count)
-        .transfer_pieces(rr::capi::Direction::write, functions);
+    Part part(object, member, type, position, count, dim_count);
+    part.pieces(Direction::write, pieces)->run();
+  });
+}
+
+rr_status rr_memory_read_pieces_async(rr_object* object, rr_str member, const rr_memory_type* type,
+                                      const uint64_t* position, const uint64_t* count,
+                                      size_t dim_count, const rr_memory_pieces* pieces,
+                                      const rr_call_options* options,
+                                      const rr_completion* completion, rr_error** error) {
+  return guarded(error, [&] {
+    const Terms terms(options);
+    Part part(object, member, type, position, count, dim_count);
+    part.pieces(Direction::read, pieces)->start(rr::capi::complete_with_nothing(completion));
+  });
+}
+
+rr_status rr_memory_write_pieces_async(rr_object* object, rr_str member, const rr_memory_type* type,
+                                       const uint64_t* position, const uint64_t* count,
+                                       size_t dim_count, const rr_memory_pieces* pieces,
+                                       const rr_call_options* options,
+                                       const rr_completion* completion, rr_error** error) {
+  return guarded(error, [&] {
+    const Terms terms(options);
+    Part part(object, member, type, position, count, dim_count);
+    part.pieces(Direction::write, pieces)->start(rr::capi::complete_with_nothing(completion));
   });
 }
 

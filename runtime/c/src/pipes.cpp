@@ -64,7 +64,7 @@ void set_handler(rr_pipe* handle, const rr_pipe_handler* given) {
   rr_pipe& pipe = need(handle, "there is no pipe");
   begin_telling(pipe);
   pipe.told->exchange(functions);
-  pipe.exchange({}).disconnect();
+  pipe.told->received().exchange({}).disconnect();
   if (!functions) return;
   if ((*functions)->on_packet != nullptr) {
     auto packets = pipe.end.on_received([functions](const std::shared_ptr<void>& packet) {
@@ -72,14 +72,11 @@ void set_handler(rr_pipe* handle, const rr_pipe_handler* given) {
       const rr_elements elements = data.elements();
       (*functions)->on_packet((*functions)->context, &elements, data.get());
     });
-    pipe.exchange(std::move(packets)).disconnect();  // of another thread, which came first
+    pipe.told->received()
+        .exchange(std::move(packets))
+        .disconnect();  // of another thread, which came first
   }
-  pipe.end.on_closed([told = pipe.told, mine = std::weak_ptr(functions)] {
-    const auto current = mine.lock();
-    if (!current || told->now() != current) return;  // replaced
-    told->exchange(nullptr);
-    if ((*current)->on_closed != nullptr) (*current)->on_closed((*current)->context);
-  });
+  tell_closed(pipe.end, pipe.told, functions);
 }
 
 }  // namespace
@@ -125,7 +122,7 @@ rr_status rr_pipe_connect_async(rr_object* object, rr_str member,
 // The functions stay while the end is connected.
 void rr_pipe_release(rr_pipe* pipe) {
   guarded_or(0, [&] {
-    if (pipe != nullptr) pipe->exchange({}).detach();
+    if (pipe != nullptr) pipe->told->received().exchange({}).detach();
     return 0;
   });
   rr::capi::release(pipe);

@@ -13,6 +13,19 @@
 /// Ends of pipes and wires, on either side.
 namespace rr::capi {
 
+/// The subscription of a function, which any thread may replace.
+class KeptSubscription {
+ public:
+  Subscription exchange(Subscription subscription) {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(subscription_, std::move(subscription));
+  }
+
+ private:
+  std::mutex mutex_;
+  Subscription subscription_;
+};
+
 /// What a program wants to be told of an end; replaced as a whole. The end's functions hold this.
 template <class Struct>
 class Told {
@@ -33,25 +46,28 @@ class Told {
     const std::lock_guard lock(mutex_);
     return !std::exchange(is_begun_, true);
   }
+  /// Of the function that gets what comes.
+  [[nodiscard]] KeptSubscription& received() { return received_; }
 
  private:
   mutable std::mutex mutex_;
   Functions functions_;
   bool is_begun_ = false;
+  KeptSubscription received_;
 };
 
-/// The subscription of an end's function, which any thread may replace.
-class KeptSubscription {
- public:
-  Subscription exchange(Subscription subscription) {
-    const std::lock_guard lock(mutex_);
-    return std::exchange(subscription_, std::move(subscription));
-  }
-
- private:
-  std::mutex mutex_;
-  Subscription subscription_;
-};
+/// Tells the functions that the end is closed, and lets go of them: they may hold a handle of it.
+template <class End, class Struct>
+void tell_closed(End& end, const std::shared_ptr<Told<Struct>>& told,
+                 const typename Told<Struct>::Functions& functions) {
+  end.on_closed([told, mine = std::weak_ptr(functions)] {
+    const auto current = mine.lock();
+    if (!current || told->now() != current) return;  // replaced
+    told->exchange(nullptr);
+    told->received().exchange({}).disconnect();
+    if ((*current)->on_closed != nullptr) (*current)->on_closed((*current)->context);
+  });
+}
 
 class RawPipeEnd : public PipeEnd {
  public:
@@ -81,20 +97,10 @@ struct rr_pipe {
   rr::capi::RawPipeEnd end;
   std::shared_ptr<rr::capi::Told<rr_pipe_handler>> told =
       std::make_shared<rr::capi::Told<rr_pipe_handler>>();
-  rr::capi::KeptSubscription packets{};
-
-  rr::Subscription exchange(rr::Subscription subscription) {
-    return packets.exchange(std::move(subscription));
-  }
 };
 struct rr_wire {
   std::shared_ptr<const void> keeper;
   rr::capi::RawWireEnd end;
   std::shared_ptr<rr::capi::Told<rr_wire_handler>> told =
       std::make_shared<rr::capi::Told<rr_wire_handler>>();
-  rr::capi::KeptSubscription values{};
-
-  rr::Subscription exchange(rr::Subscription subscription) {
-    return values.exchange(std::move(subscription));
-  }
 };

@@ -2,6 +2,8 @@
 #include "runtime/c/src/tables.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstring>
 #include <utility>
 
 #include "rr/array.hpp"
@@ -61,6 +63,14 @@ std::vector<std::string> OwnedDefinition::implements(const std::string& object) 
   return stored;
 }
 
+bool CheckedType::read(Decoder& decoder, const Element& element, void* value) const {
+  if (!RawType::read(decoder, element, value)) return false;
+  const rr_elements elements = static_cast<const Raw*>(value)->data.elements();
+  const rr_status status = check_(context_, &elements);
+  return status == RR_OK || decoder.fail(static_cast<ErrorCode>(status),
+                                         "this is no value of the member's type", element.name);
+}
+
 OwnedObjectType::OwnedObjectType(std::shared_ptr<const OwnedDefinition> definition,
                                  std::string_view name, const rr_member* members,
                                  std::size_t member_count, std::size_t member_size)
@@ -72,9 +82,17 @@ OwnedObjectType::OwnedObjectType(std::shared_ptr<const OwnedDefinition> definiti
   if (member_count > most || (member_count != 0 && members == nullptr)) {
     refuse_argument("the members are not there");
   }
-  if (member_size != sizeof(rr_member)) refuse_argument("members have an unknown size");
+  constexpr std::size_t first_size = offsetof(rr_member, check);  // of version 1.0
+  if (member_size != sizeof(rr_member) && member_size != first_size) {
+    refuse_argument("members have an unknown size");
+  }
   members_.reserve(member_count);
-  for (std::size_t i = 0; i < member_count; ++i) add(members[i]);
+  for (std::size_t i = 0; i < member_count; ++i) {
+    rr_member member{};
+    std::memcpy(&member, reinterpret_cast<const std::byte*>(members) + i * member_size,
+                member_size);
+    add(member);
+  }
   type_ = std::make_unique<const ObjectType>(
       ObjectType{name_, definition_->definition(), implements_views_, members_, nullptr});
 }
@@ -97,7 +115,7 @@ void OwnedObjectType::add(const rr_member& given) {
       break;
     case MemberKind::pipe:
     case MemberKind::wire:
-      member.type = &raw_type;
+      member.type = &type_of(given);
       member.holding = &holding_of<Raw>;
       break;
     case MemberKind::function:
@@ -121,6 +139,11 @@ void OwnedObjectType::add(const rr_member& given) {
       break;
   }
   members_.push_back(member);
+}
+
+const Type& OwnedObjectType::type_of(const rr_member& member) {
+  if (member.check == nullptr) return raw_type;
+  return checked_.emplace_back(member);
 }
 
 const Member& OwnedObjectType::member(std::uint32_t place, MemberKind kind) const {

@@ -58,6 +58,18 @@ class OwnedDefinition {
   Definition definition_;
 };
 
+/// A member's values as the program checks them when they come.
+class CheckedType final : public RawType {
+ public:
+  explicit CheckedType(const rr_member& member)
+      : check_(member.check), context_(member.check_context) {}
+  bool read(Decoder& decoder, const Element& element, void* value) const override;
+
+ private:
+  rr_status (*const check_)(void*, const rr_elements*);
+  void* const context_;
+};
+
 /// An object's table of members.
 class OwnedObjectType {
  public:
@@ -80,6 +92,7 @@ class OwnedObjectType {
 
  private:
   void add(const rr_member& member);
+  [[nodiscard]] const Type& type_of(const rr_member& member);
 
   const std::shared_ptr<const OwnedDefinition> definition_;
   const std::string name_;
@@ -87,6 +100,7 @@ class OwnedObjectType {
   std::vector<std::string_view> implements_views_;
   std::deque<std::string> texts_;
   std::vector<Member> members_;
+  std::deque<CheckedType> checked_;
   std::map<std::size_t, std::unique_ptr<const MemoryItems>> memories_;
   std::unique_ptr<const ObjectType> type_;
 };

@@ -42,7 +42,7 @@ void set_handler(rr_wire* handle, const rr_wire_handler* given) {
   auto functions = given != nullptr ? take_handler(given) : nullptr;
   rr_wire& wire = need(handle, "there is no wire");
   wire.told->exchange(functions);
-  wire.exchange({}).disconnect();
+  wire.told->received().exchange({}).disconnect();
   if (!functions) return;
   if ((*functions)->on_value != nullptr) {
     auto values = wire.end.on_received([functions](const void* value, const TimeSpec& time) {
@@ -51,14 +51,11 @@ void set_handler(rr_wire* handle, const rr_wire_handler* given) {
       const rr_time when = time_of(time);
       (*functions)->on_value((*functions)->context, &elements, &when, data.get());
     });
-    wire.exchange(std::move(values)).disconnect();  // of another thread, which came first
+    wire.told->received()
+        .exchange(std::move(values))
+        .disconnect();  // of another thread, which came first
   }
-  wire.end.on_closed([told = wire.told, mine = std::weak_ptr(functions)] {
-    const auto current = mine.lock();
-    if (!current || told->now() != current) return;  // replaced
-    told->exchange(nullptr);
-    if ((*current)->on_closed != nullptr) (*current)->on_closed((*current)->context);
-  });
+  tell_closed(wire.end, wire.told, functions);
 }
 
 // A peek that nobody waits for: its value, and where its time goes.
@@ -120,7 +117,7 @@ rr_status rr_wire_connect_async(rr_object* object, rr_str member, uint32_t acces
 // The functions stay while the end is connected.
 void rr_wire_release(rr_wire* wire) {
   guarded_or(0, [&] {
-    if (wire != nullptr) wire->exchange({}).detach();
+    if (wire != nullptr) wire->told->received().exchange({}).detach();
     return 0;
   });
   rr::capi::release(wire);

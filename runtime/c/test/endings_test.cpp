@@ -236,6 +236,38 @@ TEST(Contexts, OfEventsAreDroppedWhenTheirSessionHasEndedAlthoughTheSubscription
   EXPECT_EQ(held.dropped, 1);
 }
 
+// A function that holds its own end's handle would otherwise keep both for ever.
+TEST(Contexts, OfEndsAreDroppedWhenTheirSessionHasEndedAlthoughTheHandleIsHeld) {
+  SilentService silent;
+  Held packets;
+  Held values;
+  rr_pipe* pipe_made = nullptr;
+  ASSERT_EQ(
+      rr_pipe_connect(silent.root.get(), view("numbers"), nullptr, nullptr, &pipe_made, nullptr),
+      RR_OK);
+  const PipeHandle pipe(pipe_made);
+  rr_pipe_handler pipe_handler{};
+  pipe_handler.size = sizeof pipe_handler;
+  pipe_handler.context = &packets;
+  pipe_handler.on_packet = [](void*, const rr_elements*, rr_data*) {};
+  pipe_handler.drop = Held::drop;
+  ASSERT_EQ(rr_pipe_set_handler(pipe_made, &pipe_handler, nullptr), RR_OK);
+  rr_wire* wire_made = nullptr;
+  ASSERT_EQ(rr_wire_connect(silent.root.get(), view("level"), 0, nullptr, &wire_made, nullptr),
+            RR_OK);
+  const WireHandle wire(wire_made);
+  rr_wire_handler wire_handler{};
+  wire_handler.size = sizeof wire_handler;
+  wire_handler.context = &values;
+  wire_handler.on_value = [](void*, const rr_elements*, const rr_time*, rr_data*) {};
+  wire_handler.drop = Held::drop;
+  ASSERT_EQ(rr_wire_set_handler(wire_made, &wire_handler, nullptr), RR_OK);
+  EXPECT_EQ(packets.dropped, 0);
+  EXPECT_EQ(values.dropped, 0);
+  rr_client_close(silent.client.get());
+  EXPECT_TRUE(eventually([&] { return packets.dropped == 1 && values.dropped == 1; }));
+}
+
 TEST(Sessions, MayBeReleasedWhileOtherThreadsCall) {
   Pair pair;
   std::vector<std::thread> threads;

@@ -82,6 +82,98 @@ TEST(Values, OfNamedTypesGoThroughAsTheyAre) {
   }
 }
 
+// A value that has `reference` for its array, in a struct or not.
+std::vector<std::byte> with_reference(MessageVersion version, const rr_array_reference& reference,
+                                      bool in_struct) {
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(&reference, 1));
+  Writer writer;
+  writer.reset(version);
+  const std::size_t end = writer.position();
+  writer.prepend_array(bytes, {});
+  writer.element(in_struct ? "picture" : "value", ElementType::uint8, {}, RR_REFERENCE, {},
+                 static_cast<std::uint32_t>(bytes.size()), end);
+  if (in_struct) {
+    writer.string_element("label", "hall");
+    const std::size_t number = writer.position();
+    const double value = 7.5;
+    writer.prepend_array(std::as_bytes(std::span(&value, 1)), {});
+    writer.element("value", ElementType::double_, {}, 1, number);
+    writer.element("value", ElementType::structure, "test.counter.Reading", 3, end);
+  }
+  return writer.copy();
+}
+
+rr_elements elements_of(const std::vector<std::byte>& bytes, std::uint32_t version) {
+  return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), 1,
+          version | RR_WITH_REFERENCES};
+}
+
+TEST(Values, MayReferToArraysThatLieElsewhere) {
+  Node server;
+  auto service = server.register_service("counter", std::make_shared<Counter>());
+  const std::uint16_t port = server.listen_tcp(0, "127.0.0.1");
+  std::vector<std::uint8_t> items(100'000);
+  for (std::size_t i = 0; i < items.size(); ++i) items[i] = static_cast<std::uint8_t>(i * 31);
+  const rr_array_reference reference{items.data(), items.size(), 4, 0};
+  rr_node_options options{};
+  options.size = sizeof options;
+  for (const std::uint32_t without : {0U, std::uint32_t{RR_WITHOUT_V4}}) {
+    options.client_without = without;
+    const NodeHandle node = make_node(&options);
+    const ClientHandle client = connect(node, port, "counter");
+    ASSERT_TRUE(client);
+    for (const std::uint32_t version : {2U, 4U}) {
+      for (const bool in_struct : {false, true}) {
+        const auto bytes =
+            with_reference(static_cast<MessageVersion>(version), reference, in_struct);
+        const rr_elements argument = elements_of(bytes, version);
+        const Outcome outcome = call(root_of(client), "any", &argument);
+        ASSERT_EQ(outcome.status, RR_OK) << outcome.message;
+        rr_elements answer = rr_data_elements(outcome.data.get());
+        unpacked value{};
+        ASSERT_TRUE(unpack(&answer, "return", &value));
+        if (in_struct) {
+          answer = {value.payload, value.size, value.count, answer.version};
+          EXPECT_TRUE(unpack_is_text(&answer, "label", "hall"));
+          ASSERT_TRUE(unpack(&answer, "picture", &value));
+        }
+        EXPECT_EQ(value.type, 4);
+        ASSERT_EQ(value.count, items.size());
+        EXPECT_EQ(std::memcmp(value.payload, items.data(), value.size), 0);
+      }
+    }
+  }
+}
+
+TEST(Values, ThatReferToNoArrayAreRefused) {
+  Pair pair;
+  const double item = 1;
+  const auto refused = [&](const rr_array_reference& reference) {
+    for (const bool in_struct : {false, true}) {
+      const auto bytes = with_reference(MessageVersion::v4, reference, in_struct);
+      const rr_elements argument = elements_of(bytes, 4);
+      rr_data* data = nullptr;
+      EXPECT_EQ(rr_elements_convert(&argument, 2, &data, nullptr), RR_DATA_SERIALIZATION_ERROR);
+      EXPECT_EQ(call(pair.root, "any", &argument).status, RR_DATA_SERIALIZATION_ERROR);
+    }
+  };
+  refused({nullptr, 1, 1, 0});
+  refused({&item, 1, 101, 0});      // a struct
+  refused({&item, 1, 0x10001, 0});  // no type at all
+  refused({&item, 1ULL << 32, 1, 0});
+  auto bytes = with_reference(MessageVersion::v4, {&item, 1, 1, 0}, false);
+  rr_elements argument = elements_of(bytes, 4);
+  rr_data* data = nullptr;
+  ASSERT_EQ(rr_elements_convert(&argument, 4, &data, nullptr), RR_OK);
+  const DataHandle followed(data);
+  const rr_elements elements = rr_data_elements(data);
+  EXPECT_EQ(unpack_double(&elements, "value"), 1);
+  argument.version = 4;  // nothing special then
+  ASSERT_EQ(rr_elements_convert(&argument, 4, &data, nullptr), RR_OK);
+  const DataHandle kept(data);
+  EXPECT_EQ(rr_data_elements(data).size, bytes.size());
+}
+
 TEST(Values, StayWhileTheyAreHeld) {
   Pair pair;
   packer size{};

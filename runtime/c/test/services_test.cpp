@@ -3,6 +3,9 @@
 // of pods.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "runtime/c/test/den.hpp"
 #include "runtime/c/test/silent_service.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
@@ -262,9 +265,31 @@ TEST(Memories, OfPodsAreTransferredInPieces) {
               RR_OK);
     EXPECT_EQ(state.pieces, 3);
     EXPECT_EQ(state.sum, 24 * 25 / 2 + 25 * 0.5);
+    // The same without waiting, to its end, and to a failure of the program's.
+    const auto later = [&](auto begin) {
+      std::atomic<int> ended = -1;
+      Done done([&](rr_status status, void*) { ended = status; });
+      const rr_completion completion = done.completion();
+      EXPECT_EQ(begin(root.get(), view("points"), &type, position, count, 1, &pieces, nullptr,
+                      &completion, nullptr),
+                RR_OK);
+      EXPECT_TRUE(eventually([&] { return ended != -1; }));
+      return ended.load();
+    };
+    state.pieces = 0;
+    std::fill(std::begin(den.points), std::end(den.points), 0);
+    EXPECT_EQ(later(rr_memory_write_pieces_async), RR_OK);
+    EXPECT_EQ(state.pieces, 3);
+    EXPECT_EQ(den.points[29], 24.5);
+    state.pieces = 0;
+    state.sum = 0;
+    EXPECT_EQ(later(rr_memory_read_pieces_async), RR_OK);
+    EXPECT_EQ(state.pieces, 3);
+    EXPECT_EQ(state.sum, 24 * 25 / 2 + 25 * 0.5);
     pieces.take = [](void*, std::uint64_t, const std::uint64_t*, std::size_t, const rr_elements*) {
       return rr_status{RR_DATA_TYPE_ERROR};
     };
+    EXPECT_EQ(later(rr_memory_read_pieces_async), RR_DATA_TYPE_ERROR);
     EXPECT_EQ(rr_memory_read_pieces(root.get(), view("points"), &type, position, count, 1, &pieces,
                                     nullptr, nullptr),
               RR_DATA_TYPE_ERROR);

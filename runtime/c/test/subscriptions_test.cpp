@@ -11,6 +11,8 @@ namespace {
 using SubscriptionOwner =
     std::unique_ptr<rr_service_subscription, Release<rr_service_subscription_release>>;
 using WireOwner = std::unique_ptr<rr_wire_subscription, Release<rr_wire_subscription_release>>;
+using ObjectOwner =
+    std::unique_ptr<rr_object_subscription, Release<rr_object_subscription_release>>;
 using PipeOwner = std::unique_ptr<rr_pipe_subscription, Release<rr_pipe_subscription_release>>;
 
 struct State {
@@ -162,6 +164,40 @@ TEST(Subscriptions, OfWiresAndPipesHaveValuesBothWays) {
   }));
   rr_pipe_subscription_close(pipe_made);
   rr_wire_subscription_close(wire_made);
+}
+
+TEST(Subscriptions, BringObjectsBelowTheRoot) {
+  Pair pair;
+  const std::string url = "rr+tcp://127.0.0.1:" + std::to_string(pair.port) + "/?service=counter";
+  const rr_str urls[] = {view(url)};
+  rr_service_subscription* made = nullptr;
+  ASSERT_EQ(rr_service_subscribe(pair.node.get(), urls, 1, nullptr, &made, nullptr), RR_OK);
+  const SubscriptionOwner subscription(made);
+  rr_object_subscription* object_made = nullptr;
+  ASSERT_EQ(rr_object_subscribe(made, view("*.by_name[low]"), &object_made, nullptr), RR_OK);
+  const ObjectOwner object(object_made);
+  rr_object* found = nullptr;
+  rr_error* why = nullptr;
+  const rr_status status = rr_object_subscription_get(object_made, 20'000, &found, &why);
+  rr_error_info info{};
+  info.size = sizeof info;
+  if (why != nullptr) rr_error_read(why, &info);
+  ASSERT_EQ(status, RR_OK) << text(info.message);
+  const ObjectHandle child(found);
+  EXPECT_EQ(text(rr_object_path(found)), "counter.by_name[low]");
+  EXPECT_EQ(call(child, "value", nullptr, nullptr, RR_PROPERTY_GET).status, RR_OK);
+  rr_object* again = nullptr;
+  ASSERT_EQ(rr_object_subscription_get(object_made, 0, &again, nullptr), RR_OK);
+  rr_object_release(again);
+
+  rr_object_subscription* none_made = nullptr;
+  ASSERT_EQ(rr_object_subscribe(made, view("*.nothing"), &none_made, nullptr), RR_OK);
+  const ObjectOwner none(none_made);
+  EXPECT_EQ(rr_object_subscription_get(none_made, 50, &again, nullptr), RR_OPERATION_TIMEOUT);
+  EXPECT_EQ(rr_object_subscription_get(none_made, 0, &again, nullptr), RR_CONNECTION_ERROR);
+  rr_object_subscription_close(object_made);
+  EXPECT_EQ(rr_object_subscription_get(object_made, 10, &again, nullptr), RR_INVALID_OPERATION);
+  EXPECT_EQ(rr_object_subscription_get(nullptr, 0, &again, nullptr), RR_INVALID_ARGUMENT);
 }
 
 }  // namespace

@@ -230,4 +230,32 @@ public sealed class LiveTests
         Assert.Equal(3, pair.Stub.Add(1, 2));
         return new WeakReference(pair.Arm);
     }
+
+    [Theory]
+    [ClassData(typeof(Pairs))]
+    public async Task Memories_of_pods_are_transferred_without_waiting(bool isOld, bool isCpp)
+    {
+        using var pair = new Pair(isOld, isCpp);
+        Sample[] sent = [.. Enumerable.Range(0, 6).Select(i => new Sample { Seq = (uint)i + 1, At = [i, 0, 1] })];
+        await pair.Stub.Records.WriteAsync(2, sent);
+        Sample[] came = Pods.New<Sample>(8);
+        await pair.Stub.Records.ReadAsync(1, came);
+        Assert.Equal([0u, 1u, 2u, 3u, 4u, 5u, 6u, 0u], came.Select(sample => sample.Seq));
+        Assert.Equal(5, came[6].At[0]);
+        RobdefException error = await Assert.ThrowsAsync<RobdefException>(() => pair.Stub.Records.ReadAsync(9, came));
+        Assert.Equal(ErrorCode.OutOfRange, error.Code);
+        using var stop = new CancellationTokenSource();
+        stop.Cancel();
+        await Assert.ThrowsAnyAsync<OperationCanceledException>(() => pair.Stub.Records.ReadAsync(1, came, stop.Token));
+        // The memory goes on.
+        await Task.WhenAll(Enumerable.Range(0, 50).Select(_ => pair.Stub.Records.WriteAsync(0, sent)));
+        Assert.Equal(1u, (await ReadOneAsync(pair.Stub)).Seq);
+    }
+
+    private static async Task<Sample> ReadOneAsync(ArmStub arm)
+    {
+        Sample[] one = Pods.New<Sample>(1);
+        await arm.Records.ReadAsync(0, one);
+        return one[0];
+    }
 }

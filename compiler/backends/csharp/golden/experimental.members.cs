@@ -82,9 +82,9 @@ public abstract class SensorSkeleton : Skeleton
 {
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Sensor",
     [
-        new("frames", MemberKind.Pipe, MemberAccess.ReadOnly),
+        new("frames", MemberKind.Pipe, MemberAccess.ReadOnly) { Check = ValueCheck.Of(global::Experimental.Members.Frame.RrCodec) },
         new("ask", MemberKind.Callback, MemberAccess.None) { ReturnsValue = true },
-        new("force", MemberKind.Wire, MemberAccess.ReadOnly),
+        new("force", MemberKind.Wire, MemberAccess.ReadOnly) { Check = ValueCheck.Of(RrCodecs.Double3) },
         new("buffer", MemberKind.Memory, MemberAccess.None) { Memory = MemoryType.Of(ValueCodec.Double, false) },
         new("count", MemberKind.Function, MemberAccess.None) { ReturnsValue = true, Generator = GeneratorForm.Returns },
     ]);
@@ -435,17 +435,17 @@ public abstract class PipesSkeleton : Skeleton
 {
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Pipes",
     [
-        new("numbers", MemberKind.Pipe, MemberAccess.None),
-        new("bytes_out", MemberKind.Pipe, MemberAccess.ReadOnly),
-        new("text_in", MemberKind.Pipe, MemberAccess.WriteOnly),
-        new("lossy", MemberKind.Pipe, MemberAccess.Unreliable),
-        new("points", MemberKind.Pipe, MemberAccess.ReadOnly | MemberAccess.Unreliable | MemberAccess.NoLock),
-        new("samples", MemberKind.Pipe, MemberAccess.None),
-        new("mode", MemberKind.Pipe, MemberAccess.None),
-        new("batches", MemberKind.Pipe, MemberAccess.None),
-        new("anything", MemberKind.Pipe, MemberAccess.None),
-        new("long_ones", MemberKind.Pipe, MemberAccess.None),
-        new("a_pipe_whose_name_is_so_long_that_its_line_has_to_be_broken_somewhere", MemberKind.Pipe, MemberAccess.None),
+        new("numbers", MemberKind.Pipe, MemberAccess.None) { Check = ValueCheck.Of(ValueCodec.Double) },
+        new("bytes_out", MemberKind.Pipe, MemberAccess.ReadOnly) { Check = ValueCheck.Of(ValueCodec.UInt8.Array) },
+        new("text_in", MemberKind.Pipe, MemberAccess.WriteOnly) { Check = ValueCheck.Of(ValueCodec.String) },
+        new("lossy", MemberKind.Pipe, MemberAccess.Unreliable) { Check = ValueCheck.Of(ValueCodec.Int32) },
+        new("points", MemberKind.Pipe, MemberAccess.ReadOnly | MemberAccess.Unreliable | MemberAccess.NoLock) { Check = ValueCheck.Of(global::Experimental.Namedarrays.Vector3.RrCodec) },
+        new("samples", MemberKind.Pipe, MemberAccess.None) { Check = ValueCheck.Of(global::Experimental.Pods.Sample.RrCodec.Array) },
+        new("mode", MemberKind.Pipe, MemberAccess.None) { Check = ValueCheck.Of(ValueCodec.Enum<Mode>()) },
+        new("batches", MemberKind.Pipe, MemberAccess.None) { Check = ValueCheck.Of(RrCodecs.ExperimentalMembersFrameList) },
+        new("anything", MemberKind.Pipe, MemberAccess.None) { Check = ValueCheck.Of(RrCodecs.VarvalueString) },
+        new("long_ones", MemberKind.Pipe, MemberAccess.None) { Check = ValueCheck.Of(RrCodecs.Double100000) },
+        new("a_pipe_whose_name_is_so_long_that_its_line_has_to_be_broken_somewhere", MemberKind.Pipe, MemberAccess.None) { Check = ValueCheck.Of(RrCodecs.ExperimentalPodsSampleMultiDimString) },
     ]);
 
     public override ServedType RrType => s_rrType;
@@ -687,15 +687,15 @@ public abstract class WiresSkeleton : Skeleton
 {
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Wires",
     [
-        new("level", MemberKind.Wire, MemberAccess.None),
-        new("frame", MemberKind.Wire, MemberAccess.None),
-        new("counts_out", MemberKind.Wire, MemberAccess.ReadOnly),
-        new("target_in", MemberKind.Wire, MemberAccess.WriteOnly),
-        new("point", MemberKind.Wire, MemberAccess.NoLock),
-        new("sample", MemberKind.Wire, MemberAccess.ReadOnly | MemberAccess.NoLock),
-        new("grid", MemberKind.Wire, MemberAccess.None),
-        new("anything", MemberKind.Wire, MemberAccess.None),
-        new("modes", MemberKind.Wire, MemberAccess.None),
+        new("level", MemberKind.Wire, MemberAccess.None) { Check = ValueCheck.Of(ValueCodec.Double) },
+        new("frame", MemberKind.Wire, MemberAccess.None) { Check = ValueCheck.Of(global::Experimental.Members.Frame.RrCodec) },
+        new("counts_out", MemberKind.Wire, MemberAccess.ReadOnly) { Check = ValueCheck.Of(ValueCodec.Int32.Array) },
+        new("target_in", MemberKind.Wire, MemberAccess.WriteOnly) { Check = ValueCheck.Of(RrCodecs.Double3) },
+        new("point", MemberKind.Wire, MemberAccess.NoLock) { Check = ValueCheck.Of(global::Experimental.Namedarrays.Vector3.RrCodec) },
+        new("sample", MemberKind.Wire, MemberAccess.ReadOnly | MemberAccess.NoLock) { Check = ValueCheck.Of(global::Experimental.Pods.Sample.RrCodec) },
+        new("grid", MemberKind.Wire, MemberAccess.None) { Check = ValueCheck.Of(ValueCodec.Bool.MultiDim) },
+        new("anything", MemberKind.Wire, MemberAccess.None) { Check = ValueCheck.Of(ValueCodec.VarValue) },
+        new("modes", MemberKind.Wire, MemberAccess.None) { Check = ValueCheck.Of(RrCodecs.ExperimentalMembersModeInt32) },
     ]);
 
     public override ServedType RrType => s_rrType;
@@ -1034,9 +1034,9 @@ public abstract class StationSkeleton : Skeleton
 {
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Station",
     [
-        new("frames", MemberKind.Pipe, MemberAccess.ReadOnly),
+        new("frames", MemberKind.Pipe, MemberAccess.ReadOnly) { Check = ValueCheck.Of(global::Experimental.Members.Frame.RrCodec) },
         new("ask", MemberKind.Callback, MemberAccess.None) { ReturnsValue = true },
-        new("force", MemberKind.Wire, MemberAccess.ReadOnly),
+        new("force", MemberKind.Wire, MemberAccess.ReadOnly) { Check = ValueCheck.Of(RrCodecs.Double3) },
         new("buffer", MemberKind.Memory, MemberAccess.None) { Memory = MemoryType.Of(ValueCodec.Double, false) },
         new("count", MemberKind.Function, MemberAccess.None) { ReturnsValue = true, Generator = GeneratorForm.Returns },
         new("label", MemberKind.Property, MemberAccess.None),
@@ -1047,7 +1047,7 @@ public abstract class StationSkeleton : Skeleton
         new("sample_grid", MemberKind.Memory, MemberAccess.NoLockRead) { Memory = MemoryType.Of(global::Experimental.Pods.Sample.RrCodec, true) },
         new("points", MemberKind.Memory, MemberAccess.WriteOnly) { Memory = MemoryType.Of(global::Experimental.Namedarrays.Vector3.RrCodec, false) },
         new("point_grid", MemberKind.Memory, MemberAccess.NoLock) { Memory = MemoryType.Of(global::Experimental.Namedarrays.Vector3.RrCodec, true) },
-        new("mode", MemberKind.Wire, MemberAccess.None),
+        new("mode", MemberKind.Wire, MemberAccess.None) { Check = ValueCheck.Of(ValueCodec.Enum<Mode>()) },
         new("changed", MemberKind.Event, MemberAccess.None),
         new("generators", MemberKind.ObjRef, MemberAccess.None) { ObjectType = "experimental.members.Generators" },
     ]);
@@ -1239,9 +1239,9 @@ public abstract class ReservedSkeleton : Skeleton
 {
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Reserved",
     [
-        new("new", MemberKind.Pipe, MemberAccess.None),
+        new("new", MemberKind.Pipe, MemberAccess.None) { Check = ValueCheck.Of(ValueCodec.Int32) },
         new("delete", MemberKind.Callback, MemberAccess.None) { ReturnsValue = true },
-        new("union", MemberKind.Wire, MemberAccess.None),
+        new("union", MemberKind.Wire, MemberAccess.None) { Check = ValueCheck.Of(ValueCodec.Int32) },
         new("register", MemberKind.Memory, MemberAccess.None) { Memory = MemoryType.Of(ValueCodec.Int32, false) },
         new("for", MemberKind.Function, MemberAccess.None) { ReturnsValue = true, Generator = GeneratorForm.Both },
     ]);

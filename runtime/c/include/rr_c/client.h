@@ -247,6 +247,22 @@ RR_API rr_status rr_memory_write_pieces(rr_object* object, rr_str member,
                                         const rr_memory_pieces* pieces,
                                         const rr_call_options* options, rr_error** error);
 
+/* The same without waiting (minor version 1): the functions are called on threads of the node, one
+ * at a time, and not any more once the completion is. `pieces` is read during the call only.
+ * Result: NULL. */
+RR_API rr_status rr_memory_read_pieces_async(rr_object* object, rr_str member,
+                                             const rr_memory_type* type, const uint64_t* position,
+                                             const uint64_t* count, size_t dim_count,
+                                             const rr_memory_pieces* pieces,
+                                             const rr_call_options* options,
+                                             const rr_completion* completion, rr_error** error);
+RR_API rr_status rr_memory_write_pieces_async(rr_object* object, rr_str member,
+                                              const rr_memory_type* type, const uint64_t* position,
+                                              const uint64_t* count, size_t dim_count,
+                                              const rr_memory_pieces* pieces,
+                                              const rr_call_options* options,
+                                              const rr_completion* completion, rr_error** error);
+
 #ifdef __cplusplus
 }
 #endif

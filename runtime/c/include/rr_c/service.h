@@ -51,13 +51,21 @@ typedef struct rr_member {
   uint32_t reserved;
   rr_str object_type;    /* objref: qualified, empty for varobject */
   rr_memory_type memory; /* memory */
+  /* Pipe, wire (minor version 1): whether a value that a client sends or pokes is one of the
+   * member's type. What is not RR_OK is answered to a poke, and a packet or value that was sent is
+   * dropped, as if it had not been (07, section 13). Called by the thread that reads the
+   * connection, for several at once; it only looks at the value, and calls nothing of this
+   * interface. NULL: any value is taken. */
+  rr_status (*check)(void* check_context, const rr_elements* value);
+  void* check_context; /* stays as long as the table */
 } rr_member;
 
 /* The table of an object's members, those of what it implements included. Counted, as definitions.
  */
 typedef struct rr_object_type rr_object_type;
 /* `name` is that of the object in the definition, without the definition's. What it implements is
- * read from the text. `member_size` is sizeof(rr_member). */
+ * read from the text. `member_size` is sizeof(rr_member), also of an
+ * older version. */
 RR_API rr_status rr_object_type_new(rr_definition* definition, rr_str name,
                                     const rr_member* members, size_t member_count,
                                     size_t member_size, rr_object_type** out_type,

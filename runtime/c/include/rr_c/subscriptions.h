@@ -2,8 +2,8 @@
 #ifndef RR_C_SUBSCRIPTIONS_H
 #define RR_C_SUBSCRIPTIONS_H
 
-/* Services that come and go: connections that are kept, with their wires and pipes. Included by
- * rr.h. */
+/* Services that come and go: connections that are kept, with their wires, pipes and objects.
+ * Included by rr.h. */
 
 #include "streams.h"
 
@@ -90,6 +90,16 @@ typedef struct rr_wire_subscription_handler {
 RR_API rr_status rr_wire_subscription_set_handler(rr_wire_subscription* wire,
                                                   const rr_wire_subscription_handler* handler,
                                                   rr_error** error);
+
+/* The object at a path, which is looked for when a client comes. Lasts as those above. */
+typedef struct rr_object_subscription rr_object_subscription;
+RR_API rr_status rr_object_subscribe(rr_service_subscription* subscription, rr_str path,
+                                     rr_object_subscription** out_object, rr_error** error);
+RR_API void rr_object_subscription_release(rr_object_subscription* object);
+RR_API void rr_object_subscription_close(rr_object_subscription* object);
+/* The object of the client that is connected; otherwise as rr_service_subscription_root. */
+RR_API rr_status rr_object_subscription_get(const rr_object_subscription* object, int32_t wait_ms,
+                                            rr_object** out_object, rr_error** error);
 
 /* When more than `max_received` packets wait the oldest is lost; 0: no limit. */
 RR_API rr_status rr_pipe_subscribe(rr_service_subscription* subscription, rr_str member,

@@ -20,7 +20,7 @@ extern "C" {
 /* Major part in the upper 16 bits, minor in the lower. A program refuses another major version than
  * that of the header it was made with, and a lower minor one. Minor versions add functions, and
  * fields at the end of structs that have a size. */
-#define RR_ABI_VERSION 0x00010000u
+#define RR_ABI_VERSION 0x00010001u
 
 /* The version of the library that is loaded. To be called first. */
 RR_API uint32_t rr_abi_version(void);
@@ -56,6 +56,11 @@ typedef struct rr_node_id {
  * the other; rr_client_message_version and rr_request_info tell which one costs nothing. It is
  * checked, which fails with RR_DATA_SERIALIZATION_ERROR, and read during the call only. The name of
  * a single value does not matter, it is replaced by the one that the protocol wants.
+ *
+ * Large arrays that the program hands in may stay where they are (minor version 1): `version` then
+ * has RR_WITH_REFERENCES added, and an element at any depth that is one rr_array_reference, bytes
+ * (uint8, 4) with the metadata RR_REFERENCE, stands for an element of the same name that holds
+ * these items. They are sent from there, and copied only where the call says that it copies.
  */
 typedef struct rr_elements {
   const uint8_t* data;
@@ -63,6 +68,16 @@ typedef struct rr_elements {
   uint32_t count;
   uint32_t version;
 } rr_elements;
+
+enum { RR_WITH_REFERENCES = 0x100 };
+#define RR_REFERENCE "rr.array"
+/* In the order of the machine, at any alignment. */
+typedef struct rr_array_reference {
+  const void* items;
+  uint64_t count; /* of items */
+  uint32_t type;  /* the protocol's number of a packed type: double (1) ... bool (14) */
+  uint32_t reserved;
+} rr_array_reference;
 
 /* Received bytes. They stay where they are until the last reference is released: no copy is needed.
  */

@@ -82,6 +82,7 @@ public ref struct Call
 
     private unsafe nint Send(CancellationToken cancel)
     {
+        using RemoteUse target = _object.Use();
         var cancellation = new NativeCancellation(cancel);
         ElementWriter? writer = _writer;
         fixed (byte* name = _member, first = writer is null ? default : writer.Written)
@@ -90,7 +91,7 @@ public ref struct Call
             RrElements elements = writer is null ? default : Elements.Of(first, writer);
             RrCallOptions options = Options(cancellation.Handle);
             nint error;
-            int status = Functions.rr_object_call(_object.Native, _request, Name(name), &elements, &options, out nint answer, &error);
+            int status = Functions.rr_object_call(target.Native, _request, Name(name), &elements, &options, out nint answer, &error);
             cancellation.End();
             GiveBack();
             return status == 0 ? answer : throw cancellation.Failed(Failure.Take(status, error, _object.Types));
@@ -99,11 +100,12 @@ public ref struct Call
 
     private unsafe Task<T> Begin<T>(ValueCodec<T>? codec, CancellationToken cancel)
     {
-        if (cancel.IsCancellationRequested)
+        if (_object.Refusal<T>(cancel) is { } refused)
         {
             GiveBack();
-            return Task.FromCanceled<T>(cancel);
+            return refused;
         }
+        using RemoteUse target = _object.Use();
         var completion = new AnswerCompletion<T>(_object.Types, codec, cancel);
         ElementWriter? writer = _writer;
         fixed (byte* name = _member, first = writer is null ? default : writer.Written)
@@ -112,7 +114,7 @@ public ref struct Call
             RrCallOptions options = Options(completion.Cancellation);
             RrCompletion native = completion.Native;
             nint error;
-            int status = Functions.rr_object_call_async(_object.Native, _request, Name(name), &elements, &options, &native, &error);
+            int status = Functions.rr_object_call_async(target.Native, _request, Name(name), &elements, &options, &native, &error);
             GiveBack();
             return status == 0 ? completion.Task : Task.FromException<T>(completion.Abandon(native, status, error));
         }
@@ -120,6 +122,7 @@ public ref struct Call
 
     private unsafe GeneratorHandle OpenNow(CancellationToken cancel)
     {
+        using RemoteUse target = _object.Use();
         var cancellation = new NativeCancellation(cancel);
         ElementWriter? writer = _writer;
         fixed (byte* name = _member, first = writer is null ? default : writer.Written)
@@ -128,7 +131,7 @@ public ref struct Call
             RrElements elements = writer is null ? default : Elements.Of(first, writer);
             RrCallOptions options = Options(cancellation.Handle);
             nint error;
-            int status = Functions.rr_generator_open(_object.Native, Name(name), &elements, &options, out nint generator, &error);
+            int status = Functions.rr_generator_open(target.Native, Name(name), &elements, &options, out nint generator, &error);
             cancellation.End();
             GiveBack();
             return status == 0 ? new GeneratorHandle(generator) : throw cancellation.Failed(Failure.Take(status, error, _object.Types));
@@ -137,11 +140,12 @@ public ref struct Call
 
     private unsafe Task<T> OpenLater<T>(Func<nint, T> convert, CancellationToken cancel)
     {
-        if (cancel.IsCancellationRequested)
+        if (_object.Refusal<T>(cancel) is { } refused)
         {
             GiveBack();
-            return Task.FromCanceled<T>(cancel);
+            return refused;
         }
+        using RemoteUse target = _object.Use();
         var completion = new TaskCompletion<T>(_object.Types, convert, cancel);
         ElementWriter? writer = _writer;
         fixed (byte* name = _member, first = writer is null ? default : writer.Written)
@@ -150,7 +154,7 @@ public ref struct Call
             RrCallOptions options = Options(completion.Cancellation);
             RrCompletion native = completion.Native;
             nint error;
-            int status = Functions.rr_generator_open_async(_object.Native, Name(name), &elements, &options, &native, &error);
+            int status = Functions.rr_generator_open_async(target.Native, Name(name), &elements, &options, &native, &error);
             GiveBack();
             return status == 0 ? completion.Task : Task.FromException<T>(completion.Abandon(native, status, error));
         }

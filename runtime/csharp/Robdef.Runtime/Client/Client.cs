@@ -10,6 +10,13 @@ namespace Robdef.Runtime;
 /// <summary>The connection of a client: what its objects have in common.</summary>
 internal sealed class Session
 {
+    private const int FewObjects = 8;
+
+    private readonly Lock _lock = new();
+    private readonly List<WeakReference<RemoteHandle>> _objects = [];
+    private int _enough = FewObjects;
+    private bool _hasEnded;
+
     public Session(ClientHandle client, Node node, KnownTypes types)
         : this(node, types, (MessageVersion)Functions.rr_client_message_version(client)) => Client = client;
 
@@ -36,7 +43,49 @@ internal sealed class Session
 
     public MessageVersion Version { get; }
 
-    public ObjectHandle Handle(nint native) => new(new RemoteHandle(native), this);
+    public ObjectHandle Handle(nint native)
+    {
+        var handle = new RemoteHandle(native);
+        bool hasEnded;
+        lock (_lock)
+        {
+            hasEnded = _hasEnded;
+            if (_objects.Count >= _enough)
+            {
+                _objects.RemoveAll(static one => !one.TryGetTarget(out _));
+                _enough = Math.Max(FewObjects, 2 * _objects.Count);
+            }
+            _objects.Add(new WeakReference<RemoteHandle>(handle));
+        }
+        if (hasEnded)
+        {
+            handle.Dispose();
+        }
+        return new ObjectHandle(handle, this);
+    }
+
+    /// <summary>
+    /// Ends the session and lets go of its objects. They keep the native session, and with it the socket, which is not to
+    /// wait until the garbage collector comes to the stubs.
+    /// </summary>
+    public void End()
+    {
+        Client?.Dispose();
+        WeakReference<RemoteHandle>[] objects;
+        lock (_lock)
+        {
+            _hasEnded = true;
+            objects = [.. _objects];
+            _objects.Clear();
+        }
+        foreach (WeakReference<RemoteHandle> one in objects)
+        {
+            if (one.TryGetTarget(out RemoteHandle? handle))
+            {
+                handle.Dispose();
+            }
+        }
+    }
 }
 
 /// <summary>A session with a service. Disposing it ends the session; its stubs then fail.</summary>
@@ -114,10 +163,10 @@ public sealed class Client<TStub> : IDisposable, IAsyncDisposable
     public void Close() => Functions.rr_client_close(_handle);
 
     /// <summary>Closes the session and lets go of it.</summary>
-    public void Dispose() => _handle.Dispose();
+    public void Dispose() => _session.End();
 
     /// <summary>The same, on another thread.</summary>
-    public ValueTask DisposeAsync() => new(Task.Run(_handle.Dispose));
+    public ValueTask DisposeAsync() => new(Task.Run(_session.End));
 
     private unsafe void Authenticate(string userName, string password, Dictionary<string, VarValue?>? credentials)
     {

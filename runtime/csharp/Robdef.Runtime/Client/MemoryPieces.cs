@@ -61,6 +61,15 @@ internal abstract unsafe class MemoryPieces
         }
     }
 
+    /// <summary>What the native runtime calls; the context is freed when it will not any more.</summary>
+    public static RrMemoryPieces Native(nint context) => new()
+    {
+        Size = (nuint)sizeof(RrMemoryPieces),
+        Context = context,
+        Take = &OnTake,
+        Give = &OnGive,
+    };
+
     protected abstract void Take(ulong offset, ReadOnlySpan<ulong> count, in RrElements data);
 
     protected abstract int Give(ulong offset, ReadOnlySpan<ulong> count, nint piece);
@@ -72,7 +81,7 @@ internal abstract unsafe class MemoryPieces
     }
 }
 
-internal sealed unsafe class MemoryPieces<T>(ItemCodec<T> codec, ObjectHandle target, T[] items, ulong[] whole, bool isMulti) : MemoryPieces
+internal sealed unsafe class MemoryPieces<T>(ItemCodec<T> codec, ObjectHandle target, Memory<T> items, ulong[] whole, bool isMulti) : MemoryPieces
 {
     protected override void Take(ulong offset, ReadOnlySpan<ulong> count, in RrElements data)
     {
@@ -81,7 +90,7 @@ internal sealed unsafe class MemoryPieces<T>(ItemCodec<T> codec, ObjectHandle ta
         int next = 0;
         foreach (Run run in new Runs(offset, count, whole))
         {
-            piece.AsSpan(next, run.Length).CopyTo(items.AsSpan(run.Begin));
+            piece.AsSpan(next, run.Length).CopyTo(items.Span[run.Begin..]);
             next += run.Length;
         }
     }
@@ -92,7 +101,7 @@ internal sealed unsafe class MemoryPieces<T>(ItemCodec<T> codec, ObjectHandle ta
         int next = 0;
         foreach (Run run in new Runs(offset, count, whole))
         {
-            items.AsSpan(run.Begin, run.Length).CopyTo(part.AsSpan(next));
+            items.Span.Slice(run.Begin, run.Length).CopyTo(part.AsSpan(next));
             next += run.Length;
         }
         ElementWriter writer = Writers.Rent(target.Version);

@@ -33,10 +33,11 @@ public sealed class Pipe<T>
     /// <param name="isReliable">No packet may be lost or come in another order, although the definition lets them.</param>
     public unsafe PipeEndpoint<T> Connect(int index = -1, bool isReliable = false)
     {
+        using RemoteUse target = _object.Use();
         using var name = new NativeText(_member);
         RrPipeOptions pipe = Options(index, isReliable);
         nint error;
-        int status = Functions.rr_pipe_connect(_object.Native, name.Value, &pipe, null, out nint end, &error);
+        int status = Functions.rr_pipe_connect(target.Native, name.Value, &pipe, null, out nint end, &error);
         Failure.Check(status, error, _object.Types);
         return new PipeEndpoint<T>(new PipeHandle(end), _object.Types, _object.Version, _codec);
     }
@@ -47,10 +48,11 @@ public sealed class Pipe<T>
     /// <param name="cancel">Ends the waiting.</param>
     public unsafe Task<PipeEndpoint<T>> ConnectAsync(int index = -1, bool isReliable = false, CancellationToken cancel = default)
     {
-        if (cancel.IsCancellationRequested)
+        if (_object.Refusal<PipeEndpoint<T>>(cancel) is { } refused)
         {
-            return Task.FromCanceled<PipeEndpoint<T>>(cancel);
+            return refused;
         }
+        using RemoteUse target = _object.Use();
         KnownTypes types = _object.Types;
         MessageVersion version = _object.Version;
         var completion = new TaskCompletion<PipeEndpoint<T>>(types, end => new PipeEndpoint<T>(new PipeHandle(end), types, version, _codec), cancel);
@@ -59,7 +61,7 @@ public sealed class Pipe<T>
         var options = new RrCallOptions { Size = (nuint)sizeof(RrCallOptions), Cancellation = completion.Cancellation };
         RrCompletion native = completion.Native;
         nint error;
-        int status = Functions.rr_pipe_connect_async(_object.Native, name.Value, &pipe, &options, &native, &error);
+        int status = Functions.rr_pipe_connect_async(target.Native, name.Value, &pipe, &options, &native, &error);
         return status == 0 ? completion.Task : Task.FromException<PipeEndpoint<T>>(completion.Abandon(native, status, error));
     }
 

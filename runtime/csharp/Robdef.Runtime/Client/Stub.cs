@@ -30,33 +30,6 @@ public interface IStub<TSelf>
 #pragma warning restore CA1000
 }
 
-/// <summary>An object on another node, named by its path, with the session through which it is reached.</summary>
-public sealed class ObjectHandle
-{
-    private string? _path;
-    private string? _typeName;
-
-    internal ObjectHandle(RemoteHandle native, Session session)
-    {
-        Native = native;
-        Session = session;
-    }
-
-    /// <summary>Its path in the service.</summary>
-    public string Path => _path ??= Failure.Text(Functions.rr_object_path(Native));
-
-    /// <summary>Its qualified type, as the service told it.</summary>
-    public string TypeName => _typeName ??= Failure.Text(Functions.rr_object_type_name(Native));
-
-    internal RemoteHandle Native { get; }
-
-    internal Session Session { get; }
-
-    internal KnownTypes Types => Session.Types;
-
-    internal MessageVersion Version => Session.Version;
-}
-
 /// <summary>An object on another node. Generated classes derive from it; it may be used by any thread.</summary>
 /// <param name="rrHandle">Which object.</param>
 public class Stub(ObjectHandle rrHandle)
@@ -73,30 +46,34 @@ public class Stub(ObjectHandle rrHandle)
     /// <summary>Reserves the object for all sessions of this user, or with <paramref name="sessionOnly"/> for this one.</summary>
     public unsafe void RrLock(bool sessionOnly = false)
     {
+        using RemoteUse target = RrHandle.Use();
         nint error;
-        Failure.Check(Functions.rr_object_lock(RrHandle.Native, sessionOnly ? 1 : 0, null, &error), error, RrHandle.Types);
+        Failure.Check(Functions.rr_object_lock(target.Native, sessionOnly ? 1 : 0, null, &error), error, RrHandle.Types);
     }
 
     /// <summary>Ends <see cref="RrLock"/>.</summary>
     public unsafe void RrUnlock()
     {
+        using RemoteUse target = RrHandle.Use();
         nint error;
-        Failure.Check(Functions.rr_object_unlock(RrHandle.Native, null, &error), error, RrHandle.Types);
+        Failure.Check(Functions.rr_object_unlock(target.Native, null, &error), error, RrHandle.Types);
     }
 
     /// <summary>Waits until this session alone may use the object; for as long as it takes without a limit.</summary>
     public unsafe void RrEnterMonitor(TimeSpan? limit = null)
     {
+        using RemoteUse target = RrHandle.Use();
         nint error;
         int milliseconds = limit is { } time ? Times.Milliseconds(time) : -1;
-        Failure.Check(Functions.rr_object_enter_monitor(RrHandle.Native, milliseconds, null, &error), error, RrHandle.Types);
+        Failure.Check(Functions.rr_object_enter_monitor(target.Native, milliseconds, null, &error), error, RrHandle.Types);
     }
 
     /// <summary>Ends <see cref="RrEnterMonitor"/>.</summary>
     public unsafe void RrExitMonitor()
     {
+        using RemoteUse target = RrHandle.Use();
         nint error;
-        Failure.Check(Functions.rr_object_exit_monitor(RrHandle.Native, null, &error), error, RrHandle.Types);
+        Failure.Check(Functions.rr_object_exit_monitor(target.Native, null, &error), error, RrHandle.Types);
     }
 
     /// <summary>The type of what is at an objref now, qualified.</summary>
@@ -104,11 +81,12 @@ public class Stub(ObjectHandle rrHandle)
     /// <param name="index">Its index, if it has one.</param>
     public unsafe string RrFindType(string member, ObjectIndex index = default)
     {
+        using RemoteUse target = RrHandle.Use();
         using var name = new NativeText(member);
         using var text = new NativeText(index.Text ?? "");
         var nativeIndex = new RrIndex { Form = (uint)index.Form, Number = index.Number, Text = text.Value };
         nint error;
-        int status = Functions.rr_object_find_type(RrHandle.Native, name.Value, &nativeIndex, null, out nint data, &error);
+        int status = Functions.rr_object_find_type(target.Native, name.Value, &nativeIndex, null, out nint data, &error);
         Failure.Check(status, error, RrHandle.Types);
         return Elements.TakeText(data);
     }
@@ -129,6 +107,7 @@ public class Stub(ObjectHandle rrHandle)
     protected unsafe void RrSubscribe<THandler>(string member, THandler handler, EventReader<THandler> read)
         where THandler : Delegate
     {
+        using RemoteUse target = RrHandle.Use();
         if (handler is null)
         {
             return;
@@ -143,7 +122,7 @@ public class Stub(ObjectHandle rrHandle)
             Drop = &Context.Drop,
         };
         nint error;
-        int status = Functions.rr_event_subscribe(RrHandle.Native, name.Value, &native, out nint subscription, &error);
+        int status = Functions.rr_event_subscribe(target.Native, name.Value, &native, out nint subscription, &error);
         Failure.Check(status, error, RrHandle.Types);
         lock (_subscriptions)
         {
@@ -207,6 +186,7 @@ public class Stub(ObjectHandle rrHandle)
 
     private unsafe nint FindNow(ReadOnlySpan<byte> member, ObjectIndex index, string typeName, CancellationToken cancel)
     {
+        using RemoteUse target = RrHandle.Use();
         var cancellation = new NativeCancellation(cancel);
         using var type = new NativeText(typeName);
         using var text = new NativeText(index.Text ?? "");
@@ -216,7 +196,7 @@ public class Stub(ObjectHandle rrHandle)
             var nativeIndex = new RrIndex { Form = (uint)index.Form, Number = index.Number, Text = text.Value };
             var options = new RrCallOptions { Size = (nuint)sizeof(RrCallOptions), Cancellation = cancellation.Handle };
             nint error;
-            int status = Functions.rr_object_find(RrHandle.Native, new RrStr { Data = name, Size = (nuint)member.Length },
+            int status = Functions.rr_object_find(target.Native, new RrStr { Data = name, Size = (nuint)member.Length },
                 &nativeIndex, type.Value, &options, out nint found, &error);
             cancellation.End();
             return status == 0 ? found : throw cancellation.Failed(Failure.Take(status, error, RrHandle.Types));
@@ -226,10 +206,11 @@ public class Stub(ObjectHandle rrHandle)
     private unsafe Task<T> FindLater<T>(ReadOnlySpan<byte> member, ObjectIndex index, string typeName, Func<nint, T> convert,
         CancellationToken cancel)
     {
-        if (cancel.IsCancellationRequested)
+        if (RrHandle.Refusal<T>(cancel) is { } refused)
         {
-            return Task.FromCanceled<T>(cancel);
+            return refused;
         }
+        using RemoteUse target = RrHandle.Use();
         var completion = new TaskCompletion<T>(RrHandle.Types, convert, cancel);
         using var type = new NativeText(typeName);
         using var text = new NativeText(index.Text ?? "");
@@ -239,7 +220,7 @@ public class Stub(ObjectHandle rrHandle)
             var options = new RrCallOptions { Size = (nuint)sizeof(RrCallOptions), Cancellation = completion.Cancellation };
             RrCompletion native = completion.Native;
             nint error;
-            int status = Functions.rr_object_find_async(RrHandle.Native, new RrStr { Data = name, Size = (nuint)member.Length },
+            int status = Functions.rr_object_find_async(target.Native, new RrStr { Data = name, Size = (nuint)member.Length },
                 &nativeIndex, type.Value, &options, &native, &error);
             return status == 0 ? completion.Task : Task.FromException<T>(completion.Abandon(native, status, error));
         }
@@ -247,13 +228,18 @@ public class Stub(ObjectHandle rrHandle)
 
     private unsafe void SetCallback(ReadOnlySpan<byte> member, MemberAccess access, bool returnsValue, CallbackSink? sink)
     {
+        if (sink is null && RrHandle.IsGone)
+        {
+            return;
+        }
+        using RemoteUse target = RrHandle.Use();
         fixed (byte* name = member)
         {
             var memberName = new RrStr { Data = name, Size = (nuint)member.Length };
             nint error;
             if (sink is null)
             {
-                Failure.Check(Functions.rr_callback_clear(RrHandle.Native, memberName, &error), error, RrHandle.Types);
+                Failure.Check(Functions.rr_callback_clear(target.Native, memberName, &error), error, RrHandle.Types);
                 return;
             }
             var native = new RrCallbackHandler
@@ -263,7 +249,7 @@ public class Stub(ObjectHandle rrHandle)
                 OnCall = &CallbackSink.OnCall,
                 Drop = &Context.Drop,
             };
-            int status = Functions.rr_callback_set(RrHandle.Native, memberName, (uint)access, returnsValue ? 1 : 0, &native, &error);
+            int status = Functions.rr_callback_set(target.Native, memberName, (uint)access, returnsValue ? 1 : 0, &native, &error);
             Failure.Check(status, error, RrHandle.Types);
         }
     }

@@ -92,80 +92,26 @@ public sealed class ServiceSubscription<TStub> : IDisposable
     public WireSubscription<T> SubscribeWire<T>(string member, ValueCodec<T> codec, string path = "") =>
         new(_handle, member, path, codec, TStub.RrServiceDefinition.Known);
 
+    /// <summary>A pipe of the object at a path at whichever client is connected.</summary>
+    /// <param name="member">As the definition calls it.</param>
+    /// <param name="codec">Of its packets.</param>
+    /// <param name="path">As of wires.</param>
+    /// <param name="maxReceived">When more packets wait the oldest is lost; 0: no limit.</param>
+    public PipeSubscription<T> SubscribePipe<T>(string member, ValueCodec<T> codec, string path = "", int maxReceived = 0) =>
+        new(_handle, member, path, codec, maxReceived, TStub.RrServiceDefinition.Known);
+
+    /// <summary>The object at a path at whichever client is connected, which is looked for when a client comes.</summary>
+    /// <param name="path">As of wires: `*.lens`.</param>
+    /// <typeparam name="TObject">The stub of the object.</typeparam>
+    public ObjectSubscription<TObject> SubscribeObject<TObject>(string path)
+        where TObject : Stub, IStub<TObject> => new(_handle, _node, path, TStub.RrServiceDefinition.Known);
+
     /// <summary>Ends the client.</summary>
     public void Dispose()
     {
         if (!_handle.IsClosed)
         {
             Functions.rr_service_subscription_close(_handle);
-            _handle.Dispose();
-        }
-    }
-}
-
-/// <summary>A wire of whichever client a subscription has; until it is disposed of or the subscription is.</summary>
-/// <typeparam name="T">The value.</typeparam>
-public sealed class WireSubscription<T> : IDisposable
-{
-    private readonly WireSubscriptionHandle _handle;
-    private readonly ValueCodec<T> _codec;
-    private readonly KnownTypes _types;
-
-    internal unsafe WireSubscription(ServiceSubscriptionHandle subscription, string member, string path, ValueCodec<T> codec, KnownTypes types)
-    {
-        _codec = codec;
-        _types = types;
-        using var name = new NativeText(member);
-        using var place = new NativeText(path);
-        nint error;
-        Failure.Check(Functions.rr_wire_subscribe(subscription, name.Value, place.Value, out nint wire, &error), error, types);
-        _handle = new WireSubscriptionHandle(wire);
-    }
-
-    /// <summary>The value that has come last; false for none.</summary>
-    public unsafe bool TryGetReceived(out WireValue<T> value)
-    {
-        RrTime time;
-        nint error;
-        int status = Functions.rr_wire_subscription_received(_handle, out nint data, &time, &error);
-        if (status == (int)ErrorCode.ValueNotSet)
-        {
-            _ = Failure.Take(status, error, _types);
-            value = default;
-            return false;
-        }
-        Failure.Check(status, error, _types);
-        value = new WireValue<T>(Elements.Take(data, _codec, _types.Registry), Times.ToDateTime(time));
-        return true;
-    }
-
-    /// <summary>Waits until a value has come; false when the time was over before.</summary>
-    public bool WaitReceived(TimeSpan limit) => Functions.rr_wire_subscription_wait(_handle, Times.Milliseconds(limit)) != 0;
-
-    /// <summary>Sends a value to the client that is connected now.</summary>
-    /// <returns>To how many: 0 or 1.</returns>
-    public unsafe int Send(T value)
-    {
-        ElementWriter writer = Writers.Rent(MessageVersion.V4);
-        _codec.Write(writer, "packet"u8, value);
-        fixed (byte* first = writer.Written)
-        {
-            RrElements elements = Elements.Of(first, writer);
-            nuint count;
-            nint error;
-            int status = Functions.rr_wire_subscription_send(_handle, &elements, &count, &error);
-            Writers.Return(writer);
-            Failure.Check(status, error, _types);
-            return (int)count;
-        }
-    }
-
-    /// <summary>Disconnects.</summary>
-    public void Dispose()
-    {
-        if (!_handle.IsClosed)
-        {
-            Functions.rr_wire_subscription_close(_handle);
             _handle.Dispose();
         }
     }

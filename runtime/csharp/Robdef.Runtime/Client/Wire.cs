@@ -13,6 +13,24 @@ namespace Robdef.Runtime;
 /// <param name="Time">By the sender's clock.</param>
 public readonly record struct WireValue<T>(T Value, DateTimeOffset Time);
 
+/// <summary>Values of wires as the native runtime gives them.</summary>
+internal static class WireValues
+{
+    /// <summary>False when the status says that there is none; throws for any other failure.</summary>
+    public static bool TryTake<T>(int status, nint error, nint data, in RrTime time, ValueCodec<T> codec, KnownTypes types, out WireValue<T> value)
+    {
+        if (status == (int)ErrorCode.ValueNotSet)
+        {
+            _ = Failure.Take(status, error, types);
+            value = default;
+            return false;
+        }
+        Failure.Check(status, error, types);
+        value = new WireValue<T>(Elements.Take(data, codec, types.Registry), Times.ToDateTime(time));
+        return true;
+    }
+}
+
 /// <summary>A wire of an object on another node: of its values only the newest counts.</summary>
 /// <typeparam name="T">The value.</typeparam>
 public sealed class Wire<T>
@@ -35,9 +53,10 @@ public sealed class Wire<T>
     /// <summary>Connects, in the thread of the caller. InvalidOperation when this client has connected it already.</summary>
     public unsafe WireConnection<T> Connect()
     {
+        using RemoteUse target = _object.Use();
         using var name = new NativeText(_member);
         nint error;
-        int status = Functions.rr_wire_connect(_object.Native, name.Value, (uint)_access, null, out nint wire, &error);
+        int status = Functions.rr_wire_connect(target.Native, name.Value, (uint)_access, null, out nint wire, &error);
         Failure.Check(status, error, _object.Types);
         return new WireConnection<T>(new WireHandle(wire), _object.Types, _object.Version, _codec, isClient: true);
     }
@@ -45,10 +64,11 @@ public sealed class Wire<T>
     /// <summary>Connects. InvalidOperation when this client has connected it already.</summary>
     public unsafe Task<WireConnection<T>> ConnectAsync(CancellationToken cancel = default)
     {
-        if (cancel.IsCancellationRequested)
+        if (_object.Refusal<WireConnection<T>>(cancel) is { } refused)
         {
-            return Task.FromCanceled<WireConnection<T>>(cancel);
+            return refused;
         }
+        using RemoteUse target = _object.Use();
         KnownTypes types = _object.Types;
         MessageVersion version = _object.Version;
         var completion = new TaskCompletion<WireConnection<T>>(types, wire => new WireConnection<T>(new WireHandle(wire), types, version, _codec, isClient: true), cancel);
@@ -56,7 +76,7 @@ public sealed class Wire<T>
         var options = new RrCallOptions { Size = (nuint)sizeof(RrCallOptions), Cancellation = completion.Cancellation };
         RrCompletion native = completion.Native;
         nint error;
-        int status = Functions.rr_wire_connect_async(_object.Native, name.Value, (uint)_access, &options, &native, &error);
+        int status = Functions.rr_wire_connect_async(target.Native, name.Value, (uint)_access, &options, &native, &error);
         return status == 0 ? completion.Task : Task.FromException<WireConnection<T>>(completion.Abandon(native, status, error));
     }
 
@@ -75,6 +95,7 @@ public sealed class Wire<T>
     /// <summary>Gives the service a value without a connection, in the thread of the caller.</summary>
     public unsafe void PokeOutValue(T value, CancellationToken cancel = default)
     {
+        using RemoteUse target = _object.Use();
         var cancellation = new NativeCancellation(cancel);
         ElementWriter writer = Writers.Rent(_object.Version);
         _codec.Write(writer, "value"u8, value);
@@ -85,7 +106,7 @@ public sealed class Wire<T>
             RrElements elements = Elements.Of(first, writer);
             var options = new RrCallOptions { Size = (nuint)sizeof(RrCallOptions), Cancellation = cancellation.Handle };
             nint error;
-            int status = Functions.rr_wire_poke_out(_object.Native, name.Value, &elements, &options, &error);
+            int status = Functions.rr_wire_poke_out(target.Native, name.Value, &elements, &options, &error);
             cancellation.End();
             Writers.Return(writer);
             if (status != 0)
@@ -98,10 +119,11 @@ public sealed class Wire<T>
     /// <summary>Gives the service a value without a connection.</summary>
     public unsafe Task PokeOutValueAsync(T value, CancellationToken cancel = default)
     {
-        if (cancel.IsCancellationRequested)
+        if (_object.Refusal<bool>(cancel) is { } refused)
         {
-            return Task.FromCanceled(cancel);
+            return refused;
         }
+        using RemoteUse target = _object.Use();
         ElementWriter writer = Writers.Rent(_object.Version);
         _codec.Write(writer, "value"u8, value);
         var completion = new TaskCompletion<bool>(_object.Types, static _ => true, cancel);
@@ -112,7 +134,7 @@ public sealed class Wire<T>
             var options = new RrCallOptions { Size = (nuint)sizeof(RrCallOptions), Cancellation = completion.Cancellation };
             RrCompletion native = completion.Native;
             nint error;
-            int status = Functions.rr_wire_poke_out_async(_object.Native, name.Value, &elements, &options, &native, &error);
+            int status = Functions.rr_wire_poke_out_async(target.Native, name.Value, &elements, &options, &native, &error);
             Writers.Return(writer);
             return status == 0 ? completion.Task : Task.FromException(completion.Abandon(native, status, error));
         }
@@ -120,6 +142,7 @@ public sealed class Wire<T>
 
     private unsafe WireValue<T> Peek(bool isIn, CancellationToken cancel)
     {
+        using RemoteUse target = _object.Use();
         var cancellation = new NativeCancellation(cancel);
         cancellation.Begin();
         using var name = new NativeText(_member);
@@ -128,8 +151,8 @@ public sealed class Wire<T>
         nint error;
         nint data;
         int status = isIn
-            ? Functions.rr_wire_peek_in(_object.Native, name.Value, &options, out data, &time, &error)
-            : Functions.rr_wire_peek_out(_object.Native, name.Value, &options, out data, &time, &error);
+            ? Functions.rr_wire_peek_in(target.Native, name.Value, &options, out data, &time, &error)
+            : Functions.rr_wire_peek_out(target.Native, name.Value, &options, out data, &time, &error);
         cancellation.End();
         return status == 0
             ? new WireValue<T>(Elements.Take(data, _codec, _object.Types.Registry), Times.ToDateTime(time))
@@ -138,10 +161,11 @@ public sealed class Wire<T>
 
     private unsafe Task<WireValue<T>> PeekAsync(bool isIn, CancellationToken cancel)
     {
-        if (cancel.IsCancellationRequested)
+        if (_object.Refusal<WireValue<T>>(cancel) is { } refused)
         {
-            return Task.FromCanceled<WireValue<T>>(cancel);
+            return refused;
         }
+        using RemoteUse target = _object.Use();
         // The native side writes the time before it completes, so its place must not move.
         nint time = (nint)NativeMemory.AllocZeroed((nuint)sizeof(RrTime));
         TypeRegistry registry = _object.Types.Registry;
@@ -151,8 +175,8 @@ public sealed class Wire<T>
         RrCompletion native = completion.Native;
         nint error;
         int status = isIn
-            ? Functions.rr_wire_peek_in_async(_object.Native, name.Value, &options, (RrTime*)time, &native, &error)
-            : Functions.rr_wire_peek_out_async(_object.Native, name.Value, &options, (RrTime*)time, &native, &error);
+            ? Functions.rr_wire_peek_in_async(target.Native, name.Value, &options, (RrTime*)time, &native, &error)
+            : Functions.rr_wire_peek_out_async(target.Native, name.Value, &options, (RrTime*)time, &native, &error);
         Task<WireValue<T>> task = status == 0
             ? completion.Task
             : Task.FromException<WireValue<T>>(completion.Abandon(native, status, error));

@@ -134,15 +134,7 @@ public sealed class WireConnection<T> : IDisposable
         int status = isReceived
             ? Functions.rr_wire_received(_handle, out data, &time, &error)
             : Functions.rr_wire_sent(_handle, out data, &time, &error);
-        if (status == (int)ErrorCode.ValueNotSet)
-        {
-            _ = Failure.Take(status, error, _types);
-            value = default;
-            return false;
-        }
-        Failure.Check(status, error, _types);
-        value = new WireValue<T>(Elements.Take(data, _codec, _types.Registry), Times.ToDateTime(time));
-        return true;
+        return WireValues.TryTake(status, error, data, time, _codec, _types, out value);
     }
 
     /// <summary>The native handler is set with the first listener, so that ends without one cost nothing.</summary>

@@ -139,4 +139,7 @@ public sealed record ServedMember(string Name, MemberKind Kind, MemberAccess Acc
 
     /// <summary>Memory: what it is of.</summary>
     public MemoryType Memory { get; init; }
+
+    /// <summary>Pipe, wire: what values that clients send must be.</summary>
+    public ValueCheck? Check { get; init; }
 }

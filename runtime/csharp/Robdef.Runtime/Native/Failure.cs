@@ -93,19 +93,26 @@ internal static unsafe class Failure
 /// <summary>Views of elements.</summary>
 internal static unsafe class Elements
 {
+    private const uint WithReferences = 0x100;
+
     public static ElementReader Reader(RrElements elements, TypeRegistry registry) =>
         new(Bytes(elements), (MessageVersion)elements.Version, registry);
 
     public static FieldReader Fields(RrElements elements, TypeRegistry registry) =>
         new(Bytes(elements), (MessageVersion)elements.Version, registry);
 
-    public static RrElements Of(byte* first, ElementWriter writer) => new()
+    /// <summary>What is written, whose bytes are pinned at `first`; the arrays that it refers to are pinned here.</summary>
+    public static RrElements Of(byte* first, ElementWriter writer)
     {
-        Data = first,
-        Size = (nuint)writer.Length,
-        Count = (uint)writer.Count,
-        Version = (uint)writer.Version,
-    };
+        writer.PinReferences();
+        return new()
+        {
+            Data = first,
+            Size = (nuint)writer.Length,
+            Count = (uint)writer.Count,
+            Version = (uint)writer.Version | (writer.HasReferences ? WithReferences : 0),
+        };
+    }
 
     /// <summary>The first element of an answer, which is released.</summary>
     public static T Take<T>(nint data, ValueCodec<T> codec, TypeRegistry registry)
@@ -171,7 +178,7 @@ internal static class Writers
         t_free = null;
         if (writer is null)
         {
-            return new ElementWriter(version);
+            return new ElementWriter(version) { MayRefer = true };
         }
         writer.Reset(version);
         return writer;
@@ -181,6 +188,7 @@ internal static class Writers
     {
         if (t_free is null && writer.Length <= MostKept)
         {
+            writer.Reset(writer.Version);
             t_free = writer;
         }
         else

@@ -8,7 +8,7 @@ namespace Robdef.Runtime.Native;
 internal static unsafe partial class Functions
 {
     private const string Library = "robdef_runtime";
-    private const uint Version = 0x00010000;
+    private const uint Version = 0x00010001;
 
     static Functions()
     {
@@ -153,6 +153,12 @@ internal static unsafe partial class Functions
     [LibraryImport(Library)]
     public static partial int rr_memory_write_pieces(SafeHandle handle, RrStr member, RrMemoryType* type, ulong* position, ulong* count, nuint dims, RrMemoryPieces* pieces, RrCallOptions* options, nint* error);
     [LibraryImport(Library)]
+    public static partial int rr_memory_read_pieces_async(SafeHandle remote, RrStr member, RrMemoryType* type, ulong* position, ulong* count,
+        nuint dims, RrMemoryPieces* pieces, RrCallOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_memory_write_pieces_async(SafeHandle remote, RrStr member, RrMemoryType* type, ulong* position, ulong* count,
+        nuint dims, RrMemoryPieces* pieces, RrCallOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
     public static partial int rr_piece_set(nint piece, RrElements* data, nint* error);
 
     [LibraryImport(Library)]
@@ -249,6 +255,30 @@ internal static unsafe partial class Functions
     public static partial int rr_wire_subscription_received(SafeHandle wire, out nint value, RrTime* time, nint* error);
     [LibraryImport(Library)]
     public static partial int rr_wire_subscription_wait(SafeHandle wire, int timeoutMs);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_subscription_set_handler(SafeHandle wire, RrSubscriptionHandler* handler, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_subscribe(SafeHandle subscription, RrStr member, RrStr path, nuint maxReceived, out nint pipe, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_pipe_subscription_release(nint pipe);
+    [LibraryImport(Library)]
+    public static partial void rr_pipe_subscription_close(SafeHandle pipe);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_subscription_send(SafeHandle pipe, RrElements* packet, nuint* count, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_subscription_receive(SafeHandle pipe, out nint packet, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_subscription_wait(SafeHandle pipe, int timeoutMs);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_subscription_set_handler(SafeHandle pipe, RrSubscriptionHandler* handler, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_object_subscribe(SafeHandle subscription, RrStr path, out nint found, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_object_subscription_release(nint found);
+    [LibraryImport(Library)]
+    public static partial void rr_object_subscription_close(SafeHandle found);
+    [LibraryImport(Library)]
+    public static partial int rr_object_subscription_get(SafeHandle found, int waitMs, out nint remote, nint* error);
 
     [LibraryImport(Library)]
     public static partial int rr_definition_new(RrStr text, nint* imports, nuint count, out nint definition, nint* error);

@@ -66,6 +66,16 @@ internal sealed class WireSubscriptionHandle(nint value) : Handle(value)
     protected override void Release(nint value) => Functions.rr_wire_subscription_release(value);
 }
 
+internal sealed class PipeSubscriptionHandle(nint value) : Handle(value)
+{
+    protected override void Release(nint value) => Functions.rr_pipe_subscription_release(value);
+}
+
+internal sealed class ObjectSubscriptionHandle(nint value) : Handle(value)
+{
+    protected override void Release(nint value) => Functions.rr_object_subscription_release(value);
+}
+
 internal sealed class DefinitionHandle(nint value) : Handle(value)
 {
     protected override void Release(nint value) => Functions.rr_definition_release(value);

@@ -216,8 +216,18 @@ internal unsafe struct RrWireHandler
     public delegate* unmanaged[Cdecl]<nint, void> Drop;
 }
 
+/// <summary>rr_wire_subscription_handler and rr_pipe_subscription_handler, which differ in their function.</summary>
 [StructLayout(LayoutKind.Sequential)]
-internal struct RrMember
+internal unsafe struct RrSubscriptionHandler
+{
+    public nuint Size;
+    public nint Context;
+    public void* OnReceived;
+    public delegate* unmanaged[Cdecl]<nint, void> Drop;
+}
+
+[StructLayout(LayoutKind.Sequential)]
+internal unsafe struct RrMember
 {
     public RrStr Name;
     public uint Kind;
@@ -228,6 +238,8 @@ internal struct RrMember
     public uint Reserved;
     public RrStr ObjectType;
     public RrMemoryType Memory;
+    public delegate* unmanaged[Cdecl]<nint, RrElements*, int> Check;
+    public nint CheckContext;
 }
 
 [StructLayout(LayoutKind.Sequential)]

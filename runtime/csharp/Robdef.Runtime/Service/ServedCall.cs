@@ -37,16 +37,18 @@ public unsafe ref struct ServedCall
     public void Fire()
     {
         ElementWriter? writer = _writer;
+        if (_skeleton.RrServed is not { IsClosed: false } served)
+        {
+            GiveBack();
+            return;
+        }
         fixed (byte* first = writer is null ? default : writer.Written)
         {
             RrElements elements = writer is null ? default : Elements.Of(first, writer);
-            if (_skeleton.RrServed is { IsClosed: false } served)
-            {
-                nint error;
-                int status = Functions.rr_served_event_fire(served, _member, &elements, &error);
-                GiveBack();
-                Failure.Check(status, error, _skeleton.RrTypes);
-            }
+            nint error;
+            int status = Functions.rr_served_event_fire(served, _member, &elements, &error);
+            GiveBack();
+            Failure.Check(status, error, _skeleton.RrTypes);
         }
     }
 
@@ -68,6 +70,7 @@ public unsafe ref struct ServedCall
 
     private nint Send(uint client, CancellationToken cancel)
     {
+        ServedHandle served = Served;
         var cancellation = new NativeCancellation(cancel);
         ElementWriter? writer = _writer;
         fixed (byte* first = writer is null ? default : writer.Written)
@@ -76,7 +79,7 @@ public unsafe ref struct ServedCall
             RrElements elements = writer is null ? default : Elements.Of(first, writer);
             var options = new RrCallOptions { Size = (nuint)sizeof(RrCallOptions), Access = (uint)_access, Cancellation = cancellation.Handle };
             nint error;
-            int status = Functions.rr_served_callback_call(Served, _member, client, &elements, &options, out nint answer, &error);
+            int status = Functions.rr_served_callback_call(served, _member, client, &elements, &options, out nint answer, &error);
             cancellation.End();
             GiveBack();
             return status == 0 ? answer : throw cancellation.Failed(Failure.Take(status, error, _skeleton.RrTypes));
@@ -87,8 +90,10 @@ public unsafe ref struct ServedCall
     {
         if (cancel.IsCancellationRequested)
         {
+            GiveBack();
             return Task.FromCanceled<T>(cancel);
         }
+        ServedHandle served = Served;
         var completion = new AnswerCompletion<T>(_skeleton.RrTypes, codec, cancel);
         ElementWriter? writer = _writer;
         fixed (byte* first = writer is null ? default : writer.Written)
@@ -97,7 +102,7 @@ public unsafe ref struct ServedCall
             var options = new RrCallOptions { Size = (nuint)sizeof(RrCallOptions), Access = (uint)_access, Cancellation = completion.Cancellation };
             RrCompletion native = completion.Native;
             nint error;
-            int status = Functions.rr_served_callback_call_async(Served, _member, client, &elements, &options, &native, &error);
+            int status = Functions.rr_served_callback_call_async(served, _member, client, &elements, &options, &native, &error);
             GiveBack();
             return status == 0 ? completion.Task : Task.FromException<T>(completion.Abandon(native, status, error));
         }

@@ -151,14 +151,7 @@ public sealed class WireServer<T>
         RrTime time;
         nint error;
         int status = Functions.rr_served_wire_received(served, _member, out nint data, &time, &error);
-        if (status == (int)ErrorCode.ValueNotSet)
-        {
-            _ = Failure.Take(status, error, _skeleton.RrTypes);
-            return false;
-        }
-        Failure.Check(status, error, _skeleton.RrTypes);
-        value = new WireValue<T>(Elements.Take(data, _codec, _skeleton.RrTypes.Registry), Times.ToDateTime(time));
-        return true;
+        return WireValues.TryTake(status, error, data, time, _codec, _skeleton.RrTypes, out value);
     }
 
     private unsafe void SetLimit(ServedHandle served, TimeSpan lifespan)

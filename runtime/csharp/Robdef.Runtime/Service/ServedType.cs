@@ -74,6 +74,9 @@ public sealed unsafe class ServedType
                     Access = member.Kind == MemberKind.Memory ? (uint)member.Access : 0,
                     TransferSize = member.Memory.TransferSize,
                 },
+                Check = member.Check is null ? null : &ValueCheck.OnCheck,
+                // Never freed: the native table stays as long as a node that has used it, and there is one for each class.
+                CheckContext = member.Check is null ? 0 : Context.Of(Tuple.Create(member.Check, Definition.Known.Registry)),
             };
         }
         try

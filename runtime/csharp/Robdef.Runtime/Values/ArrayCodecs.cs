@@ -16,17 +16,31 @@ internal sealed class ArrayCodec<T>(ItemCodec<T> item, int fewest, int most) : V
         {
             throw new RobdefException(ErrorCode.DataTypeError, $"an array of {value.Length} items is to be sent, and {Allowed}");
         }
-        item.WriteItems(writer, key, value);
+        item.WriteArray(writer, key, value);
     }
 
     public override T[] Read(scoped in Element element)
+    {
+        CheckCount(element);
+        return item.ReadItems(element);
+    }
+
+    internal override void Check(scoped in Element element)
+    {
+        CheckCount(element);
+        if (!item.ArePacked)
+        {
+            item.ReadItems(element);
+        }
+    }
+
+    private void CheckCount(scoped in Element element)
     {
         int count = item.CountItems(element);
         if (count < fewest || count > most)
         {
             throw element.Error(ErrorCode.DataTypeError, $"has {count} items, and {Allowed}");
         }
-        return item.ReadItems(element);
     }
 
     private string Allowed => fewest == most ? $"{most} are due" : $"{most} are allowed";
@@ -46,7 +60,7 @@ internal sealed class MultiDimCodec<T>(ItemCodec<T> item, int[]? shape) : ValueC
             throw new RobdefException(ErrorCode.DataTypeError, Shapes.Wrong(value.Dims, shape));
         }
         int begin = writer.BeginElement();
-        item.WriteItems(writer, "array"u8, value.Items);
+        item.WriteArray(writer, "array"u8, value.Items);
         WriteDims(writer, value.Dims);
         writer.EndElement(begin, key, item.MultiDimType, item.TypeName, 2);
     }
@@ -111,7 +125,7 @@ internal sealed class FlatMultiDimCodec<T>(ItemCodec<T> item, int[] shape) : Val
         {
             throw new RobdefException(ErrorCode.DataTypeError, Shapes.Wrong(value.Dims, shape));
         }
-        item.WriteItems(writer, key, value.Items);
+        item.WriteArray(writer, key, value.Items);
     }
 
     public override MultiDimArray<T> Read(scoped in Element element)

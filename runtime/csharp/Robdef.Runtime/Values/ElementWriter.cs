@@ -13,7 +13,7 @@ namespace Robdef.Runtime;
 /// every byte is written once and nothing is measured before. What is added last stands first.
 /// Not for several threads at once.
 /// </summary>
-public sealed class ElementWriter : IDisposable
+public sealed partial class ElementWriter : IDisposable
 {
     private const int FirstCapacity = 512;
     private const int LongestName = ushort.MaxValue;
@@ -56,11 +56,13 @@ public sealed class ElementWriter : IDisposable
         _begin = _buffer.Length;
         _depth = 0;
         Count = 0;
+        ForgetReferences();
     }
 
     /// <summary>Gives the memory back.</summary>
     public void Dispose()
     {
+        ForgetReferences();
         ArrayPool<byte>.Shared.Return(_buffer);
         _buffer = [];
         _begin = 0;

@@ -28,6 +28,9 @@ public abstract class ItemCodec<T> : ValueCodec<T>
     /// <summary>The qualified name that goes with these types; empty for numbers.</summary>
     internal abstract ReadOnlySpan<byte> TypeName { get; }
 
+    /// <summary>Whether any bytes are items, so that nothing but their number can be wrong.</summary>
+    internal virtual bool ArePacked => false;
+
     /// <summary>Bytes that an item counts for against the limit of a memory's request.</summary>
     internal abstract uint TransferSize { get; }
 
@@ -49,6 +52,9 @@ public abstract class ItemCodec<T> : ValueCodec<T>
 
     /// <summary>Puts an array in front of what the writer holds.</summary>
     public abstract void WriteItems(ElementWriter writer, scoped in ElementKey key, scoped ReadOnlySpan<T> items);
+
+    /// <summary>The same for a whole array, which may stay where it is.</summary>
+    internal virtual void WriteArray(ElementWriter writer, scoped in ElementKey key, T[] items) => WriteItems(writer, key, items);
 
     /// <summary>How many items an element holds. Throws when it holds none of this type.</summary>
     public abstract int CountItems(scoped in Element element);

@@ -38,6 +38,8 @@ public sealed class NamedArrayCodec<T, TNumber> : ItemCodec<T>, IRecordCodec
 
     internal override ReadOnlySpan<byte> TypeName => _name;
 
+    internal override bool ArePacked => true;
+
     internal override uint TransferSize => (uint)Unsafe.SizeOf<TNumber>();
 
     private static int NumbersPerItem => Unsafe.SizeOf<T>() / Unsafe.SizeOf<TNumber>();
@@ -49,6 +51,13 @@ public sealed class NamedArrayCodec<T, TNumber> : ItemCodec<T>, IRecordCodec
         int array = writer.BeginElement();
         Packed.Write(writer, items);
         writer.EndElement(array, "array"u8, _number.ArrayType, default, checked(items.Length * NumbersPerItem));
+        writer.EndElement(begin, key, ElementType.NamedArray, _name, 1);
+    }
+
+    internal override void WriteArray(ElementWriter writer, scoped in ElementKey key, T[] items)
+    {
+        int begin = writer.BeginElement();
+        writer.PrependArray("array"u8, _number.ArrayType, items, checked(items.Length * NumbersPerItem));
         writer.EndElement(begin, key, ElementType.NamedArray, _name, 1);
     }
 

@@ -15,6 +15,8 @@ internal sealed class NumberCodec<T>(ElementType type) : ItemCodec<T>
 
     internal override ReadOnlySpan<byte> TypeName => default;
 
+    internal override bool ArePacked => true;
+
     internal override uint TransferSize => (uint)Unsafe.SizeOf<T>();
 
     public override T Read(scoped in Element element)
@@ -35,6 +37,9 @@ internal sealed class NumberCodec<T>(ElementType type) : ItemCodec<T>
         Packed.Write(writer, items);
         writer.EndElement(begin, key, type, default, items.Length);
     }
+
+    internal override void WriteArray(ElementWriter writer, scoped in ElementKey key, T[] items) =>
+        writer.PrependArray(key, type, items, items.Length);
 
     public override int CountItems(scoped in Element element)
     {

@@ -20,6 +20,9 @@ public abstract class ValueCodec<T> : IValueCodec
     /// <exception cref="RobdefException">The element does not hold such a value.</exception>
     public abstract T Read(scoped in Element element);
 
+    /// <summary>Throws what <see cref="Read"/> does, and reads no more than that takes.</summary>
+    internal virtual void Check(scoped in Element element) => Read(element);
+
     void IValueCodec.Write(ElementWriter writer, scoped in ElementKey key, object value) => Write(writer, key, (T)value);
 }
 

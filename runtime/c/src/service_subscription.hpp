@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "rr/subscription.hpp"
+#include "runtime/c/src/border.hpp"
+#include "runtime/c/src/node.hpp"
+
+struct rr_service_subscription {
+  rr::ServiceSubscription services;
+  rr::Subscription connected{};
+  rr::Subscription disconnected{};
+  rr::Subscription failed{};
+};
+
+namespace rr::capi {
+
+inline rr_subscribed_client client_of(const SubscriptionClientId& id) {
+  return {sizeof(rr_subscribed_client), id_of(id.node), view(id.service)};
+}
+
+// The object of whichever client there is; waits for one if it is to.
+template <class Subscription>
+rr_object* get_object(const Subscription& of, std::int32_t wait_ms) {
+  return make_object(wait_ms == 0 ? of.template default_client<Stub>()
+                                  : of.template wait_default_client<Stub>(patience(wait_ms)));
+}
+
+}  // namespace rr::capi
