@@ -31,7 +31,7 @@ set(robdef_layers
   # Of the wire runtime, errors only; what binds the two has a header of its own.
   "runtime/cpp/include/rr/realtime: runtime/cpp/include/rr/error.hpp"
   "runtime/cpp/include/rr/realtime/service.hpp: runtime/cpp/include/rr"
-  "runtime/cpp/src/realtime: runtime/cpp/include/rr/error.hpp runtime/cpp/include/rr/realtime"
+  "runtime/cpp/src/realtime: runtime/cpp/include/rr/crc32.hpp runtime/cpp/include/rr/error.hpp runtime/cpp/include/rr/realtime"
   "runtime/cpp/src/realtime/service: runtime/cpp/include/rr runtime/cpp/src/realtime runtime/cpp/src/node/testing"
   "runtime/cpp/src/codec: runtime/cpp/include/rr"
   "runtime/cpp/src/value: runtime/cpp/include/rr runtime/cpp/src/codec"
