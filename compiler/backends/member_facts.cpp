@@ -48,13 +48,7 @@ void describe(MemberFacts& facts, const model::Object& object, const model::Memb
   describe(facts, member);
   facts.is_served = abilities.serve(member);
   facts.is_inherited = origin(object, member.name) != nullptr;
-  facts.is_readonly = member.access.is_readonly;
-  facts.is_writeonly = member.access.is_writeonly;
-  facts.is_unreliable = member.access.is_unreliable;
-  facts.is_nolock = member.access.is_nolock;
-  facts.is_nolockread = member.access.is_nolockread;
-  facts.is_perclient = member.access.is_perclient;
-  facts.is_urgent = member.access.is_urgent;
+  static_cast<model::Access&>(facts) = member.access;
   facts.can_get = facts.is_property && !member.access.is_writeonly;
   facts.can_set = facts.is_property && !member.access.is_readonly;
   facts.robdef_type = member.type.text();

@@ -37,21 +37,14 @@ struct MemberKindFacts {
   }
 };
 
-/// A member of an object. What does not apply to its kind is empty or false.
-struct MemberFacts : MemberKindFacts {
+/// A member of an object, with its modifiers. What does not apply to its kind is empty or false.
+struct MemberFacts : MemberKindFacts, model::Access {
   using Facts = MemberFacts;
 
   bool is_served = false;     ///< false: the runtime cannot do it, and nothing is generated
   bool is_inherited = false;  ///< an object that this one implements has it
   std::string number;         ///< its place in the object's table: of those that are served
 
-  bool is_readonly = false;
-  bool is_writeonly = false;
-  bool is_unreliable = false;
-  bool is_nolock = false;
-  bool is_nolockread = false;
-  bool is_perclient = false;
-  bool is_urgent = false;
   bool can_get = false;  ///< property: not writeonly
   bool can_set = false;  ///< property: not readonly
 

@@ -16,8 +16,6 @@ namespace {
 
 using model::Primitive;
 
-std::string blanks(std::size_t count) { return std::string(count, ' '); }
-
 void append_escaped(std::string& out, char c) {
   const std::string_view escape = named_escape(c);
   if (!escape.empty()) {

@@ -12,8 +12,6 @@ namespace {
 
 constexpr std::size_t continuation = 4;
 
-std::string blanks(std::size_t count) { return std::string(count, ' '); }
-
 std::size_t lines_of(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count(text, '\n')) + 1;
 }
@@ -143,6 +141,8 @@ std::string signature_with(const Signature& signature, std::string_view end, std
 }
 
 }  // namespace
+
+std::string blanks(std::size_t count) { return std::string(count, ' '); }
 
 std::string declaration(const Signature& signature, std::size_t indent) {
   return signature_with(signature, ";", indent);

@@ -12,6 +12,9 @@
 namespace robdef::cpp {
 
 inline constexpr std::size_t line_width = 100;
+inline constexpr std::size_t in_class = 2;  ///< the indent of what is in a class
+
+std::string blanks(std::size_t count);
 
 /// `before result name(parameters)after`: a function's declaration without its end.
 struct Signature {

@@ -13,7 +13,6 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-constexpr std::size_t in_class = 2;
 constexpr std::size_t in_case = 6;
 
 std::string quoted(const std::string& text) { return "\"" + text + "\""; }

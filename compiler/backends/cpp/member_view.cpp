@@ -22,8 +22,6 @@ using model::MemberKind;
 using model::Object;
 using model::Type;
 
-constexpr std::size_t in_class = 2;
-
 /// `::rr::readonly | ::rr::nolock`; empty for none.
 std::string access_text(const model::Access& access) {
   return join(

@@ -6,8 +6,6 @@
 namespace robdef::cpp {
 namespace {
 
-constexpr std::size_t in_class = 2;
-
 std::string handing_out(const MemberView& view, const std::string& type, const std::string& after) {
   return definition({.result = type, .name = view.name, .after = after},
                     "return {*this, " + view.entry + "};", in_class);

@@ -19,8 +19,6 @@ using model::Member;
 using model::MemberKind;
 using model::Object;
 
-constexpr std::size_t in_class = 4;
-
 std::string angled(const std::vector<std::string>& items) {
   return items.empty() ? "" : "<" + join(items, ", ") + ">";
 }

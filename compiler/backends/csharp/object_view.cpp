@@ -10,8 +10,6 @@ namespace {
 
 using model::Object;
 
-constexpr std::size_t in_class = 4;
-
 std::string interface_doc(const ObjectView& view, const Object& object) {
   std::vector<std::string> left_out;
   for (const MemberView& member : view.members) {

@@ -15,6 +15,7 @@
 namespace robdef::csharp {
 
 inline constexpr std::size_t line_width = 120;
+inline constexpr std::size_t in_class = 4;  ///< the indent of what is in a class
 
 /// What is at hand while the view of one definition is made.
 struct Context {

@@ -11,8 +11,6 @@
 namespace robdef::matlab {
 namespace {
 
-constexpr std::string_view language = "MATLAB";
-
 // MATLAB's and Octave's together.
 constexpr auto keywords = std::to_array<std::string_view>({"__FILE__",
                                                            "__LINE__",

@@ -12,6 +12,8 @@
 /// MATLAB or Octave keeps for itself gets a `_`.
 namespace robdef::matlab {
 
+inline constexpr std::string_view language = "MATLAB";
+
 /// A word that no name may be, in MATLAB or in Octave.
 bool is_keyword(std::string_view word);
 /// What every object has from its base classes, or what has a meaning of its own in a class.

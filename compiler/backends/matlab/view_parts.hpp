@@ -5,14 +5,13 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/backends/matlab/names.hpp"
 #include "compiler/backends/matlab/view.hpp"
 #include "compiler/diagnostics/report.hpp"
 #include "compiler/model/model.hpp"
 
 /// The parts of making a view; view.cpp puts them together.
 namespace robdef::matlab {
-
-inline constexpr std::string_view language = "MATLAB";
 
 /// Documentation as the lines of a help text: the first behind the name, `%FRAME Sent at ...`, the
 /// others indented behind their `%`. What is given as `title` stands for missing documentation.
