@@ -214,6 +214,8 @@ class StreamConnection final : public Connection,
   void unpark();
   [[nodiscard]] Milliseconds park_time() const;
   bool is_busy(Time last_received);
+  void acknowledge_late();
+  void look_for_waiting_sender(Time before);
   void stay(Scratch& scratch);
   bool begin_staying(std::uint32_t& leads);
   bool go_on_staying(Received received, std::uint32_t& leads);
@@ -282,6 +284,7 @@ class StreamConnection final : public Connection,
   bool is_layered_ = false;           // with the read turn: the carrier is a LayeredCarrier
   NodeId certified_node_;             // what the other side has proved to be; with the read turn
   bool has_receive_timeout_ = false;  // with the read turn
+  bool acknowledges_late_ = true;     // with the read turn
   unsigned busy_receives_ = 0;        // with the read turn
   std::uint32_t busy_leads_ = 0;      // with the read turn
   bool holds_back_answers_ = false;   // with the dispatch turn

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Threads of the reactor that stay with a busy connection.
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
 
 #include <atomic>
 #include <functional>
@@ -24,6 +27,8 @@ class Answering final : public channel::Receiver {
  public:
   std::function<void()> work;
   channel::Connection* connection = nullptr;
+  std::atomic<bool> is_silent{false};  // nothing is answered then
+  std::atomic<unsigned> handled{0};
   std::atomic<bool> is_closed{false};
 
   void take_answer(const Message& /*message*/, const Entry& /*entry*/, const MemoryRef& /*owner*/,
@@ -31,6 +36,8 @@ class Answering final : public channel::Receiver {
   void handle(const Message& /*message*/, const Entry& /*first*/,
               const MemoryRef& /*owner*/) override {
     if (work) work();
+    ++handled;
+    if (is_silent) return;
     Writer writer;
     writer.reset(MessageVersion::v2);
     writer.entry({.type = EntryType::get_node_info_ret}, 0, writer.position());
@@ -47,10 +54,24 @@ class Staying : public ::testing::Test {
     std::unique_ptr<RawPeer> peer;
     std::shared_ptr<Answering> receiver = std::make_shared<Answering>();
     std::shared_ptr<channel::StreamConnection> connection;
+    int socket = -1;  // the connection's
 
     void call() {
       peer->ask_for_node_info();
       ASSERT_EQ(peer->next_type(), EntryType::get_node_info_ret);
+    }
+    // Sends one message, for which no answer comes, and waits until it has been handled.
+    void tell() {
+      const unsigned before = receiver->handled;
+      peer->ask_for_node_info();
+      EXPECT_TRUE(eventually([&] { return receiver->handled > before; }));
+    }
+    // Whether TCP acknowledges together with what this side says next, where that is soon.
+    [[nodiscard]] bool acknowledges_late() const {
+      int at_once = 1;
+      socklen_t size = sizeof at_once;
+      ::getsockopt(socket, IPPROTO_TCP, TCP_QUICKACK, &at_once, &size);
+      return at_once == 0;
     }
   };
 
@@ -63,12 +84,13 @@ class Staying : public ::testing::Test {
     reactor_->stop();
   }
 
+  template <class Paired = RawPeer::Paired>
   Link& connect() {
     auto link = std::make_unique<Link>();
-    int other = -1;
-    link->peer = std::make_unique<RawPeer>(RawPeer::Paired{other});
+    link->peer = std::make_unique<RawPeer>(Paired{link->socket});
     link->connection = std::make_shared<channel::StreamConnection>(
-        channel::StreamConnection::Role::server, channel::Descriptor(other), reactor_, options_);
+        channel::StreamConnection::Role::server, channel::Descriptor(link->socket), reactor_,
+        options_);
     link->receiver->connection = link->connection.get();
     link->connection->start(link->receiver);
     links_.push_back(std::move(link));
@@ -139,6 +161,43 @@ TEST_F(Staying, DoesNotKeepASlowHandlersConnectionFromBeingRead) {
   EXPECT_EQ(link.peer->next_type(), EntryType::get_node_info_ret);
   EXPECT_EQ(link.peer->next_type(), EntryType::get_node_info_ret);
   link.call();
+}
+
+// Otherwise each is acknowledged by a segment of its own, before it is handled. On a crowded
+// machine a pause may look like a sender that waits, which ends it for that connection.
+TEST_F(Staying, AcknowledgesLateWhatComesAlone) {
+  bool is_late = false;
+  for (int attempt = 0; attempt < 20 && !is_late; ++attempt) {
+    Link& link = connect<RawPeer::PairedByTcp>();
+    keep_busy(link);
+    link.receiver->is_silent = true;
+    // Calls have made the kernel do so by itself, until it has waited in vain, for 40 ms. A pause
+    // as short as that would look like a sender that waits.
+    link.tell();
+    std::this_thread::sleep_for(100ms);
+    EXPECT_TRUE(eventually([&] { return !link.acknowledges_late(); }));
+    for (int i = 0; i < 300 && !is_late; ++i) {
+      link.tell();
+      is_late = link.acknowledges_late();
+    }
+    link.connection->close(Error(ErrorCode::connection_error, "the attempt is over"));
+    EXPECT_TRUE(eventually([&] { return link.receiver->is_closed && reactor_->stays() == 0; }));
+  }
+  EXPECT_TRUE(is_late);
+}
+
+// As a small device needs it, whose TCP has one segment under way at a time.
+TEST_F(Staying, AcknowledgesAtOnceAgainWhereTheSenderWaitsForThat) {
+  Link& link = connect<RawPeer::PairedByTcp>();
+  keep_busy(link);
+  link.receiver->is_silent = true;
+  int at_once = 0;
+  for (int i = 0; i < 3000 && at_once < 200; ++i) {
+    link.tell();
+    at_once = link.acknowledges_late() ? 0 : at_once + 1;
+    EXPECT_TRUE(eventually([&] { return link.peer->unacknowledged() == 0; }));
+  }
+  EXPECT_EQ(at_once, 200);
 }
 
 TEST_F(Staying, EndsWithTheConnection) {

@@ -3,6 +3,7 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -17,6 +18,7 @@
 
 #include "rr/reader.hpp"
 #include "rr/writer.hpp"
+#include "runtime/cpp/src/node/testing/silent_peer.hpp"
 
 namespace rr::testing {
 
@@ -30,6 +32,8 @@ class RawPeer {
     address.sin_port = htons(port);
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+    const int on = 1;
+    ::setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   }
   /// One end of a pair of sockets; `other` becomes the other one.
   struct Paired {
@@ -41,6 +45,11 @@ class RawPeer {
     socket_ = ends[0];
     paired.other = ends[1];
   }
+  /// The same by TCP, on the loopback interface.
+  struct PairedByTcp {
+    int& other;
+  };
+  explicit RawPeer(PairedByTcp paired) : RawPeer(SilentPeer(), paired.other) {}
   ~RawPeer() { ::close(socket_); }
   RawPeer(const RawPeer&) = delete;
   RawPeer& operator=(const RawPeer&) = delete;
@@ -92,7 +101,19 @@ class RawPeer {
     return false;
   }
 
+  /// How many segments that were sent the other side has not acknowledged yet.
+  [[nodiscard]] std::uint32_t unacknowledged() const { return info().tcpi_unacked; }
+
  private:
+  RawPeer(const SilentPeer& listening, int& other) : RawPeer(listening.port()) {
+    other = listening.accept();
+  }
+  tcp_info info() const {
+    tcp_info found{};
+    socklen_t size = sizeof found;
+    ::getsockopt(socket_, IPPROTO_TCP, TCP_INFO, &found, &size);
+    return found;
+  }
   bool is_readable() const {
     pollfd wanted{socket_, POLLIN, 0};
     return ::poll(&wanted, 1, 20'000) > 0;

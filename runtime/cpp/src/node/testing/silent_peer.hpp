@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <string>
 
 namespace rr::testing {
@@ -31,12 +32,13 @@ class SilentPeer {
   [[nodiscard]] std::string url() const {
     return "rr+tcp://127.0.0.1:" + std::to_string(port_) + "/?service=counter";
   }
+  [[nodiscard]] std::uint16_t port() const { return port_; }
   /// Waits for somebody to connect; the connection is closed by the caller.
   [[nodiscard]] int accept() const { return ::accept(socket_, nullptr, nullptr); }
 
  private:
   int socket_ = -1;
-  int port_ = 0;
+  std::uint16_t port_ = 0;
 };
 
 }  // namespace rr::testing
