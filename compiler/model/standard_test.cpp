@@ -42,79 +42,80 @@ std::vector<std::string> standard_files() {
 
 bool is_broken(const std::string& file) { return fs::path(file).filename() == broken_definition; }
 
-struct Outcome {
+struct Compiled {
   Sources sources;
   Report report;
   Model model;
 };
 
-void finish(const ast::Program& program, Outcome& outcome) {
-  outcome.model = resolve(program, outcome.sources, outcome.report);
-  evaluate(outcome.model, outcome.report);
-  lay_out(outcome.model, outcome.report);
-  check(outcome.model, outcome.report);
-  check_strictly(outcome.model, outcome.report);
+void finish(const ast::Program& program, Compiled& compiled) {
+  compiled.model = resolve(program, compiled.sources, compiled.report);
+  evaluate(compiled.model, compiled.report);
+  lay_out(compiled.model, compiled.report);
+  check(compiled.model, compiled.report);
+  check_strictly(compiled.model, compiled.report);
 }
 
-void run(const std::vector<std::string>& files, Outcome& outcome) {
+void compile(const std::vector<std::string>& files, Compiled& compiled) {
   const ast::SearchPath path{{standard_folder()}};
-  finish(ast::read(files, path, outcome.sources, outcome.report), outcome);
+  finish(ast::read(files, path, compiled.sources, compiled.report), compiled);
 }
 
 TEST(Standard, AllButOneAreAcceptedEachByItself) {
   const std::vector<std::string> files = standard_files();
   ASSERT_EQ(files.size(), 47u);
   for (const std::string& file : files) {
-    Outcome outcome;
-    run({file}, outcome);
-    EXPECT_EQ(outcome.report.has_errors(), is_broken(file))
-        << render(outcome.report, outcome.sources, Format::text);
+    Compiled compiled;
+    compile({file}, compiled);
+    EXPECT_EQ(compiled.report.has_errors(), is_broken(file))
+        << render(compiled.report, compiled.sources, Format::text);
   }
 }
 
 TEST(Standard, AllButOneAreAcceptedTogether) {
   std::vector<std::string> files = standard_files();
   std::erase_if(files, is_broken);
-  Outcome outcome;
-  run(files, outcome);
-  EXPECT_FALSE(outcome.report.has_errors())
-      << render(outcome.report, outcome.sources, Format::text);
-  EXPECT_EQ(outcome.model.definitions().size(), 46u);
+  Compiled compiled;
+  compile(files, compiled);
+  EXPECT_FALSE(compiled.report.has_errors())
+      << render(compiled.report, compiled.sources, Format::text);
+  EXPECT_EQ(compiled.model.definitions().size(), 46u);
 }
 
 TEST(Standard, TheOneThatIsRejectedImportsWhatNoFileDefines) {
-  Outcome outcome;
-  run({(fs::path(standard_folder()) / broken_definition).string()}, outcome);
-  ASSERT_EQ(outcome.report.errors(), 1u) << render(outcome.report, outcome.sources, Format::text);
-  const Diagnostic& error = *outcome.report.sorted().front();
+  Compiled compiled;
+  compile({(fs::path(standard_folder()) / broken_definition).string()}, compiled);
+  ASSERT_EQ(compiled.report.errors(), 1u)
+      << render(compiled.report, compiled.sources, Format::text);
+  const Diagnostic& error = *compiled.report.sorted().front();
   EXPECT_EQ(entry_of(error.code()).rule, "V03");
   const Span span = error.primary().span;
-  EXPECT_EQ(outcome.sources[span.source].position(span.begin).line, 11u);
+  EXPECT_EQ(compiled.sources[span.source].position(span.begin).line, 11u);
 }
 
 TEST(Standard, PrintedDefinitionsParseToEqualModels) {
   std::vector<std::string> files = standard_files();
   std::erase_if(files, is_broken);
-  Outcome outcome;
-  run(files, outcome);
+  Compiled compiled;
+  compile(files, compiled);
   std::vector<ast::NamedText> printed;
-  for (const auto& definition : outcome.model.definitions()) {
+  for (const auto& definition : compiled.model.definitions()) {
     printed.push_back({definition->name + ".robdef", print(*definition), false});
   }
-  Outcome again;
+  Compiled again;
   finish(ast::read_texts(printed, again.sources, again.report), again);
   EXPECT_EQ(render(again.report, again.sources, Format::text), "");
-  EXPECT_EQ(dump(outcome.model, outcome.sources, Detail::shape),
+  EXPECT_EQ(dump(compiled.model, compiled.sources, Detail::shape),
             dump(again.model, again.sources, Detail::shape));
 }
 
 TEST(Standard, TheModelIsTheSameInEachRun) {
   std::vector<std::string> files = standard_files();
   std::erase_if(files, is_broken);
-  Outcome first;
-  run(files, first);
-  Outcome second;
-  run(files, second);
+  Compiled first;
+  compile(files, first);
+  Compiled second;
+  compile(files, second);
   EXPECT_EQ(dump(first.model, first.sources), dump(second.model, second.sources));
 }
 

@@ -18,7 +18,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const fs::path corpus = fs::path(ROBDEF_CORPUS_DIR) / "read";
+const fs::path read_corpus = fs::path(ROBDEF_CORPUS_DIR) / "read";
 
 class ReadTest : public ::testing::Test {
  protected:
@@ -94,7 +94,7 @@ TEST_F(ReadTest, SourcesComeFirstAndImportsAsTheyAreMet) {
 }
 
 TEST_F(ReadTest, CirclesEndAndMissingImportsAreLeftOut) {
-  const Program program = read_files({(corpus / "circle_a.robdef").string()});
+  const Program program = read_files({(read_corpus / "circle_a.robdef").string()});
   EXPECT_THAT(services(program), ElementsAre("circle_a", "(circle_b)"));
   EXPECT_EQ(findings(), "");
   EXPECT_FALSE(program.files[0].file.imports[1].is_reported);
@@ -131,13 +131,13 @@ TEST_F(ReadTest, AFileThatIsTooLargeIsReportedWithItsLimit) {
 }
 
 TEST_F(ReadTest, AnUnreadableImportIsReportedWhereItIsImported) {
-  const Program program = read_files({(corpus / "R0510_unreadable.robdef").string()});
+  const Program program = read_files({(read_corpus / "R0510_unreadable.robdef").string()});
   EXPECT_TRUE(program.files[0].file.imports[0].is_reported);
   EXPECT_THAT(findings(), HasSubstr("R0510_unreadable.robdef(3,8): error: R0510 "));
 }
 
 TEST_F(ReadTest, AnImportOfAFileWithAnotherServiceIsReportedAndNotLoaded) {
-  const Program program = read_files({(corpus / "R0512_other_service.robdef").string()});
+  const Program program = read_files({(read_corpus / "R0512_other_service.robdef").string()});
   EXPECT_THAT(services(program), ElementsAre("example.reads"));
   EXPECT_TRUE(program.files[0].file.imports[0].is_reported);
   EXPECT_THAT(findings(), HasSubstr("R0512_other_service.robdef(3,8): error: R0512 [V03] "));

@@ -14,7 +14,6 @@ using rr::EntryType;
 using Clock = std::chrono::steady_clock;
 
 constexpr Milliseconds slice{5};
-constexpr Milliseconds limit_after_fault{100};
 constexpr Milliseconds close_limit{2000};
 
 }  // namespace

@@ -7,10 +7,6 @@
 namespace rr::conformance {
 namespace {
 
-std::string said(const Json& answer) {
-  return answer.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 200);
-}
-
 Result begin(const Scenario& scenario, Role role) {
   Result result;
   result.run = {scenario.name, scenario.version, role};
@@ -51,25 +47,26 @@ void check_one_packing(const Value& value, Runner& decoder, Runner& encoder, Res
       ++result.refused;
     } else {
       result.fail(place, value.type,
-                  "packed, though the recorded library refuses: " + said(packed));
+                  "packed, though the recorded library refuses: " + said(packed, 200));
     }
     return;
   }
   ++result.checked;
-  if (!packed.contains("hex")) return result.fail(place, value.type, "not packed: " + said(packed));
+  if (!packed.contains("hex"))
+    return result.fail(place, value.type, "not packed: " + said(packed, 200));
   if (packed["hex"] != hex_of_bytes(*value.bytes)) {
     return result.fail(place, value.type,
                        difference_of_bytes(*value.bytes, packed["hex"].get<std::string>()));
   }
   const Json decoded = decoder.ask(element_request(value));
   if (!decoded.contains("decoded")) {
-    return result.fail(place, value.type, "not decoded: " + said(decoded));
+    return result.fail(place, value.type, "not decoded: " + said(decoded, 200));
   }
   const Json again = encoder.ask({{"do", "element"},
                                   {"message_version", value.message_version},
                                   {"decoded", decoded["decoded"]}});
   if (again.value("hex", "") != hex_of_bytes(*value.bytes)) {
-    result.fail(place, value.type, "its decode gives other bytes: " + said(again));
+    result.fail(place, value.type, "its decode gives other bytes: " + said(again, 200));
   }
 }
 
@@ -81,7 +78,7 @@ Result check_decoding(const Scenario& scenario, Runner& decoder) {
     const Json answer = decoder.ask({{"do", "message"}, {"hex", hex_of_bytes(frame.bytes)}});
     ++result.checked;
     if (!answer.contains("decoded")) {
-      result.fail(frame_place(frame.number), "", "not decoded: " + said(answer));
+      result.fail(frame_place(frame.number), "", "not decoded: " + said(answer, 200));
     } else if (answer["decoded"] != frame.decoded) {
       result.fail(frame_place(frame.number), "",
                   describe_difference(frame.decoded, answer["decoded"]));
@@ -96,7 +93,7 @@ Result check_encoding(const Scenario& scenario, Runner& encoder) {
     const Json answer = encoder.ask({{"do", "message"}, {"decoded", frame.decoded}});
     ++result.checked;
     if (!answer.contains("hex")) {
-      result.fail(frame_place(frame.number), "", "not encoded: " + said(answer));
+      result.fail(frame_place(frame.number), "", "not encoded: " + said(answer, 200));
     } else if (answer["hex"] != hex_of_bytes(frame.bytes)) {
       result.fail(frame_place(frame.number), "",
                   difference_of_bytes(frame.bytes, answer["hex"].get<std::string>()));
@@ -112,10 +109,11 @@ Result check_unpacking(const Captures& captures, int message_version, Runner& de
     ++result.checked;
     const Json answer = decoder.ask(element_request(value));
     if (!answer.contains("value")) {
-      result.fail(case_place(value.name), value.type, "not unpacked: " + said(answer));
+      result.fail(case_place(value.name), value.type, "not unpacked: " + said(answer, 200));
     } else if (!same_value(value.value, answer["value"])) {
-      result.fail(case_place(value.name), value.type,
-                  said(value.value) + " recorded, " + said(answer["value"]) + " unpacked");
+      result.fail(
+          case_place(value.name), value.type,
+          said(value.value, 200) + " recorded, " + said(answer["value"], 200) + " unpacked");
     }
   }
   return result;

@@ -17,7 +17,6 @@ using rr::ElementType;
 using rr::EntryType;
 using rr::MessageTree;
 
-constexpr Milliseconds answer_limit{3000};
 constexpr Milliseconds silence{600};
 constexpr std::uint32_t client_endpoint = 1001;  // the number that is in the recorded inputs
 

@@ -6,10 +6,6 @@
 namespace rr::conformance {
 namespace {
 
-std::string said(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 300);
-}
-
 // The value of the last set of the property that this step gets; what others have got from it if
 // no set was accepted.
 Json value_set_before(const std::vector<Step>& steps, const Step& step) {

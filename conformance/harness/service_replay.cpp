@@ -12,8 +12,6 @@ namespace {
 
 using rr::EntryType;
 
-constexpr Milliseconds answer_limit{3000};
-constexpr Milliseconds limit_after_fault{100};
 constexpr Milliseconds optional_limit{200};
 constexpr Milliseconds quiet{25};
 

@@ -14,4 +14,8 @@ using replay::Milliseconds;
 using replay::Stream;
 using replay::wait_readable;
 
+/// How long an answer is waited for; and once something went otherwise than recorded.
+inline constexpr Milliseconds answer_limit{3000};
+inline constexpr Milliseconds limit_after_fault{100};
+
 }  // namespace rr::conformance

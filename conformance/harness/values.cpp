@@ -130,4 +130,8 @@ bool same_value(const Json& recorded, const Json& got) {
   return recorded == got;
 }
 
+std::string said(const Json& json, std::size_t limit) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, limit);
+}
+
 }  // namespace rr::conformance

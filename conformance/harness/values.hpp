@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <string>
+
 #include "conformance/harness/json.hpp"
 
 namespace rr::conformance {
@@ -13,5 +16,8 @@ bool same_value(const Json& recorded, const Json& got);
 
 /// True when the lists have the same things, whatever their order.
 bool same_things(const Json& recorded, const Json& got);
+
+/// A value as a finding shows it, at most so many bytes of it.
+std::string said(const Json& json, std::size_t limit = 300);
 
 }  // namespace rr::conformance

@@ -31,7 +31,7 @@ Found find(const Object& root, std::string_view text) {
 
 std::string subject_of(const MemberDescription& member) { return "member " + member.name; }
 
-[[noreturn]] void refuse(const MemberDescription& member, const std::string& expected) {
+[[noreturn]] void refuse_member(const MemberDescription& member, const std::string& expected) {
   throw rr::Error(rr::ErrorCode::member_format_mismatch,
                   subject_of(member) + ": expected " + expected + ", got " + kind_of(member));
 }
@@ -141,7 +141,7 @@ void get(const Object& root, std::string_view path, const LiveOptions& options, 
   } else if (member.kind == MemberKind::memory) {
     value = read(object.memory(member.name), options);
   } else {
-    refuse(member, "property, wire or memory");
+    refuse_member(member, "property, wire or memory");
   }
   out << member.type.to_json(value) << '\n';
 }
@@ -151,7 +151,7 @@ void set(const Object& root, std::string_view path, const std::string& json,
   const auto [object, member] = find(root, path);
   const bool is_memory = member.kind == MemberKind::memory;
   if (!is_memory && member.kind != MemberKind::property && member.kind != MemberKind::wire) {
-    refuse(member, "property, wire or memory");
+    refuse_member(member, "property, wire or memory");
   }
   const Value value = read_json(member.type, json, subject_of(member));
   if (member.kind == MemberKind::property) {
@@ -169,7 +169,7 @@ void call(const Object& root, std::string_view path, std::span<const std::string
           std::ostream& out) {
   const Found found = find(root, path);
   const MemberDescription& member = found.member;
-  if (member.kind != MemberKind::function) refuse(member, "function");
+  if (member.kind != MemberKind::function) refuse_member(member, "function");
   if (member.generator != rr::GeneratorForm::none) {
     Steps(found, arguments, options, next_step).run(out);
     return;

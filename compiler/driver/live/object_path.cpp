@@ -10,10 +10,6 @@
 namespace robdef::live {
 namespace {
 
-[[noreturn]] void refuse(const std::string& what) {
-  throw rr::Error(rr::ErrorCode::invalid_argument, what);
-}
-
 [[noreturn]] void refuse_path(std::string_view text) {
   refuse("`" + std::string(text) + "` is no path of an object; they look so: lights[0].lamp");
 }
@@ -75,6 +71,8 @@ rr::dynamic::Object step_into(const rr::dynamic::Object& object, const PathStep&
 }
 
 }  // namespace
+
+void refuse(const std::string& what) { throw rr::Error(rr::ErrorCode::invalid_argument, what); }
 
 ObjectPath parse_object_path(std::string_view text) {
   ObjectPath path;

@@ -26,6 +26,9 @@ struct MemberPath {
   std::string member;
 };
 
+/// Throws rr::Error (invalid_argument).
+[[noreturn]] void refuse(const std::string& what);
+
 /// Empty text: the root. Throws rr::Error (invalid_argument) for what is no path.
 ObjectPath parse_object_path(std::string_view text);
 /// Throws rr::Error (invalid_argument) for what is no path, or ends with an index.

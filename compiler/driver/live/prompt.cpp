@@ -21,6 +21,7 @@
 #include "compiler/driver/live/line_reader.hpp"
 #include "compiler/driver/live/line_words.hpp"
 #include "compiler/driver/live/members.hpp"
+#include "compiler/driver/live/object_path.hpp"
 #include "compiler/driver/live/watch.hpp"
 #include "compiler/driver/options.hpp"
 
@@ -29,10 +30,6 @@ namespace {
 
 using rr::dynamic::Object;
 using Words = std::span<const std::string>;
-
-[[noreturn]] void refuse(const std::string& what) {
-  throw rr::Error(rr::ErrorCode::invalid_argument, what);
-}
 
 class Prompt {
  public:

@@ -9,6 +9,7 @@
 #include "rr/dynamic.hpp"
 #include "rr/node.hpp"
 #include "rr/serial.hpp"
+#include "runtime/arduino/bench/elf_dir.hpp"
 #include "runtime/arduino/bench/plugged_board.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 
@@ -21,8 +22,6 @@ using dynamic::List;
 using dynamic::Value;
 using rr::testing::error_of;
 using rr::testing::eventually;
-
-const std::string elf_dir = RR_ELF_DIR;
 
 class Bridged : public ::testing::Test {
  protected:

@@ -4,14 +4,13 @@
 
 #include <cstring>
 
+#include "runtime/arduino/bench/elf_dir.hpp"
 #include "runtime/arduino/bench/simulated_line.hpp"
 
 namespace rr::serial::testing {
 namespace {
 
 using namespace std::chrono_literals;
-
-const std::string elf_dir = RR_ELF_DIR;
 
 // Compare registers of the pins 9, 10 (low bytes) and 11, and where pin 9's output is switched on.
 constexpr std::uint16_t red_register = 0x88;

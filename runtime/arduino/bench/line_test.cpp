@@ -9,14 +9,13 @@
 #include <random>
 #include <tuple>
 
+#include "runtime/arduino/bench/elf_dir.hpp"
 #include "runtime/arduino/bench/simulated_line.hpp"
 
 namespace rr::serial::testing {
 namespace {
 
 using namespace std::chrono_literals;
-
-const std::string elf_dir = RR_ELF_DIR;
 
 // Members of example.echo.
 constexpr std::uint8_t value_member = 0;

@@ -17,6 +17,7 @@
 #include "rr/node.hpp"
 #include "rr/serial.hpp"
 #include "rr/subscription.hpp"
+#include "runtime/arduino/bench/elf_dir.hpp"
 #include "runtime/arduino/bench/plugged_board.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 
@@ -29,8 +30,6 @@ using dynamic::Value;
 using rr::testing::error_of;
 using rr::testing::eventually;
 using ::testing::HasSubstr;
-
-const std::string elf_dir = RR_ELF_DIR;
 
 NodeOptions with_serial() { return {.channels = {{"rr+serial", serial_channel()}}}; }
 

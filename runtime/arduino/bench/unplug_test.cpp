@@ -12,6 +12,7 @@
 #include "rr/node.hpp"
 #include "rr/serial.hpp"
 #include "rr/subscription.hpp"
+#include "runtime/arduino/bench/elf_dir.hpp"
 #include "runtime/arduino/bench/plugged_board.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 
@@ -23,8 +24,6 @@ using dynamic::List;
 using dynamic::Value;
 using rr::testing::error_of;
 using rr::testing::eventually;
-
-const std::string elf_dir = RR_ELF_DIR;
 
 enum class Way { bridge, serial };
 

@@ -18,7 +18,7 @@ namespace rr::discovery {
 namespace {
 
 const NodeId some_node = *NodeId::parse("11111111-2222-3333-4444-555555555555");
-const std::string id_text = "11111111-2222-3333-4444-555555555555";
+const std::string sender_text = "11111111-2222-3333-4444-555555555555";
 
 channel::Address at(const char* text) {
   channel::Address address;
@@ -36,8 +36,8 @@ channel::Address at(const char* text) {
 
 // The packet of 05, section 2.1, with this host.
 std::string packet_at(const std::string& host) {
-  return "Robot Raconteur Node Discovery Packet\n{" + id_text + "},probe_server\nrr+tcp://" + host +
-         ":52250/?nodeid=" + id_text +
+  return "Robot Raconteur Node Discovery Packet\n{" + sender_text + "},probe_server\nrr+tcp://" +
+         host + ":52250/?nodeid=" + sender_text +
          "&service=RobotRaconteurServiceIndex\nServiceStateNonce: qF26UdfMZEevLzWa\n";
 }
 
@@ -55,8 +55,8 @@ TEST(DiscoveryPackets, WhatIsWrittenIsRead) {
   EXPECT_EQ(read->node, some_node);
   EXPECT_EQ(read->name, "probe_server");
   EXPECT_EQ(read->nonce, "qF26UdfMZEevLzWa");
-  EXPECT_EQ(read->url,
-            "rr+tcp://192.0.2.2:52250/?nodeid=" + id_text + "&service=RobotRaconteurServiceIndex");
+  EXPECT_EQ(read->url, "rr+tcp://192.0.2.2:52250/?nodeid=" + sender_text +
+                           "&service=RobotRaconteurServiceIndex");
 }
 
 TEST(DiscoveryPackets, TheNonceIsLeftOutOfALongPacket) {
@@ -125,12 +125,12 @@ TEST(DiscoveryPackets, ANonceHasSixteenLettersAndDigits) {
 }
 
 TEST(DiscoveryUrls, TheServiceOfAUrlCanBeExchanged) {
-  const std::string url = "rr+tcp://10.0.0.5:1/?nodeid=" + id_text + "&service=Index";
+  const std::string url = "rr+tcp://10.0.0.5:1/?nodeid=" + sender_text + "&service=Index";
   EXPECT_EQ(service_index::exchange_service(url, "arm"),
-            "rr+tcp://10.0.0.5:1/?nodeid=" + id_text + "&service=arm");
-  EXPECT_EQ(service_index::exchange_service(url, {}), "rr+tcp://10.0.0.5:1/?nodeid=" + id_text);
+            "rr+tcp://10.0.0.5:1/?nodeid=" + sender_text + "&service=arm");
+  EXPECT_EQ(service_index::exchange_service(url, {}), "rr+tcp://10.0.0.5:1/?nodeid=" + sender_text);
   EXPECT_EQ(service_index::service_url("rr+tcp://[fe80::1%eth0]:7", some_node, "arm"),
-            "rr+tcp://[fe80::1]:7/?nodeid=" + id_text + "&service=arm");
+            "rr+tcp://[fe80::1]:7/?nodeid=" + sender_text + "&service=arm");
 }
 
 // The table

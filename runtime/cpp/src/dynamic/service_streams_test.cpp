@@ -17,7 +17,7 @@ using ::testing::ElementsAre;
 using testing::error_text;
 using testing::rig_definitions;
 
-constexpr std::chrono::seconds limit{20};
+using testing::limit;
 
 class DynamicStreams : public testing::Rigged {};
 INSTANTIATE_TEST_SUITE_P(Versions, DynamicStreams, ::testing::Values(2, 4));

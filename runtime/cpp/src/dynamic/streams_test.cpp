@@ -22,7 +22,7 @@ using testing::Connected;
 using ::testing::ElementsAre;
 using testing::error_text;
 
-constexpr std::chrono::seconds limit{20};
+using testing::limit;
 
 class Generators : public members::GeneratorsSkeleton {
  public:

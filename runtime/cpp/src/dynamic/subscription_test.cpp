@@ -18,7 +18,7 @@ namespace {
 
 using testing::error_text;
 
-constexpr std::chrono::seconds limit{20};
+using testing::limit;
 
 class DynamicSubscriptions : public testing::Rigged {
  protected:

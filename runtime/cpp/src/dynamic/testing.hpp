@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <fstream>
 #include <functional>
 #include <iterator>
@@ -10,6 +11,9 @@
 #include "rr/error.hpp"
 
 namespace rr::dynamic::testing {
+
+/// For what has to happen, on a machine however busy.
+inline constexpr std::chrono::seconds limit{20};
 
 inline std::string text_of_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);

@@ -16,7 +16,7 @@
 
 #include "rr/call.hpp"
 #include "runtime/cpp/src/node/testing/async_counter.hpp"
-#include "runtime/cpp/src/node/testing/gate.hpp"
+#include "runtime/cpp/src/node/testing/gated_counter.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 #include "runtime/cpp/src/node/testing/raw_client.hpp"
 #include "runtime/cpp/src/node/testing/raw_peer.hpp"
@@ -32,12 +32,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using Clock = std::chrono::steady_clock;
-
-class GatedCounter : public Counter {
- public:
-  void reset() override { gate.pass(); }
-  Gate gate;
-};
 
 // What a node reports.
 struct Log {

@@ -31,8 +31,6 @@ using boost::asio::use_future;
 using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 
-ErrorCode code_of(const std::function<void()>& what) { return error_of(what).code(); }
-
 std::uint32_t caller() { return ServiceContext::current_client(); }
 
 TEST(Callbacks, AreCalledFromInsideACallOfTheirClient) {
@@ -301,8 +299,10 @@ TEST(Callbacks, FailWhenTheirClientLeaves) {
   BoardPair pair;
   std::promise<ErrorCode> code;
   std::promise<void> entered;
+  std::promise<void> is_left;  // until then, the function gives no answer that might come first
   pair.object->on_run = [&](const std::string&) -> double {
     code.set_value(code_of([&] { pair.object->ping(caller()); }));
+    is_left.get_future().wait();
     return 0;
   };
   std::optional<Client<BoardStub>> board = pair.connect();
@@ -316,8 +316,9 @@ TEST(Callbacks, FailWhenTheirClientLeaves) {
   std::thread leaving([&] { board->close(); });
   EXPECT_EQ(code.get_future().get(), ErrorCode::connection_error);
   gate.set_value();
-  leaving.join();
   EXPECT_EQ(code_of([&] { call.get(); }), ErrorCode::connection_error);
+  is_left.set_value();
+  leaving.join();
   EXPECT_TRUE(eventually([&] { return pair.service->clients().empty(); }));
 }
 

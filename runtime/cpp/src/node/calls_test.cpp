@@ -175,7 +175,7 @@ TEST(Calls, ManyClientsShareOneService) {
 }
 
 // Handlers that wait for the test.
-class GatedCounter : public Counter {
+class SlowCounter : public Counter {
  public:
   void slow(Reply<void> reply, std::int32_t milliseconds) override {
     if (milliseconds >= 0) {
@@ -189,7 +189,7 @@ class GatedCounter : public Counter {
 };
 
 TEST(Calls, ASlowHandlerHoldsUpItsOwnClientOnly) {
-  const auto object = std::make_shared<GatedCounter>();
+  const auto object = std::make_shared<SlowCounter>();
   Pair pair({}, {}, object);
   auto blocked = pair.connect();
   auto other = pair.connect();
@@ -301,7 +301,7 @@ TEST(Calls, AHandlerMayCallAnotherServiceOfItsOwnNode) {
 }
 
 TEST(Calls, ACallWithoutAnAnswerInTimeFailsAndTheNextOneWorks) {
-  const auto object = std::make_shared<GatedCounter>();
+  const auto object = std::make_shared<SlowCounter>();
   Pair pair({}, {}, object);
   auto counter = pair.connect();
   const auto before = Clock::now();
@@ -316,7 +316,7 @@ TEST(Calls, ACallWithoutAnAnswerInTimeFailsAndTheNextOneWorks) {
 }
 
 TEST(Calls, AFollowerAlsoRunsOutOfTime) {
-  const auto object = std::make_shared<GatedCounter>();
+  const auto object = std::make_shared<SlowCounter>();
   Pair pair({}, {}, object);
   auto counter = pair.connect();
   auto reader = std::async(std::launch::async, [&] { counter->slow(0); });
@@ -330,7 +330,7 @@ TEST(Calls, AFollowerAlsoRunsOutOfTime) {
 }
 
 TEST(Calls, ABlockingCallCanBeCancelled) {
-  const auto object = std::make_shared<GatedCounter>();
+  const auto object = std::make_shared<SlowCounter>();
   Pair pair({}, {}, object);
   auto counter = pair.connect();
   Cancellation stop;
@@ -349,7 +349,7 @@ TEST(Calls, ABlockingCallCanBeCancelled) {
 }
 
 TEST(Calls, ASessionsCallsCanBeCancelledTogether) {
-  const auto object = std::make_shared<GatedCounter>();
+  const auto object = std::make_shared<SlowCounter>();
   Pair pair({}, {}, object);
   auto counter = pair.connect();
   auto first =
@@ -366,7 +366,7 @@ TEST(Calls, ASessionsCallsCanBeCancelledTogether) {
 }
 
 TEST(Calls, OpenCallsFailWhenTheServiceGoesAway) {
-  const auto object = std::make_shared<GatedCounter>();
+  const auto object = std::make_shared<SlowCounter>();
   auto pair = std::make_unique<Pair>(NodeOptions{}, NodeOptions{}, object);
   auto counter = pair->connect();
   auto call =
@@ -381,7 +381,7 @@ TEST(Calls, OpenCallsFailWhenTheServiceGoesAway) {
 }
 
 TEST(Calls, OpenCallsFailWhenTheClientsNodeIsShutDown) {
-  const auto object = std::make_shared<GatedCounter>();
+  const auto object = std::make_shared<SlowCounter>();
   Pair pair({}, {}, object);
   auto counter = pair.connect();
   auto call =

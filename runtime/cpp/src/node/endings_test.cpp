@@ -16,7 +16,7 @@
 
 #include "rr/call.hpp"
 #include "runtime/cpp/src/node/testing/async_counter.hpp"
-#include "runtime/cpp/src/node/testing/gate.hpp"
+#include "runtime/cpp/src/node/testing/gated_counter.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 
 namespace rr::testing {
@@ -35,26 +35,9 @@ class ScriptedCounter : public Counter {
 };
 
 // reset() waits for the test.
-class GatedCounter : public Counter {
- public:
-  void reset() override {
-    gate.pass();
-    is_done = true;
-  }
-  Gate gate;
-  std::atomic<bool> is_done{false};
-};
-
 // Does something when it is destroyed.
 std::shared_ptr<void> at_end(std::function<void()> what) {
   return {nullptr, [what = std::move(what)](void*) { what(); }};
-}
-
-ErrorCode code_of(const std::exception_ptr& error) {
-  return error_of([&] {
-           if (error) std::rethrow_exception(error);
-         })
-      .code();
 }
 
 TEST(Shutdown, WaitsForAHandlerThatRuns) {

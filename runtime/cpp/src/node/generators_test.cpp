@@ -29,8 +29,6 @@ using boost::asio::use_future;
 using ::testing::ElementsAre;
 using std::chrono_literals::operator""ms;
 
-ErrorCode code_of(const std::function<void()>& what) { return error_of(what).code(); }
-
 TEST(Generators, GiveTheirValuesAndEnd) {
   BoardPair pair;
   auto board = pair.connect();

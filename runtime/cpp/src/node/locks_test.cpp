@@ -61,7 +61,6 @@ struct Secured : Pair {
   const std::shared_ptr<Monitored> counter;
 };
 
-ErrorCode code_of(const std::function<void()>& what) { return error_of(what).code(); }
 constexpr auto locked = ErrorCode::object_locked_error;
 constexpr auto none = ErrorCode::none;
 

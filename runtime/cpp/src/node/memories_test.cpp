@@ -80,7 +80,7 @@ constexpr Field sample_fields[] = {
 };
 
 enum Place : std::size_t {
-  numbers_place,
+  number_memory_place,
   flags_place,
   waves_place,
   samples_place,
@@ -121,7 +121,7 @@ class BoardStub : public virtual Stub {
  public:
   [[nodiscard]] const ObjectType& rr_object_type() const override { return rr_Board; }
 
-  ArrayMemory<double> numbers() { return {*this, members[numbers_place]}; }
+  ArrayMemory<double> numbers() { return {*this, members[number_memory_place]}; }
   ArrayMemory<bool> flags() { return {*this, members[flags_place]}; }
   ArrayMemory<std::complex<double>> waves() { return {*this, members[waves_place]}; }
   ArrayMemory<Sample> samples() { return {*this, members[samples_place]}; }
@@ -185,7 +185,7 @@ class Board final : public Skeleton {
   std::shared_ptr<Skeleton> rr_child(std::size_t, const ObjectIndex&) override { return nullptr; }
   std::shared_ptr<MemorySource> rr_memory(std::size_t member) override {
     switch (member) {
-      case numbers_place:
+      case number_memory_place:
       case fixed_place:
       case hidden_place:
         return numbers;
@@ -240,8 +240,6 @@ struct Boards {
   Node client;
   Client<BoardStub> stub;
 };
-
-ErrorCode code_of(const std::function<void()>& what) { return error_of(what).code(); }
 
 using boost::asio::use_future;
 using ::testing::ElementsAre;

@@ -20,12 +20,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-std::shared_ptr<Counter> counter(const std::string& name) {
-  return std::make_shared<Counter>(name);
-}
-
-ErrorCode code_of(const std::function<void()>& what) { return error_of(what).code(); }
-
 SubscriptionOptions with(ServiceFilter filter) {
   return {.retry_delay = 20ms, .filter = std::move(filter)};
 }

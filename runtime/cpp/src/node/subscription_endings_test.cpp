@@ -22,12 +22,6 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using Clock = std::chrono::steady_clock;
 
-std::shared_ptr<Counter> counter(const std::string& name) {
-  return std::make_shared<Counter>(name);
-}
-
-ErrorCode code_of(const std::function<void()>& what) { return error_of(what).code(); }
-
 TEST(ServiceSubscriptions, EndAnAttemptThatTakesTooLong) {
   const SilentPeer peer;
   Node node;

@@ -23,8 +23,6 @@ using boost::asio::use_future;
 
 using TwoBoards = Two<PipeBoard, PipeBoardStub>;
 
-ErrorCode code_of(const std::function<void()>& what) { return error_of(what).code(); }
-
 TEST(PipeSubscriptions, BringThePacketsOfAllClientsTogether) {
   TwoBoards both;
   auto numbers = both.subscription.subscribe_pipe<double>("numbers");

@@ -29,12 +29,6 @@ using Clock = std::chrono::steady_clock;
 
 SubscriptionOptions quick() { return {.retry_delay = 20ms}; }
 
-std::shared_ptr<Counter> counter(const std::string& name) {
-  return std::make_shared<Counter>(name);
-}
-
-ErrorCode code_of(const std::function<void()>& what) { return error_of(what).code(); }
-
 // The codes of errors that come on any thread.
 class Codes {
  public:

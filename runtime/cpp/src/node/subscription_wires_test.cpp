@@ -20,8 +20,6 @@ using std::chrono_literals::operator""s;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-ErrorCode code_of(const std::function<void()>& what) { return error_of(what).code(); }
-
 using TwoWired = Two<Wired, WiredStub>;
 
 TEST(WireSubscriptions, GiveTheNewestValueOfAllClients) {

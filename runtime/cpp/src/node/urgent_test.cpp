@@ -24,7 +24,7 @@ using ::testing::ElementsAre;
 
 extern const ObjectType rr_Siren;
 
-constexpr std::string_view definition_text =
+constexpr std::string_view siren_text =
     "service test.siren\n"
     "stdver 0.10\n"
     "object Siren\n"
@@ -51,7 +51,7 @@ constexpr Parameter note_parameters[] = {parameter<double>("number"),
                                          parameter<Array<std::uint8_t>>("filling")};
 constexpr Parameter alarm_parameters[] = {parameter<double>("number")};
 constexpr Parameter text_parameters[] = {parameter<std::string>("text")};
-constexpr Member members[] = {
+constexpr Member siren_members[] = {
     event("note", note_parameters),
     event("alarm", alarm_parameters, urgent),
     property<double>("level"),
@@ -60,23 +60,24 @@ constexpr Member members[] = {
     function<void>("stop", text_parameters, urgent),
     objref("child", "test.siren.Siren"),
 };
-constexpr const ObjectType* objects[] = {&rr_Siren};
-constinit const Definition definition{"test.siren", definition_text, {0, 10, 0, 0}, {}, {},
-                                      {},           objects};
+constexpr const ObjectType* siren_objects[] = {&rr_Siren};
+constinit const Definition siren_definition{"test.siren", siren_text, {0, 10, 0, 0}, {},
+                                            {},           {},         siren_objects};
 
 class SirenStub : public virtual Stub {
  public:
   [[nodiscard]] const ObjectType& rr_object_type() const override { return rr_Siren; }
   auto work(const std::string& text) {
-    return rr_async_call<void>(members[work_place], use_future, text);
+    return rr_async_call<void>(siren_members[work_place], use_future, text);
   }
   auto stop(const std::string& text) {
-    return rr_async_call<void>(members[stop_place], use_future, text);
+    return rr_async_call<void>(siren_members[stop_place], use_future, text);
   }
 };
 
-std::shared_ptr<Stub> make() { return std::make_shared<SirenStub>(); }
-constinit const ObjectType rr_Siren{"test.siren.Siren", definition, {}, members, &make};
+std::shared_ptr<Stub> make_siren() { return std::make_shared<SirenStub>(); }
+constinit const ObjectType rr_Siren{
+    "test.siren.Siren", siren_definition, {}, siren_members, &make_siren};
 
 class Siren : public Skeleton {
  public:
@@ -100,9 +101,9 @@ class Siren : public Skeleton {
   }
   void note(double number) const {
     const Array<std::uint8_t> filling(100'000);
-    rr_fire_event(members[note_place], number, filling);
+    rr_fire_event(siren_members[note_place], number, filling);
   }
-  void alarm(double number) const { rr_fire_event(members[alarm_place], number); }
+  void alarm(double number) const { rr_fire_event(siren_members[alarm_place], number); }
   std::vector<std::string> handled() {
     const std::lock_guard lock(mutex_);
     return handled_;

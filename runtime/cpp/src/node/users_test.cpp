@@ -35,16 +35,14 @@ std::shared_ptr<PasswordUsers> two_users() {
       "bob b177f56968fdfe39a41e06e419013440 _\r\n");  // of builder-2
 }
 
-struct Secured : Pair {
-  explicit Secured(bool require_user = true, std::shared_ptr<Counter> offered = nullptr)
+struct PairWithUsers : Pair {
+  explicit PairWithUsers(bool require_user = true, std::shared_ptr<Counter> offered = nullptr)
       : Pair({}, {}, offered ? std::move(offered) : std::make_shared<Counter>(),
              {.users = two_users(), .require_user = require_user}) {}
 };
 
-ErrorCode code_of(const std::function<void()>& what) { return error_of(what).code(); }
-
 TEST(Users, APasswordOpensTheServiceAndNothingElseDoes) {
-  Secured pair;
+  PairWithUsers pair;
   auto alice = pair.connect(as("alice", "wonder land 1"));
   EXPECT_EQ(alice->get_fixed(), 42.125);
   auto bob = pair.connect(as("bob", "builder-2"));
@@ -81,7 +79,7 @@ TEST(Users, ASessionConnectedInStepsLogsInAtItsEnd) {
 }
 
 TEST(Users, LogInAndOutDuringASession) {
-  Secured pair;
+  PairWithUsers pair;
   auto client = pair.connect(as("alice", "wonder land 1"));
   EXPECT_EQ(code_of([&] { client.authenticate("bob", with_password("nope")); }),
             ErrorCode::authentication_error);
@@ -106,7 +104,7 @@ TEST(Users, AServiceThatNeedsNoneRefusesThemInConnecting) {
             ErrorCode::invalid_operation);
   EXPECT_EQ(code_of([&] { nobody.logout(); }), ErrorCode::invalid_operation);
 
-  Secured optional(false);
+  PairWithUsers optional(false);
   EXPECT_EQ(code_of([&] { optional.connect(as("alice", "wonder land 1")); }),
             ErrorCode::authentication_error);
   auto client = optional.connect();
@@ -123,7 +121,7 @@ TEST(Users, HandlersKnowWhoCalls) {
       return user ? user->name + (user->has(lock_privilege) ? "+" : "-") : "nobody";
     }
   };
-  Secured pair(false, std::make_shared<Asking>());
+  PairWithUsers pair(false, std::make_shared<Asking>());
   auto client = pair.connect();
   EXPECT_EQ(client->get_name(), "nobody");
   client.authenticate("alice", with_password("wonder land 1"));

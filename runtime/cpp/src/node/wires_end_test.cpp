@@ -21,8 +21,6 @@ namespace {
 using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 
-constexpr auto plenty = 20s;
-
 // Both ends of a wire, and how often each was told that it is closed.
 struct Ends {
   explicit Ends(WiredPair& pair, Client<WiredStub>& wired) {

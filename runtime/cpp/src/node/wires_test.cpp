@@ -24,8 +24,6 @@ using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 using ::testing::ElementsAre;
 
-constexpr auto plenty = 20s;
-
 bool is_later(const TimeSpec& a, const TimeSpec& b) {
   return a.seconds != b.seconds ? a.seconds > b.seconds : a.nanoseconds > b.nanoseconds;
 }

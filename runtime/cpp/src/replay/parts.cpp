@@ -54,13 +54,13 @@ std::optional<AroundPort> around_port(std::string_view text) {
   return AroundPort{text.substr(0, colon), text.substr(path)};
 }
 
-void put_aside_ports(const ElementTree& recorded, ElementTree& live) {
+void put_aside_port_of(const ElementTree& recorded, ElementTree& live) {
   if (recorded.type == ElementType::string && live.type == ElementType::string) {
     const auto before = around_port(string_of(recorded));
     if (before && before == around_port(string_of(live))) take_over(recorded, live);
   }
   for (std::size_t i = 0; i < std::min(recorded.elements.size(), live.elements.size()); ++i) {
-    put_aside_ports(recorded.elements[i], live.elements[i]);
+    put_aside_port_of(recorded.elements[i], live.elements[i]);
   }
 }
 
@@ -108,7 +108,7 @@ void put_aside_packet_time(const EntryTree& recorded, EntryTree& live) {
 
 void put_aside_ports(const EntryTree& recorded, EntryTree& live) {
   for (std::size_t i = 0; i < std::min(recorded.elements.size(), live.elements.size()); ++i) {
-    put_aside_ports(recorded.elements[i], live.elements[i]);
+    put_aside_port_of(recorded.elements[i], live.elements[i]);
   }
 }
 

@@ -10,11 +10,9 @@
 namespace rr::testing_values {
 namespace {
 
-const std::string name = "05 76 61 6c 75 65 ";  // "value"
-
 TEST(NumberArray, HasTheBytesOfTheStandard) {
-  EXPECT_EQ(encode(Array<bool>{true}), from_hex("0c 01" + name + "0e 00 01 01"));
-  EXPECT_EQ(encode(Array<double>{}), from_hex("0b 01" + name + "01 00 00"));
+  EXPECT_EQ(encode(Array<bool>{true}), from_hex("0c 01" + value_name + "0e 00 01 01"));
+  EXPECT_EQ(encode(Array<double>{}), from_hex("0b 01" + value_name + "01 00 00"));
 }
 
 TEST(NumberArray, SurvivesInEveryForm) {
@@ -222,9 +220,9 @@ TEST(MultiArray, HasTheBytesOfTheStandard) {
   const std::string dims = "04 64 69 6d 73 08 00";
   const std::string array = "0b 01 05 61 72 72 61 79 07 00 00";
   EXPECT_EQ(encode(MultiArray<std::int32_t>{{0}, {}}),
-            from_hex("24 01" + name + "75 00 02 0e 01" + dims + "01 00 00 00 00" + array));
+            from_hex("24 01" + value_name + "75 00 02 0e 01" + dims + "01 00 00 00 00" + array));
   EXPECT_EQ(encode(MultiArray<std::int32_t>{}),
-            from_hex("20 01" + name + "75 00 02 0a 01" + dims + "00" + array));
+            from_hex("20 01" + value_name + "75 00 02 0a 01" + dims + "00" + array));
 }
 
 ElementTree multi(const Array<std::uint32_t>& dims, const Array<double>& numbers) {

@@ -13,13 +13,11 @@ namespace {
 
 using conformance::types::Mode;
 
-constexpr const char* name = "05 76 61 6c 75 65 ";  // "value"
-
 TEST(Scalar, HasTheBytesOfTheStandard) {
-  EXPECT_EQ(encode(-1), from_hex("0f 01" + std::string(name) + "07 00 01 ff ff ff ff"));
-  EXPECT_EQ(encode(Mode::faulted), from_hex("0f 01" + std::string(name) + "07 00 01 ff ff ff ff"));
-  EXPECT_EQ(encode(true), from_hex("0c 01" + std::string(name) + "0e 00 01 01"));
-  EXPECT_EQ(encode(std::string("hi")), from_hex("0d 01" + std::string(name) + "0b 00 02 68 69"));
+  EXPECT_EQ(encode(-1), from_hex("0f 01" + value_name + "07 00 01 ff ff ff ff"));
+  EXPECT_EQ(encode(Mode::faulted), from_hex("0f 01" + value_name + "07 00 01 ff ff ff ff"));
+  EXPECT_EQ(encode(true), from_hex("0c 01" + value_name + "0e 00 01 01"));
+  EXPECT_EQ(encode(std::string("hi")), from_hex("0d 01" + value_name + "0b 00 02 68 69"));
 }
 
 template <class T>

@@ -20,6 +20,8 @@ namespace rr::testing_values {
 
 using captures::from_hex;
 using Elements = std::vector<ElementTree>;
+/// What elements are called, `value`, as bytes.
+inline const std::string value_name = "05 76 61 6c 75 65 ";
 
 /// An element with nested ones, named.
 inline ElementTree nested(std::string_view name, ElementType type, std::string_view type_name,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <string>
@@ -61,6 +62,13 @@ inline Error error_of(const std::function<void()>& what) {
     return error;
   }
   return {ErrorCode::none, "", ""};
+}
+inline ErrorCode code_of(const std::function<void()>& what) { return error_of(what).code(); }
+/// Of an error that came with an asynchronous call; null is none.
+inline ErrorCode code_of(const std::exception_ptr& error) {
+  return code_of([&] {
+    if (error) std::rethrow_exception(error);
+  });
 }
 
 }  // namespace rr::testing

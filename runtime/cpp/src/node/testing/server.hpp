@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "rr/node.hpp"
+#include "runtime/cpp/src/node/testing/counter.hpp"
 
 namespace rr::testing {
 
@@ -51,5 +52,10 @@ class Server {
   Service context_;
   std::uint16_t port_ = 0;
 };
+
+/// A counter of this name, for a server to offer.
+inline std::shared_ptr<Counter> counter(const std::string& name) {
+  return std::make_shared<Counter>(name);
+}
 
 }  // namespace rr::testing

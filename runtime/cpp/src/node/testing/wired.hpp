@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -15,6 +16,9 @@
 
 /// An object with wires, as the compiler would generate it.
 namespace rr::testing {
+
+/// For what has to happen, on a machine however busy.
+inline constexpr std::chrono::seconds plenty{20};
 
 extern const ObjectType rr_Wired;
 
