@@ -188,9 +188,8 @@ void Session::forget(const Stub& stub) {
   callbacks_.forget(stub);
 }
 
-void Session::handle(const Message& message, const Entry& /*first*/, const MemoryRef& owner) {
-  EntryReader entries(message);
-  for (Entry entry; entries.next(entry);) {
+void Session::handle(const Message& message, const Entry& first, const MemoryRef& owner) {
+  const auto handle_one = [&](const Entry& entry) {
     try {
       handle_entry(message, entry, owner);
     } catch (const std::exception& error) {
@@ -198,7 +197,13 @@ void Session::handle(const Message& message, const Entry& /*first*/, const Memor
     } catch (...) {
       core_->log(LogLevel::error, "a handler has thrown");
     }
+  };
+  if (message.entry_count == 1) {
+    handle_one(first);
+    return;
   }
+  EntryReader entries(message);
+  for (Entry entry; entries.next(entry);) handle_one(entry);
 }
 
 void Session::handle_entry(const Message& message, const Entry& entry, const MemoryRef& owner) {

@@ -8,34 +8,33 @@
 namespace rr {
 
 bool Subscription::Handler::enter() {
-  const std::lock_guard lock(mutex_);
-  if (!is_connected_) return false;
-  is_running_ = true;
-  runner_ = std::this_thread::get_id();
-  return true;
+  runner_.store(std::this_thread::get_id(), std::memory_order_relaxed);  // before it is running
+  if ((state_.fetch_or(running) & disconnected) == 0) return true;
+  leave();
+  return false;
 }
 
 void Subscription::Handler::leave() {
-  bool must_drop = false;
-  bool is_awaited = false;
-  {
-    const std::lock_guard lock(mutex_);
-    is_running_ = false;
-    is_awaited = awaited_ != 0;
-    must_drop = !is_connected_ && !std::exchange(is_dropped_, true);
-  }
-  if (is_awaited) ended_.notify_all();
-  if (must_drop) drop();
+  if ((state_.fetch_and(~running) & disconnected) != 0 && leave_disconnected()) drop();
+}
+
+// True when the function is to be dropped.
+bool Subscription::Handler::leave_disconnected() {
+  const std::lock_guard lock(mutex_);
+  ended_.notify_all();
+  return !std::exchange(is_dropped_, true);
 }
 
 void Subscription::Handler::disconnect() {
   {
     std::unique_lock lock(mutex_);
-    is_connected_ = false;
-    ++awaited_;
-    while (is_running_ && runner_ != std::this_thread::get_id()) ended_.wait(lock);
-    --awaited_;
-    if (is_running_ || std::exchange(is_dropped_, true)) return;
+    state_.fetch_or(disconnected);
+    const auto self = std::this_thread::get_id();
+    while ((state_.load() & running) != 0) {
+      if (runner_.load(std::memory_order_relaxed) == self) return;  // it drops when it leaves
+      ended_.wait(lock);
+    }
+    if (std::exchange(is_dropped_, true)) return;
   }
   drop();
 }

@@ -21,7 +21,7 @@ struct Subscription::Handler {
   /// Returns when the function is not running any more, unless it is the caller. The function and
   /// what it holds are freed then, or when it returns.
   void disconnect();
-  [[nodiscard]] bool is_connected() const { return is_connected_; }
+  [[nodiscard]] bool is_connected() const { return (state_.load() & disconnected) == 0; }
 
  protected:
   Handler() = default;
@@ -42,14 +42,17 @@ struct Subscription::Handler {
  private:
   bool enter();
   void leave();
+  bool leave_disconnected();
 
+  static constexpr unsigned running = 1;
+  static constexpr unsigned disconnected = 2;
+
+  // Whoever runs the function needs the lock only when it has been disconnected meanwhile.
+  std::atomic<unsigned> state_{0};
+  std::atomic<std::thread::id> runner_{};
   std::mutex mutex_;
   std::condition_variable ended_;
-  std::atomic<bool> is_connected_{true};  // written under mutex_
   bool is_dropped_ = false;
-  bool is_running_ = false;
-  int awaited_ = 0;  // threads in disconnect()
-  std::thread::id runner_;
 };
 
 }  // namespace rr
