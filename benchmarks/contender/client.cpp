@@ -89,9 +89,9 @@ class Client final : public bench::Client {
     return std::make_unique<Session>(node_, port);
   }
 
-  // Callers of L3 have a connection each, as those of omniORB and Thrift do; with
-  // ROBDEF_BENCH_SHARED=1 they share one, as those of Ice and gRPC.
-  bool shared_session() override { return std::getenv("ROBDEF_BENCH_SHARED") != nullptr; }
+  // Callers of L3 share a connection, as those of Ice and gRPC do; with ROBDEF_BENCH_SEPARATE=1
+  // they have one each, as those of omniORB and Thrift.
+  bool shared_session() override { return std::getenv("ROBDEF_BENCH_SEPARATE") == nullptr; }
 
   void async(int port, bench::AsyncRun& run) override {
     Session session(node_, port);

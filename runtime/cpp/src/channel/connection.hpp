@@ -2,7 +2,6 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -17,6 +16,7 @@
 #include "rr/reader.hpp"
 #include "rr/wire.hpp"
 #include "rr/writer.hpp"
+#include "runtime/cpp/src/channel/sleep_word.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 
 namespace rr::channel {
@@ -51,12 +51,19 @@ class Receiver {
   virtual void closed() = 0;
 };
 
-/// A thread that waits for an answer, on its stack.
+/// A thread that waits for an answer, on its stack. It sleeps on its state.
 struct Waiter {
-  std::atomic<bool> is_done{false};
-  std::atomic<bool> is_reader{false};       // written by the connection
-  Waiter* next = nullptr;                   // guarded by the connection
-  std::condition_variable* wake = nullptr;  // while the thread sleeps; the same
+  static constexpr std::uint32_t reader = 1;    ///< it has the connection's read turn
+  static constexpr std::uint32_t answered = 2;  ///< it will be done in a moment
+  static constexpr std::uint32_t done = 4;      ///< it may go, and its memory with it
+
+  SleepWord state{0};      // reader and answered are written under the connection's lock
+  Waiter* next = nullptr;  // guarded by the connection
+
+  [[nodiscard]] bool is_done() const { return (state.load(std::memory_order_acquire) & done) != 0; }
+  [[nodiscard]] bool is_reader() const {
+    return (state.load(std::memory_order_acquire) & reader) != 0;
+  }
 };
 
 /// What a message is of which only the newest counts: a value of one stream. While one waits to be
@@ -112,6 +119,9 @@ class Connection {
   virtual void send(Writer& message, Time now, Priority priority) = 0;
   void send(Writer& message, Time now) { send(message, now, Priority::usual); }
   void send(Writer& message) { send(message, coarse_now()); }
+  /// The same for the request of a caller that will wait for its answer. What callers ask that were
+  /// woken by one receive leaves together.
+  virtual void send_call(Writer& message, Time now, Priority priority) = 0;
   /// The same for a message of which only the newest counts.
   virtual void send_newest(Writer& message, const Newest& newest, Time now) = 0;
   /// A number for a stream of such messages.
@@ -137,6 +147,9 @@ class Connection {
   virtual void resign(Waiter& waiter) = 0;
   /// Marks a waiter done. It may be gone when this returns.
   virtual void finish(Waiter& waiter) = 0;
+  /// The same from Receiver::take_answer(), for when all that was received with the answer has been
+  /// looked at: those whose answers came together are woken together.
+  virtual void finish_answered(Waiter& waiter) = 0;
   /// To be called when something will come that no caller waits for: the reactor reads it then.
   virtual void expect() = 0;
   /// Brings a reader that waits to look at its deadline and at whether it is done.

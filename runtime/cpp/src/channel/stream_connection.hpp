@@ -34,6 +34,11 @@ namespace rr::channel {
 /// is handled without it: whoever has the turn may be waiting for a call that the callback is a
 /// part of.
 ///
+/// Callers of several threads share a connection: one of them reads, the others follow, which is to
+/// sleep until they are answered or made the reader. Those whose answers came together are woken
+/// together, and what they ask next leaves together. Who has read leaves the turn free when it has
+/// woken others, as it will mostly be back first; if not, the first of those looks for a reader.
+///
 /// While a caller reads, the reactor does not watch the socket: it would be woken by every answer.
 /// Calls in a tight loop find the socket unwatched ("parked") and leave it so; a timer of a
 /// millisecond puts it back under watch when calls have ceased.
@@ -76,6 +81,7 @@ class StreamConnection final : public Connection,
   using Connection::reply;
   using Connection::send;
   void send(Writer& message, Time now, Priority priority) override;
+  void send_call(Writer& message, Time now, Priority priority) override;
   void send_newest(Writer& message, const Newest& newest, Time now) override;
   void stream(Writer& message) override;
   bool wait_sent(std::size_t bytes, Time deadline) override;
@@ -84,6 +90,7 @@ class StreamConnection final : public Connection,
   void wait(Waiter& waiter, Time deadline, Time now) override;
   void resign(Waiter& waiter) override;
   void finish(Waiter& waiter) override;
+  void finish_answered(Waiter& waiter) override;
   void expect() override;
   void nudge() override;
   bool give_up_turn() override;
@@ -137,6 +144,7 @@ class StreamConnection final : public Connection,
   void queue_rest(Writer& message, std::size_t sent, const Sending& how,
                   std::optional<std::uint64_t> told);
   bool add_to_stream(Writer& message, bool& is_first);
+  void gather(Writer& message);
   void stream_or_queue(Writer& message);
   void take_streamed();
   void move_streamed();
@@ -155,6 +163,7 @@ class StreamConnection final : public Connection,
 
   // Reading (stream_reading.cpp)
   Received receive(Scratch& scratch, bool may_block, bool& is_full);
+  Received receive_once(Scratch& scratch, bool may_block, bool& is_full);
   Received take_bytes(Scratch& scratch, std::size_t received);
   Received fail_reading(const Error& why);
   bool take(Scratch& scratch, const Frame& frame);
@@ -200,19 +209,30 @@ class StreamConnection final : public Connection,
   }
   [[nodiscard]] Carrier* sending_carrier();
 
-  // Waiting callers (stream_waiting.cpp)
-  bool follow(Waiter& waiter, Time deadline);
+  // Callers (stream_callers.cpp)
+  enum class Gathered : std::uint8_t { no, as_first, as_other };
+  bool others_come();
+  Gathered gather_call(Writer& message);
+  void let_others_come();
+  void begin_lead(Waiter& waiter);
   void lead(Waiter& waiter, Time deadline, Time now);
   bool may_block_until(Time deadline);
-  void limit_receive_time();
   void leave_to_reactor(Scratch& scratch);
-  void begin_lead(Waiter& waiter);
+  bool follow(Waiter& waiter, Time deadline);
+  bool begin_following(Waiter& waiter);
+  bool unlink(Waiter& waiter);
+  const SleepWord* choose_next();
+  void pass();
+  void find_reader();
+  void wake_answered();
+
+  // When the reactor watches (stream_watching.cpp)
   void park_or_watch();
-  void promote_next();
   void set_watch(Watch watch);
   void watch_again();
   void unpark();
   [[nodiscard]] Milliseconds park_time() const;
+  void limit_receive_time();
   bool is_busy(Time last_received);
   void acknowledge_late();
   void look_for_waiting_sender(Time before);
@@ -236,6 +256,12 @@ class StreamConnection final : public Connection,
   [[nodiscard]] Limits limits() const;
   [[nodiscard]] std::uint32_t largest_message() const;
   [[nodiscard]] Milliseconds heartbeat_period() const;
+
+  // So much is worth a system call at once.
+  static constexpr std::size_t stream_chunk = 64 * 1024;
+  // A receive returns after this time to look at the deadline, or to give the thread back to the
+  // reactor; set once per socket, which is cheaper than waiting with poll() each time.
+  static constexpr Milliseconds receive_pause{100};
 
   const Role role_;
   const Descriptor socket_;
@@ -271,12 +297,18 @@ class StreamConnection final : public Connection,
   std::uint32_t leads_ = 0;      // claims that succeeded, and receives while stayed with
   std::uint32_t leads_seen_ = 0;
   Time last_lead_{};
+  std::atomic<unsigned> coming_{0};  // callers that have been woken and may call again; estimated
   Waiter* followers_ = nullptr;
+  std::atomic<unsigned> passing_{0};          // followers that have been answered and are to run
+  std::atomic<bool> lacks_reader_{false};     // one of those looks after it; written under turns_
   std::unique_ptr<std::deque<Frame>> queue_;  // messages for the dispatch turn
   std::size_t queued_bytes_ = 0;
   std::unique_ptr<const Error> why_closed_;
 
-  Inbox inbox_;                       // with the read turn
+  Inbox inbox_;                 // with the read turn
+  Waiter* answered_ = nullptr;  // with the read turn: followers to be woken
+  Waiter** answered_end_ = &answered_;
+  bool has_woken_ = false;            // the caller that reads has woken others; with the read turn
   bool had_message_ = false;          // with the read turn
   bool begins_tls_ = false;           // with the read turn: after the message that asked for it
   bool is_mutual_ = false;            // with the read turn: and of the client wants a certificate
@@ -298,6 +330,9 @@ class StreamConnection final : public Connection,
   Allocation streamed_;   // messages that follow the outbox; under streaming_, as the next two
   std::size_t streamed_size_ = 0;
   Time last_streamed_{};
+  bool is_gathering_ = false;  // a caller waits for others, and sends what they ask; the same
+  unsigned missing_ = 0;       // until half of them have come; the same
+  Time crowded_until_{};       // nobody waits so before; the same, or the one who gathers
   std::atomic<std::size_t> streamed_bytes_{0};  // the same as streamed_size_
 
   std::atomic<Time> last_sent_;

@@ -95,9 +95,16 @@ void StreamConnection::read_as_reactor(bool until_end) {
   });
 }
 
-// Receives once and takes all whole messages.
 StreamConnection::Received StreamConnection::receive(Scratch& scratch, bool may_block,
                                                      bool& is_full) {
+  const Received received = receive_once(scratch, may_block, is_full);
+  wake_answered();
+  return received;
+}
+
+// Receives and takes all whole messages.
+StreamConnection::Received StreamConnection::receive_once(Scratch& scratch, bool may_block,
+                                                          bool& is_full) {
   scratch.waiting.clear();
   scratch.parsed = 0;
   if (is_closing_.load(std::memory_order_relaxed)) return Received::end;
@@ -218,21 +225,22 @@ bool StreamConnection::leave_read_turn(Scratch& scratch, bool may_dispatch) {
   bool has_turn = false;
   bool is_again = false;
   bool is_end = false;
+  const SleepWord* next = nullptr;
   {
     const std::lock_guard lock(turns_);
     has_turn = hand_on(scratch, may_dispatch, must_post);
     if (is_closing_) {
       is_end = true;
-    } else if (followers_ != nullptr) {
+    } else if ((next = choose_next()) != nullptr) {
       if (watch_ == Watch::full) set_watch(Watch::parked);
       ++leads_;
-      promote_next();
     } else {
       is_read_ = false;
       is_again = !is_stalled_ && std::exchange(read_again_, false);
       if (!is_stayed_with_) watch_again();
     }
   }
+  if (next != nullptr) wake(next);
   if (is_end) finish_close();
   if (must_post) reactor_->post([self = shared_from_this()] { self->drain_posted(); });
   for (std::size_t i = 0; i < scratch.laters.size(); ++i) {

@@ -17,8 +17,6 @@ namespace {
 // time to many connections too, are therefore never held back.
 constexpr std::chrono::microseconds pause_between{20};
 constexpr std::chrono::microseconds pause_on_connection{200};
-// So much is worth a system call at once.
-constexpr std::size_t stream_chunk = 64 * 1024;
 
 thread_local Time last_streamed_here{};
 
@@ -74,14 +72,19 @@ bool StreamConnection::add_to_stream(Writer& message, bool& is_first) {
   if (is_first && (now - last_here > pause_between || now - last > pause_on_connection)) {
     return false;
   }
-  if (is_first) streamed_ = allocate(stream_chunk);
+  gather(message);
+  return true;
+}
+
+// Under streaming_, when there is room.
+void StreamConnection::gather(Writer& message) {
+  if (streamed_size_ == 0) streamed_ = allocate(stream_chunk);
   for (const Piece& piece : message.pieces()) {
     std::memcpy(streamed_.bytes + streamed_size_, piece.data, piece.size);
     streamed_size_ += piece.size;
   }
   streamed_bytes_.store(streamed_size_, std::memory_order_relaxed);
   if (tap_ != nullptr) tell_tap(true, message.pieces());
-  return true;
 }
 
 void StreamConnection::stream_or_queue(Writer& message) {

@@ -50,7 +50,7 @@ void Session::perform(const Outgoing& request, endpoint::BlockingCall& call, Mil
   Writer& writer = write(request);
   call.perform(terms, deadline, now, [&](endpoint::Pending& open) {
     number(request, writer, draw(&open, true));
-    connection_->send(writer, now, endpoint::priority_of(request.type, request.is_urgent));
+    connection_->send_call(writer, now, endpoint::priority_of(request.type, request.is_urgent));
   });
 }
 

@@ -41,7 +41,7 @@ void BlockingCall::answer(const Message& message, const Entry& entry, const Memo
                           channel::Laters& /*laters*/) {
   error_ = take_in(caller_, message, entry, owner,
                    [&](Decoder& decoder) { read(decoder, message, entry); });
-  caller_.connection().finish(waiter_);  // after which this may be gone
+  caller_.connection().finish_answered(waiter_);  // after which this may be gone
 }
 
 void BlockingCall::fail(const Error& why, channel::Laters& /*laters*/) {
@@ -63,7 +63,7 @@ void BlockingCall::wait_after_failure(channel::Time now) {
 void BlockingCall::wait(channel::Time deadline, channel::Time now) {
   channel::Connection& connection = caller_.connection();
   connection.wait(waiter_, deadline, now);
-  if (!waiter_.is_done.load(std::memory_order_acquire)) {
+  if (!waiter_.is_done()) {
     if (caller_.take(*this)) throw Error(ErrorCode::request_timeout, "no answer in time");
     connection.wait(waiter_, channel::never, now);
   }

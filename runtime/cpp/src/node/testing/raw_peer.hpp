@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -65,7 +66,9 @@ class RawPeer {
     if (size != 0) writer.string_element("filling", {filling.data(), filling.size()});
     writer.entry({.type = type}, size == 0 ? 0 : 1, end);
     writer.message({}, 1);
-    const std::vector<std::byte> bytes = writer.copy();
+    send(writer.copy());
+  }
+  void send(std::span<const std::byte> bytes) {
     for (std::size_t sent = 0; sent < bytes.size();) {
       const ssize_t now = ::send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
       if (now <= 0) return;
@@ -73,23 +76,28 @@ class RawPeer {
     }
   }
 
-  /// The type of the first entry of the next message; null when none comes within some seconds, or
-  /// the connection ends.
-  EntryType next_type() {
+  /// What the first entry of the next message is; its type is null when none comes within some
+  /// seconds, or the connection ends.
+  struct Received {
+    EntryType type = EntryType::null;
+    std::uint32_t request_id = 0;
+  };
+  EntryType next_type() { return next().type; }
+  Received next() {
     std::array<std::byte, 10> header{};
-    if (!receive(header.data(), header.size())) return EntryType::null;
+    if (!receive(header.data(), header.size())) return {};
     std::vector<std::byte> bytes(header.begin(), header.end());
     bytes.resize(message_size(bytes, {}));
     if (bytes.size() <= header.size() ||
         !receive(bytes.data() + header.size(), bytes.size() - header.size())) {
-      return EntryType::null;
+      return {};
     }
     const auto message = std::make_unique<Message>();
     Entry entry;
     if (!read_message(bytes, {}, false, *message, nullptr) || !EntryReader(*message).next(entry)) {
-      return EntryType::null;
+      return {};
     }
-    return entry.type;
+    return {entry.type, entry.request_id};
   }
 
   /// Waits for the end of the connection, some seconds at most, and drops what comes before it.
@@ -101,15 +109,27 @@ class RawPeer {
     return false;
   }
 
+  /// How many segments with data have come.
+  [[nodiscard]] std::uint32_t data_segments_received() const { return info().data_segments_in; }
   /// How many segments that were sent the other side has not acknowledged yet.
-  [[nodiscard]] std::uint32_t unacknowledged() const { return info().tcpi_unacked; }
+  [[nodiscard]] std::uint32_t unacknowledged() const { return info().known.tcpi_unacked; }
 
  private:
   RawPeer(const SilentPeer& listening, int& other) : RawPeer(listening.port()) {
     other = listening.accept();
   }
-  tcp_info info() const {
-    tcp_info found{};
+  // What the kernel tells of a connection: the C library's header knows its beginning.
+  struct TcpState {
+    tcp_info known;
+    std::array<std::uint64_t, 4> rates_and_bytes;
+    std::uint32_t segments_out;
+    std::uint32_t segments_in;
+    std::uint32_t unsent_bytes;
+    std::uint32_t least_round_trip;
+    std::uint32_t data_segments_in;
+  };
+  TcpState info() const {
+    TcpState found{};
     socklen_t size = sizeof found;
     ::getsockopt(socket_, IPPROTO_TCP, TCP_INFO, &found, &size);
     return found;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How callers wait: one of them reads the connection, the others follow.
+// When the reactor watches a socket, and threads of it that stay with one.
 #include <netinet/in.h>
 #include <netinet/tcp.h>
-#include <poll.h>
 #include <sys/epoll.h>
 #include <sys/socket.h>
 #include <sys/time.h>
@@ -14,52 +13,10 @@
 namespace rr::channel {
 namespace {
 
-// A receive returns after this time to look at the deadline, or to give the thread back to the
-// reactor; set once per socket, which is cheaper than waiting with poll() each time.
-constexpr Milliseconds receive_pause{100};
 // Who stays asks again after so many receives that acknowledgements of TCP may be late.
 constexpr unsigned receives_of_late_acknowledgements = 64;
 
 }  // namespace
-
-void StreamConnection::claim(Waiter& waiter) {
-  const std::lock_guard lock(turns_);
-  if (is_closing_ || is_read_) return;
-  begin_lead(waiter);
-}
-
-// Under turns_.
-void StreamConnection::begin_lead(Waiter& waiter) {
-  is_read_ = true;
-  waiter.is_reader = true;
-  ++leads_;
-  if (watch_ == Watch::full) set_watch(Watch::parked);
-}
-
-void StreamConnection::wait(Waiter& waiter, Time deadline, Time now) {
-  if (waiter.is_reader) {
-    lead(waiter, deadline, now);
-  } else if (follow(waiter, deadline)) {
-    lead(waiter, deadline, coarse_now());
-  }
-}
-
-void StreamConnection::resign(Waiter& waiter) {
-  {
-    const std::lock_guard lock(turns_);
-    if (!waiter.is_reader.exchange(false)) return;
-    if (!is_closing_) {
-      if (followers_ != nullptr) {
-        promote_next();
-      } else {
-        is_read_ = false;
-        park_or_watch();
-      }
-      return;
-    }
-  }
-  finish_close();
-}
 
 // Under turns_, when a caller has ended reading. A call that ended in the same tick of the clock as
 // the one before is taken for one of many.
@@ -77,95 +34,12 @@ void StreamConnection::park_or_watch() {
 // Under turns_. For how long without a call, or in the same handler, a parked socket stays so.
 Milliseconds StreamConnection::park_time() const { return Milliseconds(is_stayed_with_ ? 5 : 1); }
 
-// Returns true when the waiter is to read itself, false when it is done or out of time.
-bool StreamConnection::follow(Waiter& waiter, Time deadline) {
-  Reactor::about_to_wait();
-  std::condition_variable wake;
-  std::unique_lock lock(turns_);
-  waiter.wake = &wake;
-  waiter.next = std::exchange(followers_, &waiter);
-  while (!waiter.is_done && !waiter.is_reader) {
-    if (!is_read_ && !is_closing_) {
-      begin_lead(waiter);  // the reader left between the claim and now
-      break;
-    }
-    if (Clock::now() >= deadline) break;
-    wait_until(wake, lock, deadline);
-  }
-  for (Waiter** link = &followers_; *link != nullptr; link = &(*link)->next) {
-    if (*link != &waiter) continue;
-    *link = waiter.next;
-    break;
-  }
-  waiter.next = nullptr;
-  waiter.wake = nullptr;
-  return waiter.is_reader;
-}
-
-// Under turns_, with the read turn: hands it to the caller that has waited longest.
-void StreamConnection::promote_next() {
-  Waiter* oldest = followers_;
-  while (oldest->next != nullptr) oldest = oldest->next;
-  oldest->is_reader = true;
-  oldest->wake->notify_one();
-}
-
-void StreamConnection::lead(Waiter& waiter, Time deadline, Time now) {
-  Reactor::about_to_wait();
-  limit_receive_time();
-  // Nearly always the first receive brings the answer.
-  bool may_block = deadline - now > 2 * receive_pause;
-  {
-    const ScratchLease scratch;
-    while (!waiter.is_done.load(std::memory_order_acquire) &&
-           !is_closing_.load(std::memory_order_relaxed)) {
-      may_block = may_block || may_block_until(deadline);
-      bool is_full = false;
-      const Received received = receive(*scratch, may_block, is_full);
-      may_block = false;
-      if (!scratch->waiting.empty() || !scratch->laters.empty()) leave_to_reactor(*scratch);
-      if (received == Received::end) break;
-      if (received == Received::nothing && Clock::now() >= deadline) break;
-    }
-  }
-  resign(waiter);
-}
-
 // With the read turn.
 void StreamConnection::limit_receive_time() {
   if (std::exchange(has_receive_timeout_, true)) return;
   timeval pause{};
   pause.tv_usec = std::chrono::microseconds(receive_pause).count();
   setsockopt(socket_.get(), SOL_SOCKET, SO_RCVTIMEO, &pause, sizeof pause);
-}
-
-// What a caller has read that is not for callers.
-void StreamConnection::leave_to_reactor(Scratch& scratch) {
-  bool must_post = false;
-  {
-    const std::lock_guard lock(turns_);
-    hand_on(scratch, false, must_post);
-  }
-  if (must_post) reactor_->post([self = shared_from_this()] { self->drain_posted(); });
-  for (std::function<void()>& later : scratch.laters) reactor_->post(std::move(later));
-  scratch.laters.clear();
-}
-
-// A blocking receive would be late for a deadline that is near: then poll() waits for bytes.
-bool StreamConnection::may_block_until(Time deadline) {
-  if (deadline == never || deadline - Clock::now() > receive_pause) return true;
-  wait_for(socket_.get(), POLLIN, deadline);
-  return false;
-}
-
-void StreamConnection::finish(Waiter& waiter) {
-  if (waiter.is_reader.load(std::memory_order_relaxed)) {
-    waiter.is_done.store(true, std::memory_order_release);  // it is not asleep
-    return;
-  }
-  const std::lock_guard lock(turns_);
-  waiter.is_done = true;
-  if (waiter.wake != nullptr) waiter.wake->notify_one();
 }
 
 void StreamConnection::expect() {
