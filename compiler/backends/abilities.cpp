@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "compiler/backends/backend.hpp"
 
 namespace robdef {
@@ -23,6 +25,20 @@ bool Abilities::serve(const model::Member& member) const {
       return member.type.container == model::ContainerForm::none ? memories : contained_memories;
   }
   return false;
+}
+
+bool Abilities::must_implement(const model::Object& object) const {
+  return std::ranges::any_of(object.members, [&](const model::Member& member) {
+    switch (member.kind) {
+      case model::MemberKind::property:
+      case model::MemberKind::function:
+      case model::MemberKind::objref:
+      case model::MemberKind::memory:
+        return serve(member);
+      default:
+        return false;
+    }
+  });
 }
 
 }  // namespace robdef

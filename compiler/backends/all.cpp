@@ -8,6 +8,7 @@
 #include "compiler/backends/cpp/backend.hpp"
 #include "compiler/backends/csharp/backend.hpp"
 #include "compiler/backends/matlab/backend.hpp"
+#include "compiler/backends/typescript/backend.hpp"
 
 namespace robdef {
 
@@ -17,7 +18,9 @@ const std::vector<const Backend*>& backends() {
   static const matlab::MatlabBackend matlab;
   static const arduino::ArduinoBackend arduino;
   static const cbus::CBusBackend cbus;
-  static const std::vector<const Backend*> all{&cpp, &csharp, &matlab, &arduino, &cbus};
+  static const typescript::TypeScriptBackend typescript;
+  static const std::vector<const Backend*> all{&cpp,     &csharp, &matlab,
+                                               &arduino, &cbus,   &typescript};
   return all;
 }
 

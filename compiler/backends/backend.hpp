@@ -28,6 +28,9 @@ struct Abilities {
 
   /// Whether this member can be served.
   [[nodiscard]] bool serve(const model::Member& member) const;
+  /// Whether a service has to implement a member of this object, so that there is something for a
+  /// default class to do: a property, function, objref or memory that can be served.
+  [[nodiscard]] bool must_implement(const model::Object& object) const;
 };
 
 /// What the user chose beyond the language.

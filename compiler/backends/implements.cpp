@@ -30,6 +30,15 @@ std::string plural_of(const Member& member) {
   return std::string(model::name_of(member.kind)) + "s";
 }
 
+std::string full_name(const Object& object, const Member& member) {
+  for (const Object* base : object.implements) {
+    const bool has_it =
+        std::ranges::find(base->members, member.name, &Member::name) != base->members.end();
+    if (has_it) return full_name(*base, member);
+  }
+  return object.qualified_name() + "." + member.name;
+}
+
 void report_unserved(const Member& member, std::string_view language, Report& report) {
   report.add(Code::R0904, member.span,
              "the " + std::string(language) + " runtime does not serve " + plural_of(member) +

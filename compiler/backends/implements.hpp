@@ -18,4 +18,8 @@ std::string plural_of(const model::Member& member);
 /// Reports R0904 for a member that the runtime of `language` cannot serve.
 void report_unserved(const model::Member& member, std::string_view language, Report& report);
 
+/// The full name of a member as renames have it: of the object that declares it first, which may be
+/// one that `object` implements.
+std::string full_name(const model::Object& object, const model::Member& member);
+
 }  // namespace robdef

@@ -7,6 +7,9 @@
 #include <limits>
 #include <variant>
 
+#include "compiler/backends/words.hpp"
+#include "compiler/output/escape.hpp"
+
 namespace robdef {
 namespace {
 
@@ -78,6 +81,38 @@ std::string number_literal(const model::Number& value, std::string_view written,
     default:
       return signed_literal(static_cast<std::int64_t>(as_unsigned(value)), std::string(written));
   }
+}
+
+std::string unicode_literal(std::string_view text) {
+  constexpr std::string_view digits = "0123456789ABCDEF";
+  std::string result = "\"";
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    // A byte order mark, and the two line ends that the languages know beyond ASCII, are escaped.
+    const std::string_view next = text.substr(i, 3);
+    if (next == "\xEF\xBB\xBF") {
+      result += "\\uFEFF";
+      i += 2;
+    } else if (next == "\xE2\x80\xA8" || next == "\xE2\x80\xA9") {
+      result += next.back() == '\xA8' ? "\\u2028" : "\\u2029";
+      i += 2;
+    } else if (text.substr(i, 2) == "\xC2\x85") {
+      result += "\\u0085";
+      ++i;
+    } else {
+      append_escaped(result, text[i], digits);
+    }
+  }
+  return result + '"';
+}
+
+std::vector<std::string> unicode_literal_lines(std::string_view text) {
+  std::vector<std::string> lines;
+  for (const std::string_view line : lines_of(text)) {
+    if (!lines.empty()) lines.back() += " +";
+    lines.push_back(unicode_literal(line));
+  }
+  if (lines.empty()) lines.emplace_back("\"\"");
+  return lines;
 }
 
 }  // namespace robdef

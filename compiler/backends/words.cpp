@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/backends/words.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace robdef {
@@ -64,6 +65,15 @@ std::string snake_case(std::string_view name) {
   std::vector<std::string> words = words_of(name);
   for (std::string& word : words) word = lower(word);
   return join(words, "_");
+}
+
+std::string as_variable(std::string name) {
+  if (name.empty() || (name.front() >= '0' && name.front() <= '9')) name.insert(0, "p_");
+  return name;
+}
+
+std::string without_capitals(std::string_view name) {
+  return std::ranges::any_of(name, is_lower) ? std::string(name) : lower(name);
 }
 
 std::vector<std::string> segments_of(std::string_view name) {

@@ -18,6 +18,13 @@ std::string camel_case(std::string_view name);
 /// `move_to`
 std::string snake_case(std::string_view name);
 
+/// The name with `p_` before it where it begins with no letter or `_`, or is empty: names of
+/// parameters may, in definitions, and be left with nothing by a change of case.
+std::string as_variable(std::string name);
+
+/// The name in small letters when it has none: `max_points` for `MAX_POINTS`. Others stay.
+std::string without_capitals(std::string_view name);
+
 /// The segments of a dotted name.
 std::vector<std::string> segments_of(std::string_view name);
 /// The lines of a text, each with its line end.

@@ -38,5 +38,12 @@ TEST(Words, CutTextsIntoLinesWithTheirEnds) {
   EXPECT_TRUE(lines_of("").empty());
 }
 
+TEST(Words, AParameterThatBeginsAsNoNameGetsABeginning) {
+  EXPECT_EQ(as_variable("speed"), "speed");
+  EXPECT_EQ(as_variable("_x"), "_x");
+  EXPECT_EQ(as_variable("1st"), "p_1st");
+  EXPECT_EQ(as_variable(camel_case("_")), "p_");
+}
+
 }  // namespace
 }  // namespace robdef

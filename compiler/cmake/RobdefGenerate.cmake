@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # robdef_generate(TARGET
 #   FILES a.robdef ...        definitions to generate code for; absolute or in the current source folder
-#   LANGUAGE cpp              or cbus: C99 for pods as buses
+#   LANGUAGE cpp              or cbus: C99 for pods as buses; or typescript
 #   [IMPORT_PATHS dir ...]    where imported definitions are looked for; the folders of FILES and the
 #                             environment variable ROBOTRACONTEUR_ROBDEF_PATH are searched too
+#   [CONFIG robdef.toml]      project file with renames and levels of warnings; none by default, wherever one is
 #   [OUTPUT_DIR dir])         default: <current binary folder>/TARGET_robdef
 #
 # Generates code while TARGET is built, and adds it to TARGET: the sources, the include folder and
@@ -11,6 +12,9 @@
 # For a service a.b.c the header is included as "a/b/c.hpp", of a bus as "a_b_c_bus.h"; a bus stands on
 # robdef::cbus and not on the runtime, and what Simulink needs lies beside it. Nothing is generated for imports: give
 # them as FILES too, here or in another target that is linked.
+#
+# With LANGUAGE typescript, TARGET is a custom target: the modules a.b.c.ts are in OUTPUT_DIR when it is built, and what
+# compiles them depends on it. Nothing is linked.
 #
 # Each definition has a command of its own that knows all files it read, so an edited import runs
 # again exactly what depends on it; files whose text stays the same are not touched.
@@ -20,6 +24,7 @@
 # robdef_generate_matlab(TARGET
 #   FILES a.robdef ...        definitions to generate classes for, imports among them
 #   [IMPORT_PATHS dir ...]
+#   [CONFIG robdef.toml]
 #   [OUTPUT_DIR dir])         default: <current binary folder>/TARGET_robdef
 #
 # Makes the library TARGET: the MEX file rrmex for Octave with the stubs of all FILES compiled in, in
@@ -35,8 +40,11 @@ function(robdef_output_names file language result)
   elseif(language STREQUAL "cbus")
     set(endings _bus.h _bus.c)
     set(separator "_")
+  elseif(language STREQUAL "typescript")
+    set(endings .ts)
+    set(separator ".")
   else()
-    message(FATAL_ERROR "robdef_generate: unknown LANGUAGE `${language}`; known: cpp, cbus")
+    message(FATAL_ERROR "robdef_generate: unknown LANGUAGE `${language}`; known: cpp, cbus, typescript")
   endif()
   file(READ "${file}" text)
   # The first statement; in front of it may stand blanks and a byte order mark.
@@ -48,8 +56,18 @@ function(robdef_output_names file language result)
   set(${result} "${endings}" PARENT_SCOPE)
 endfunction()
 
+# What the command line says of the project file. A build reads one only where that is asked for.
+function(robdef_config_option file result)
+  set(option --no-config)
+  if(file)
+    cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" NORMALIZE)
+    set(option --config "${file}")
+  endif()
+  set(${result} ${option} PARENT_SCOPE)
+endfunction()
+
 function(robdef_generate target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "LANGUAGE;OUTPUT_DIR" "FILES;IMPORT_PATHS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "CONFIG;LANGUAGE;OUTPUT_DIR" "FILES;IMPORT_PATHS")
   if(arg_UNPARSED_ARGUMENTS OR NOT arg_FILES)
     message(FATAL_ERROR "usage: robdef_generate(TARGET FILES ... LANGUAGE cpp [IMPORT_PATHS ...] [OUTPUT_DIR dir]); not understood: ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -61,6 +79,7 @@ function(robdef_generate target)
   endif()
   cmake_path(ABSOLUTE_PATH arg_OUTPUT_DIR BASE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}" NORMALIZE)
 
+  robdef_config_option("${arg_CONFIG}" config)
   set(files "")
   set(folders "")
   foreach(file IN LISTS arg_FILES)
@@ -91,7 +110,7 @@ function(robdef_generate target)
     add_custom_command(
       OUTPUT "${stamp}.stamp"
       BYPRODUCTS ${outputs}
-      COMMAND robdef::robdef generate --lang ${arg_LANGUAGE} -o "${arg_OUTPUT_DIR}" ${search}
+      COMMAND robdef::robdef generate ${config} --lang ${arg_LANGUAGE} -o "${arg_OUTPUT_DIR}" ${search}
               --depfile "${stamp}.d" --depfile-target "${stamp}.stamp" "${file}"
       COMMAND ${CMAKE_COMMAND} -E touch "${stamp}.stamp"
       DEPENDS "${file}" robdef::robdef
@@ -99,7 +118,9 @@ function(robdef_generate target)
       COMMENT "Generating ${arg_LANGUAGE} from ${name}"
       VERBATIM)
     list(APPEND stamps "${stamp}.stamp")
-    target_sources(${target} PRIVATE ${outputs})
+    if(NOT arg_LANGUAGE STREQUAL "typescript")
+      target_sources(${target} PRIVATE ${outputs})
+    endif()
   endforeach()
   file(MAKE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/${target}_robdef.stamps")
 
@@ -110,6 +131,9 @@ function(robdef_generate target)
   add_custom_target(${target}_robdef_${count} DEPENDS ${stamps})
   add_dependencies(${target} ${target}_robdef_${count})
 
+  if(arg_LANGUAGE STREQUAL "typescript")
+    return()
+  endif()
   target_include_directories(${target} PUBLIC "$<BUILD_INTERFACE:${arg_OUTPUT_DIR}>")
   # By property, so that the caller may link in either form of target_link_libraries.
   set(library robdef::runtime)
@@ -121,7 +145,7 @@ function(robdef_generate target)
 endfunction()
 
 function(robdef_generate_matlab target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "OUTPUT_DIR" "FILES;IMPORT_PATHS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "CONFIG;OUTPUT_DIR" "FILES;IMPORT_PATHS")
   if(arg_UNPARSED_ARGUMENTS OR NOT arg_FILES)
     message(FATAL_ERROR "usage: robdef_generate_matlab(TARGET FILES ... [IMPORT_PATHS ...] [OUTPUT_DIR dir]); not understood: ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -130,6 +154,7 @@ function(robdef_generate_matlab target)
   endif()
   cmake_path(ABSOLUTE_PATH arg_OUTPUT_DIR BASE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}" NORMALIZE)
 
+  robdef_config_option("${arg_CONFIG}" config)
   set(files "")
   set(search "")
   set(client "${arg_OUTPUT_DIR}/client")
@@ -153,7 +178,7 @@ function(robdef_generate_matlab target)
   add_custom_command(
     OUTPUT "${stamp}"
     BYPRODUCTS ${outputs}
-    COMMAND robdef::robdef generate --lang matlab -o "${arg_OUTPUT_DIR}" ${search}
+    COMMAND robdef::robdef generate ${config} --lang matlab -o "${arg_OUTPUT_DIR}" ${search}
             --depfile "${stamp}.d" --depfile-target "${stamp}" ${files}
     COMMAND ${CMAKE_COMMAND} -E touch "${stamp}"
     DEPENDS ${files} robdef::robdef

@@ -11,8 +11,12 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 
 find_program(ROBDEF_CCACHE ccache)
 if(ROBDEF_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${ROBDEF_CCACHE})
-  set(CMAKE_C_COMPILER_LAUNCHER ${ROBDEF_CCACHE})
+  # Without the first it does not keep what was compiled with a precompiled header. With the others
+  # several checkouts share what they compile alike.
+  set(launcher ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros
+    CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${ROBDEF_CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${launcher})
+  set(CMAKE_C_COMPILER_LAUNCHER ${launcher})
 endif()
 
 find_package(Threads REQUIRED)
@@ -23,6 +27,61 @@ find_package(Threads REQUIRED)
 function(robdef_unity target)
   if(ROBDEF_UNITY)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+  endif()
+endfunction()
+
+# robdef_together(TARGET NAME SOURCES)
+# Compiles sources of a folder, named without .cpp, as one in a release: what is called for each message is
+# inlined then. For classes and functions that a program is linked with all of or none of.
+function(robdef_together target name)
+  if(CMAKE_BUILD_TYPE STREQUAL "Release")
+    list(TRANSFORM ARGN APPEND .cpp OUTPUT_VARIABLE sources)
+    set_source_files_properties(${sources} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${name})
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  endif()
+endfunction()
+
+set(robdef_standard_headers
+  algorithm array atomic charconv chrono condition_variable cstdint cstring deque exception functional future
+  limits map memory mutex optional set span string string_view thread utility variant vector)
+
+# robdef_headers(PREFIX)
+# What libraries and tests of this folder and those below have precompiled, where ROBDEF_UNITY says so:
+# headers of the standard library, and those of GoogleTest. One of each for all, as their flags are the same.
+# Not for the compiler: it has names that <iomanip> has too, which others of these bring.
+macro(robdef_headers prefix)
+  if(ROBDEF_UNITY)
+    set(ROBDEF_LIBRARY_HEADERS ${prefix}_library_headers)
+    set(ROBDEF_TEST_HEADERS ${prefix}_test_headers)
+    robdef_make_headers()
+  endif()
+endmacro()
+function(robdef_make_headers)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/headers.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "int main() {}\n")
+  list(TRANSFORM robdef_standard_headers REPLACE "(.+)" "<\\1>" OUTPUT_VARIABLE headers)
+  add_library(${ROBDEF_LIBRARY_HEADERS} OBJECT ${source})
+  target_link_libraries(${ROBDEF_LIBRARY_HEADERS} PRIVATE robdef_warnings)
+  target_precompile_headers(${ROBDEF_LIBRARY_HEADERS} PRIVATE ${headers})
+  if(ROBDEF_TESTS)
+    add_executable(${ROBDEF_TEST_HEADERS} ${source})
+    target_link_libraries(${ROBDEF_TEST_HEADERS} PRIVATE robdef_warnings GTest::gmock)
+    target_compile_options(${ROBDEF_TEST_HEADERS} PRIVATE $<$<CONFIG:Release>:-O0>)
+    target_precompile_headers(${ROBDEF_TEST_HEADERS} PRIVATE ${headers} <gmock/gmock.h> <gtest/gtest.h>)
+  endif()
+endfunction()
+
+# robdef_precompiled(TARGET [HEADERS])
+# The target has these headers precompiled, or those of libraries; not one with sources in C.
+function(robdef_precompiled target)
+  set(headers ${ROBDEF_LIBRARY_HEADERS} ${ARGN})
+  get_target_property(sources ${target} SOURCES)
+  if(headers AND NOT sources MATCHES "\\.c(;|$)")
+    list(POP_BACK headers last)
+    target_precompile_headers(${target} REUSE_FROM ${last})
+    # g++ forgets which code is of a system's header when that is precompiled, and warns of it.
+    target_compile_options(${target} PRIVATE
+      "$<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow;-Wno-array-bounds>")
   endif()
 endfunction()
 
@@ -45,27 +104,32 @@ function(robdef_library name)
   target_link_libraries(${name} PRIVATE robdef_warnings PUBLIC ${arg_DEPENDS})
   if(arg_SOURCES)
     robdef_unity(${name})
+    robdef_precompiled(${name})
   endif()
 endfunction()
 
-# robdef_test(NAME SOURCES... [DEPENDS targets...] [ENVIRONMENT KEY=VALUE...] [COST seconds])
+# robdef_test(NAME SOURCES... [DEPENDS targets...] [ENVIRONMENT KEY=VALUE...] [COST seconds] [SERIAL])
 # A GoogleTest program; each of its tests is a test of CTest. Tests that take long say so by their COST, as
-# others do with the property: CTest begins with them.
+# others do with the property: CTest begins with them. Tests that measure times run alone: SERIAL.
 function(robdef_test name)
   if(NOT ROBDEF_TESTS)
     return()
   endif()
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "COST" "SOURCES;DEPENDS;ENVIRONMENT")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "SERIAL" "COST" "SOURCES;DEPENDS;ENVIRONMENT")
   add_executable(${name} ${arg_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE robdef_warnings ${arg_DEPENDS} GTest::gmock GTest::gtest_main)
   robdef_unity(${name})
   # What is tested is optimized; the tests need not be, and compile much faster.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O0>)
+  robdef_precompiled(${name} ${ROBDEF_TEST_HEADERS})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   set(cost "")
   if(arg_COST)
     set(cost COST ${arg_COST})
+  endif()
+  if(arg_SERIAL)
+    list(APPEND cost RUN_SERIAL ON)
   endif()
   include(GoogleTest)
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60

@@ -79,7 +79,7 @@ void write_strings(JsonWriter& json, const std::vector<std::string>& texts) {
 void write_diagnostic(JsonWriter& json, const Diagnostic& diagnostic, const Sources& sources) {
   const CodeEntry& entry = entry_of(diagnostic.code());
   json.begin_object().member("code", entry.name).member("rule", entry.rule);
-  json.member("severity", word_for(entry.severity)).member("message", diagnostic.message());
+  json.member("severity", word_for(diagnostic.severity())).member("message", diagnostic.message());
   write_place(json, diagnostic.primary().span, sources);
   json.key("labels").begin_array();
   write_label(json, diagnostic.primary(), sources);
@@ -99,7 +99,7 @@ std::string to_text(const Diagnostic& diagnostic, const Sources& sources) {
   const Position place = source.position(diagnostic.primary().span.begin);
   const std::size_t gutter = gutter_width(diagnostic, sources);
   std::string result =
-      fmt::format("{}[{}]: {}\n{:{}}--> {}:{}:{}\n", word_for(entry.severity), entry.name,
+      fmt::format("{}[{}]: {}\n{:{}}--> {}:{}:{}\n", word_for(diagnostic.severity()), entry.name,
                   diagnostic.message(), "", gutter, source.name(), place.line, place.column);
   if (has_excerpt(source)) {
     result += excerpt(source, markings_in(diagnostic, id), gutter);
@@ -122,7 +122,7 @@ std::string to_line(const Diagnostic& diagnostic, const Sources& sources) {
   const Position place = source.position(diagnostic.primary().span.begin);
   const std::string rule = entry.rule.empty() ? "" : fmt::format(" [{}]", entry.rule);
   return fmt::format("{}({},{}): {}: {}{} {}\n", source.name(), place.line, place.column,
-                     word_for(entry.severity), entry.name, rule, diagnostic.message());
+                     word_for(diagnostic.severity()), entry.name, rule, diagnostic.message());
 }
 
 std::string to_json(const std::vector<const Diagnostic*>& diagnostics, const Sources& sources) {

@@ -3,8 +3,11 @@
 
 #include <cstddef>
 #include <deque>
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/diagnostics/source.hpp"
@@ -19,6 +22,9 @@ enum class Code {
 };
 
 enum class Severity { error, warning };
+
+/// What becomes of a warning: `deny` makes it an error.
+enum class Level { allow, warn, deny };
 
 /// What codes.def says about one code.
 struct CodeEntry {
@@ -59,7 +65,8 @@ class Diagnostic {
   Diagnostic& note(std::string text);
 
   [[nodiscard]] Code code() const { return code_; }
-  [[nodiscard]] Severity severity() const { return entry_of(code_).severity; }
+  /// That of its code, but for a warning that is denied.
+  [[nodiscard]] Severity severity() const { return severity_; }
   [[nodiscard]] const std::string& message() const { return message_; }
   [[nodiscard]] const Label& primary() const { return primary_; }
   [[nodiscard]] const std::vector<Label>& secondary() const { return secondary_; }
@@ -67,7 +74,10 @@ class Diagnostic {
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
  private:
+  friend class Report;
+
   Code code_;
+  Severity severity_;
   std::string message_;
   Label primary_;
   std::vector<Label> secondary_;
@@ -75,25 +85,73 @@ class Diagnostic {
   std::vector<std::string> notes_;
 };
 
+/// The text with the beginnings only of words of more than a thousand letters, so that a message
+/// about a name of a megabyte can be read. All texts of a diagnostic are.
+std::string shortened(std::string text);
+
+/// Who wrote the text that is read.
+enum class Origin {
+  user,     ///< whoever reads the findings
+  network,  ///< another node: its mistakes are found, but not explained
+};
+
 /// Collects what the passes find. Passes never print and never throw for a user's mistake.
+///
+/// What a text costs grows with its size, whatever is in it: what was probably meant is looked for
+/// as long as a run has time left for that, and never in a text from the network, of which so many
+/// findings are kept as anybody may want to see.
 class Report {
  public:
-  /// The reference stays valid until the report is destroyed.
+  explicit Report(Origin origin = Origin::user) : origin_(origin) {}
+
+  /// The reference stays valid until the report is destroyed, that of a finding which is not kept
+  /// until the next one.
   Diagnostic& add(Code code, Span span, std::string message);
 
-  /// Turns a warning off by code, for the whole run. Errors cannot be turned off.
-  void silence(Code warning);
+  /// Whether to look for what was meant, among `count` things by comparing `letters` letters with
+  /// each.
+  [[nodiscard]] bool may_suggest(std::size_t count, std::size_t letters = 1);
 
-  [[nodiscard]] bool has_errors() const { return errors_ > 0; }
-  /// As added, so a repeated one counts again.
+  /// What becomes of a warning in the whole run, where nothing is said at its place. Errors stay
+  /// errors, and in a text from the network nothing is denied. To be called before findings are
+  /// added.
+  void set_level(Code warning, Level level);
+
+  /// Turns a warning off where its place begins in `place`, which a comment asks for. Of two such
+  /// places the one that begins later counts. A text from the network asks in vain.
+  void allow_at(Code warning, Span place, Span comment);
+  /// Warns (R0147) of each allow_at() without a finding, unless that is of a target language: then
+  /// it may be meant for another one.
+  void report_unused_allows();
+
+  [[nodiscard]] Origin origin() const { return origin_; }
+  /// Denied warnings are errors here.
+  [[nodiscard]] bool has_errors() const;
+  /// Without denied warnings, which leave a definition right. As added, so a repeated one counts
+  /// again.
   [[nodiscard]] std::size_t errors() const { return errors_; }
   /// All findings by file (in load order) and place; the same code at the same span appears once.
   [[nodiscard]] std::vector<const Diagnostic*> sorted() const;
 
  private:
+  const Origin origin_;
+  std::size_t work_left_ = 30'000'000;
   std::deque<Diagnostic> diagnostics_;
-  std::vector<Code> silenced_;
+  std::optional<Diagnostic> dropped_;  // the last one of those that are not kept
+  /// A comment that turns a warning off.
+  struct Allow {
+    Span place;
+    Span comment;
+  };
+  using AllowKey = std::pair<SourceId, Code>;
+
+  [[nodiscard]] const Allow* allow_of(const Diagnostic& diagnostic) const;
+  [[nodiscard]] bool is_shown(const Diagnostic& diagnostic) const;
+
+  std::map<Code, Level> levels_;
+  std::map<AllowKey, std::vector<Allow>> allows_;  // by their places
   std::size_t errors_ = 0;
+  std::vector<const Diagnostic*> denied_;
 };
 
 }  // namespace robdef

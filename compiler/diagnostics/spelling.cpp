@@ -13,6 +13,9 @@ namespace {
 // `Angles` than to `angled`.
 constexpr std::size_t whole_letter = 2;
 
+// Longer names are cut off in messages, as nobody mistypes them whole.
+constexpr std::size_t longest = 200;
+
 std::size_t change_cost(char a, char b) {
   if (a == b) return 0;
   const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
@@ -44,8 +47,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
 
 std::string_view nearest(std::string_view written,
                          const std::vector<std::string_view>& candidates) {
-  // One letter in three may be wrong. Long names are cut off, as nobody mistypes them whole.
-  constexpr std::size_t longest = 200;
+  // One letter in three may be wrong.
   if (written.size() > longest) return {};
   const std::size_t tolerance = std::max<std::size_t>(1, written.size() / 3) * whole_letter;
   std::string_view best;
@@ -60,6 +62,10 @@ std::string_view nearest(std::string_view written,
     best_distance = found;
   }
   return best;
+}
+
+std::size_t comparisons(std::string_view written) {
+  return written.size() > longest ? 1 : 1 + written.size() * written.size();
 }
 
 }  // namespace robdef

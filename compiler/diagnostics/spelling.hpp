@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string_view>
 #include <vector>
 
@@ -10,5 +11,8 @@ namespace robdef {
 /// removed, changed or swapped letters, upper and lower case taken as near. Of equally near ones
 /// the first. Empty when all are too far off to be worth a word.
 std::string_view nearest(std::string_view written, const std::vector<std::string_view>& candidates);
+
+/// About how many letters nearest() compares for each candidate.
+std::size_t comparisons(std::string_view written);
 
 }  // namespace robdef

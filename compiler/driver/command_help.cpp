@@ -49,6 +49,14 @@ constexpr std::string_view environment_and_exit =
     "                              separated by : or ;\n"
     "\nExit status: 0 fine, 1 errors found, 2 used wrongly, 3 a fault of robdef itself.\n";
 
+constexpr std::string_view breaking_exit =
+    "\nEnvironment:\n"
+    "  ROBOTRACONTEUR_ROBDEF_PATH  folders searched for imports after those of -I,\n"
+    "                              separated by : or ;\n"
+    "  ROBDEF_PASSWORD             password of --user\n"
+    "\nExit status: 0 nothing breaks, 1 something does, 2 used wrongly, or a version\n"
+    "cannot be read, 3 a fault of robdef itself.\n";
+
 }  // namespace
 
 std::string general_help() {
@@ -90,6 +98,8 @@ std::string help_of(const CommandRow& command) {
   if (has_language) text += languages();
   if (reading_definitions.contains(command.command)) {
     text += environment_and_exit;
+  } else if (command.command == Command::breaking) {
+    text += breaking_exit;
   } else if (command.command == Command::explain) {
     text += "\nExit status: 0 fine, 2 no such code.\n";
   } else {

@@ -29,8 +29,9 @@ constexpr std::string_view mount_text =
 
 class CommandLine : public testing::Test {
  protected:
-  Ended run(const std::vector<std::string>& arguments, const std::string& variable = "") {
-    return run_robdef(folder_, arguments, variable);
+  Ended run(const std::vector<std::string>& arguments, const std::string& variable = "",
+            const std::string& input = "") {
+    return run_robdef(folder_, arguments, variable, input);
   }
   void write_definitions() {
     folder_.write("example.base.robdef", base_text);
@@ -180,6 +181,18 @@ TEST_F(CommandLine, GenerateWritesExactlyWhatListOutputsPrints) {
   EXPECT_THAT(written, ElementsAre("out/example/mount.cpp", "out/example/mount.hpp"));
 }
 
+TEST_F(CommandLine, TypeScriptHasOneModuleForEachDefinition) {
+  write_definitions();
+  const Ended ended =
+      run({"generate", "--lang", "typescript", "-o", "out", "example.mount.robdef"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  const std::string text = read_text(folder_.path() / "out/example.mount.ts");
+  EXPECT_THAT(text, HasSubstr("export class MountStub extends rr.Stub implements Mount {"));
+  EXPECT_THAT(text, HasSubstr("from \"./example.base.js\";"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "out/example.base.ts"));
+  EXPECT_THAT(run({"--help"}).out, HasSubstr("\n  typescript "));
+}
+
 TEST_F(CommandLine, TwoRunsGiveTheSameBytesAndTheSecondTouchesNothing) {
   write_definitions();
   const std::vector<std::string> arguments = {
@@ -289,6 +302,114 @@ TEST_F(CommandLine, AFullStandardOutputIsAnError) {
   EXPECT_EQ(WEXITSTATUS(status), 1);
   EXPECT_THAT(read_text(folder_.path() / "err.txt"),
               HasSubstr("standard output cannot be written"));
+}
+
+TEST_F(CommandLine, ADashIsStandardInput) {
+  write_definitions();
+  EXPECT_EQ(run({"check", "-"}, "", std::string(mount_text)).status, 0) << "imports from here";
+  const Ended bad = run({"check", "--format=line", "-"}, "", "service a\nfoo\n");
+  EXPECT_EQ(bad.status, 1);
+  EXPECT_THAT(bad.err, StartsWith("<stdin>(2,1): error: R0107"));
+  const Ended ended = run({"generate", "--lang=cpp", "-o", "out", "--depfile", "x.d", "-"}, "",
+                          std::string(mount_text));
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "out/example/mount.hpp"));
+  EXPECT_THAT(read_text(folder_.path() / "x.d"),
+              AllOf(HasSubstr("example.base.robdef"), Not(HasSubstr("stdin"))));
+  EXPECT_THAT(run({"inspect", "-"}, "", "no recording").err, Not(HasSubstr("No such file")));
+  EXPECT_EQ(run({"inspect", "-"}, "", "no recording").status, 1);
+}
+
+TEST_F(CommandLine, HelpForAnImportDoesNotProposeTheFileThatImports) {
+  folder_.write("b.robdef", "service other\nstdver 0.10\nimport b\n");
+  const Ended ended = run({"check", "b.robdef"});
+  EXPECT_THAT(ended.err, HasSubstr("help: write `service b` if this file is meant, and no import"));
+  EXPECT_THAT(ended.err, Not(HasSubstr("import `other`")));
+}
+
+TEST_F(CommandLine, OutputsAndTheMakeRuleAreWrittenTogetherOrNotAtAll) {
+  write_definitions();
+  folder_.write("deps/x.d/is_a_folder", "");
+  const std::vector<std::string> before = folder_.files();
+  const Ended ended =
+      run({"generate", "--lang=cpp", "-o", "out", "--depfile", "deps/x.d", "example.mount.robdef"});
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.err, HasSubstr("deps/x.d"));
+  EXPECT_EQ(folder_.files(), before);
+}
+
+TEST_F(CommandLine, AReadErrorSaysTheSystemsReason) {
+  folder_.write("a.robdef", "service a\n");
+  EXPECT_THAT(run({"check", "a.robdef/b"}).err, HasSubstr("cannot be read: Not a directory"));
+  EXPECT_THAT(run({"format", "a.robdef/b"}).err, HasSubstr("cannot be read: Not a directory"));
+}
+
+TEST_F(CommandLine, ANameOfAMegabyteIsNotPrintedWhole) {
+  const std::string name(1'000'000, 'x');
+  folder_.write("a.robdef", "service a\nstdver 0.10\nimport " + name + "\nobject O\nproperty " +
+                                name + " y\nproperty double " + name + "\nproperty double " + name +
+                                "\nend\n");
+  for (const std::string form : {"text", "line", "json"}) {
+    const Ended ended = run({"check", "--format=" + form, "a.robdef"});
+    EXPECT_EQ(ended.status, 1);
+    EXPECT_LT(ended.out.size() + ended.err.size(), 20'000U) << form;
+  }
+}
+
+constexpr std::string_view untidy = "service a\nstdver 0.10\nobject O\nproperty  double x\nend";
+constexpr std::string_view tidy =
+    "service a\n\nstdver 0.10\n\nobject O\n    property double x\nend\n";
+
+TEST_F(CommandLine, FormatLaysOutFilesInTheirPlaces) {
+  folder_.write("a.robdef", untidy);
+  folder_.write("sub/b.robdef", tidy);
+  std::filesystem::create_symlink("../a.robdef", folder_.path() / "sub/link.robdef");
+  const auto before = times();
+  const Ended ended = run({"format", "sub/link.robdef", "a.robdef", "sub/b.robdef"});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_EQ(ended.out + ended.err, "");
+  EXPECT_EQ(read_text(folder_.path() / "a.robdef"), tidy);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_.path() / "sub/link.robdef"));
+  EXPECT_EQ(times().at("sub/b.robdef"), before.at("sub/b.robdef")) << "it had the layout";
+  EXPECT_EQ(times().size(), before.size()) << "no file is left beside";
+}
+
+TEST_F(CommandLine, FormatCheckNamesWhatWouldChange) {
+  folder_.write("a.robdef", untidy);
+  folder_.write("b.robdef", tidy);
+  const Ended ended = run({"format", "--check", "a.robdef", "b.robdef"});
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_EQ(ended.out,
+            "a.robdef:2:1: blank line missing above\na.robdef:3:1: blank line missing above\n"
+            "a.robdef:4:1: indentation\na.robdef:4:9: blanks between words\n"
+            "a.robdef:5:4: line end missing at the end of the file\n");
+  EXPECT_EQ(read_text(folder_.path() / "a.robdef"), untidy);
+  EXPECT_EQ(run({"format", "--check", "b.robdef"}).status, 0);
+  EXPECT_EQ(run({"format", "--check", "-"}, "", std::string(untidy)).status, 1);
+}
+
+TEST_F(CommandLine, FormatOfStandardInputGoesToStandardOutput) {
+  const Ended ended = run({"format", "-"}, "", std::string(untidy));
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_EQ(ended.out, tidy);
+  EXPECT_THAT(folder_.files(), IsEmpty());
+}
+
+TEST_F(CommandLine, FormatWritesNothingWhenOneFileCannotBeRead) {
+  folder_.write("a.robdef", untidy);
+  const Ended ended = run({"format", "a.robdef", "nowhere.robdef"});
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.err, HasSubstr("nowhere.robdef: cannot be read: No such file"));
+  EXPECT_EQ(read_text(folder_.path() / "a.robdef"), untidy);
+}
+
+TEST_F(CommandLine, FormatNamesLinesThatItLeaves) {
+  folder_.write("a.robdef", "service a\n\nobject O\n  foo  bar\nevent e( )\nend\n");
+  const Ended ended = run({"format", "a.robdef"});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_EQ(ended.err, "a.robdef:4: left as it is, because it cannot be read\n");
+  EXPECT_EQ(read_text(folder_.path() / "a.robdef"),
+            "service a\n\nobject O\n  foo  bar\n    event e()\nend\n");
 }
 
 }  // namespace

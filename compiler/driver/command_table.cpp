@@ -12,16 +12,31 @@ namespace robdef {
 namespace {
 
 constexpr std::array commands = {
-    CommandRow{Command::generate, "generate", "--lang LANG [-o DIR] [OPTION...] FILE...",
+    CommandRow{Command::generate, "generate", "[--lang LANG] [-o DIR] [OPTION...] [FILE...]",
                "make the source files of a language",
                "Checks the definitions, and everything they import, and writes the code for the\n"
-               "given files below the output folder. Nothing is generated for imports.\n"
+               "given files below the output folder. Nothing is generated for imports. Without\n"
+               "--lang all outputs of robdef.toml are written, without FILE for its inputs.\n"
                "Nothing is written unless everything can be, and a file whose text stays the\n"
                "same is not touched.\n"},
-    CommandRow{Command::check, "check", "[OPTION...] FILE...",
+    CommandRow{Command::check, "check", "[OPTION...] [FILE...]",
                "report errors and warnings, write nothing",
                "Checks the definitions and everything they import. All errors of all files are\n"
-               "reported in one run.\n"},
+               "reported in one run. The file - is standard input. Without FILE the inputs of\n"
+               "robdef.toml are checked.\n"},
+    CommandRow{Command::format, "format", "[--check] FILE...",
+               "lay out definitions: blanks, indentation, blank lines",
+               "Lays out the given files in their places, all of them or none. Only blanks and\n"
+               "blank lines change. A line that cannot be read stays as it is, and is named.\n"
+               "The file - is standard input, whose layout goes to standard output.\n"},
+    CommandRow{Command::breaking, "breaking", "[OPTION...] OLD NEW",
+               "tell what in a new version breaks users of the old one",
+               "Compares two versions of definitions: what between old programs and new ones is\n"
+               "refused or misread (wire), what no longer compiles with code that is generated\n"
+               "anew (source), and what works but means something else (behaviour). Each of OLD\n"
+               "and NEW is a file, - for standard input, or a folder of definitions; a revision\n"
+               "of git and a path in it, such as HEAD~1:definitions; a recording; or the URL of\n"
+               "a running service. docs/breaking.md has all rules.\n"},
     CommandRow{Command::describe, "describe", "[OPTION...] FILE... | URL [PATH]",
                "print a readable outline of definitions",
                "Prints what the definitions offer: types with their sizes, objects with their\n"
@@ -43,13 +58,14 @@ constexpr std::array commands = {
                "Prints a line for each message of a recording: the time since its beginning,\n"
                "the connection, > to the service or < to the client, the entries with their\n"
                "service path, member, request id and error, and the elements with the types\n"
-               "that they have on the wire. A file that is cut off is read up to there.\n"},
+               "that they have on the wire. A file that is cut off is read up to there. The\n"
+               "file - is standard input.\n"},
     CommandRow{Command::record, "record", "--connect HOST:PORT --listen PORT -o FILE [OPTION...]",
                "record the messages between clients and a service",
                "Listens at a port, connects each client that comes there to a service, passes\n"
                "on every byte as it is, and records the messages until it is interrupted.\n"
                "Clients and services of any implementation will do. The recording has\n"
-               "everything that was sent, credentials too.\n"},
+               "everything that was sent but for the credentials of logins, which are masked.\n"},
     CommandRow{Command::replay, "replay", "FILE --connect HOST:PORT | --listen PORT [OPTION...]",
                "play one side of a recording to a live other side",
                "With --connect the recorded clients are played to a service, with --listen the\n"
@@ -62,17 +78,25 @@ constexpr std::array commands = {
                "Listens to the announcements of nodes and asks them for their services. Prints\n"
                "nodes and services with + when they come, * when they change and - when they\n"
                "are lost, until it is interrupted.\n"},
-    CommandRow{Command::ca, "ca", "init DIR | issue NODE | revoke NODE [OPTION...]",
-               "make and use an authority for nodes' certificates",
-               "init makes an authority in a folder; issue makes the certificate and key of a\n"
-               "node there, below nodes, and revoke adds the certificate to the list of revoked\n"
-               "ones. A node is its id, or a file that has it. Nodes trust the authority that\n"
-               "are given its ca.pem. Keep ca.key to yourself.\n"},
+    CommandRow{Command::ca, "ca", "init DIR | VERB [NODE | FILE | SERIAL] [OPTION...]",
+               "make and use a certificate authority for nodes",
+               "  init DIR      make an authority in a folder\n"
+               "  issue NODE    make the certificate and key of a node there, below nodes\n"
+               "  request NODE  on the node's machine: make its key, and a request\n"
+               "  sign FILE     issue a certificate for a request; the key stays where it is\n"
+               "  revoke NODE | SERIAL | FILE   revoke all certificates of a node, or one\n"
+               "  refresh       sign the list of revoked certificates anew, before it runs out\n"
+               "  list [NODE]   print what was issued, a line each\n"
+               "  passphrase    give the authority's key another passphrase\n"
+               "A node is its id, or a file that has it. Nodes trust the authority that are\n"
+               "given its ca.pem. Keep ca.key to yourself. Its passphrase is asked for at the\n"
+               "terminal, unless --passphrase-file or ROBDEF_CA_PASSPHRASE has it.\n"},
     CommandRow{Command::bridge, "bridge", "BOARD... --listen PORT [--everywhere]",
-               "offer boards behind serial ports as services",
+               "offer boards, at serial ports or over TCP, as services",
                "A BOARD is the path of a port, as /dev/ttyACM0, perhaps with the rate and the\n"
                "name of its service: /dev/ttyUSB0?baud=9600&name=lamp. The rate is 115200 if\n"
-               "nothing is said, the name that of the object which the sketch serves. Goes on\n"
+               "nothing is said, the name that of the object which the sketch serves. A board\n"
+               "with a network is tcp://192.168.1.20:4000, perhaps with ?name=lamp. Goes on\n"
                "when boards are reset, or unplugged and plugged in again, until it is\n"
                "interrupted.\n"},
 };
@@ -84,13 +108,24 @@ constexpr std::array options = {
               {Command::generate, Command::view},
               "target language; see the list below",
               take_language},
+    OptionRow{"--lang",
+              "",
+              "LANGS",
+              {Command::check},
+              "report what these languages cannot have, too:\nnames that collide in them, for"
+              " instance;\nseparated by commas",
+              take_languages},
     OptionRow{"--output",
               "-o",
               "DIR",
               {Command::generate},
               "folder to write below, made when missing;\ndefault: the current folder",
               take_text<&Options::output_folder>},
-    OptionRow{"--import-path", "-I", "DIR", reading_definitions,
+    OptionRow{"--import-path",
+              "-I",
+              "DIR",
+              {Command::generate, Command::check, Command::describe, Command::model, Command::view,
+               Command::breaking},
               "look here for imported definitions; may be\nrepeated. An import a.b is the file\n"
               "a.b.robdef: beside the importing file, in\nthese folders, then in those of the\n"
               "environment",
@@ -101,6 +136,13 @@ constexpr std::array options = {
               {Command::check},
               "every file must declare version 0.9.2 or\nlater, as published ones do",
               take_switch<&Options::is_strict>},
+    OptionRow{"--check",
+              "",
+              "",
+              {Command::format},
+              "write nothing; print what would change, one\nplace a line; exit status 1 if "
+              "anything would",
+              take_switch<&Options::checks_only>},
     OptionRow{"--templates",
               "",
               "DIR",
@@ -108,6 +150,14 @@ constexpr std::array options = {
               "take templates from here: those of the same\nname replace the language's own; with"
               " a file\noutputs.txt they are all that is generated",
               take_text<&Options::template_folder>},
+    OptionRow{"--rename",
+              "",
+              "PATH=NAME",
+              {Command::generate, Command::view},
+              "call a type, member, parameter, field, value or\nconstant another name in the code, "
+              "as example.\n"
+              "arm.Arm.move=go_to; its name on the wire stays;\nmay be repeated",
+              take_rename},
     OptionRow{"--list-outputs",
               "",
               "",
@@ -130,8 +180,43 @@ constexpr std::array options = {
               "form of the findings: text (default), line\n(one line each) or json; json goes to"
               " standard\noutput unless the command prints there itself",
               take_format},
-    OptionRow{"--no-warning", "", "CODE", reading_definitions,
-              "do not report this warning; may be repeated", take_silenced},
+    OptionRow{"--format",
+              "",
+              "FORM",
+              {Command::breaking},
+              "text (default), json, or github: annotations for\na workflow",
+              take_breaking_form},
+    OptionRow{
+        "--category",
+        "",
+        "NAMES",
+        {Command::breaking},
+        "only what breaks in these ways: wire, source,\nbehaviour, separated by commas; may be"
+        " repeated",
+        take_categories},
+    OptionRow{"--allow",
+              "",
+              "CODE",
+              {Command::breaking},
+              "do not report changes of this code; may be\nrepeated",
+              take_allowed},
+    OptionRow{"--deny", "", "NAME", reading_definitions,
+              "make a warning an error: a code, or a group that\nrobdef explain --list shows; may"
+              " be repeated",
+              take_level<Level::deny>},
+    OptionRow{"--warn", "", "NAME", reading_definitions,
+              "report a warning that robdef.toml turns off, or\nmakes an error",
+              take_level<Level::warn>},
+    OptionRow{"--allow", "", "NAME", reading_definitions,
+              "do not report a warning; may be repeated", take_level<Level::allow>},
+    OptionRow{"--no-warning", "", "CODE", reading_definitions, "the same as --allow",
+              take_level<Level::allow>},
+    OptionRow{"--config", "", "FILE", reading_definitions,
+              "the project file; default: robdef.toml in the\ncurrent folder or the nearest one"
+              " above it",
+              take_text<&Options::config_file>},
+    OptionRow{"--no-config", "", "", reading_definitions, "read no project file",
+              take_switch<&Options::ignores_config>},
     OptionRow{"--list",
               "",
               "",
@@ -141,8 +226,8 @@ constexpr std::array options = {
     OptionRow{"--json",
               "",
               "",
-              {Command::explain, Command::inspect},
-              "print JSON; inspect: an object a line",
+              {Command::explain, Command::inspect, Command::ca},
+              "print JSON; inspect: an object a line; ca: of\nwhat list prints",
               take_switch<&Options::is_json>},
     OptionRow{"--entries",
               "",
@@ -200,6 +285,12 @@ constexpr std::array options = {
               "leave messages out, and count them, when the\ndisk is too slow, instead of waiting"
               " for it",
               take_recording_switch<&RecordingOptions::drops>},
+    OptionRow{"--keep-credentials",
+              "",
+              "",
+              {Command::record},
+              "write passwords of logins into the file, too;\notherwise they are masked",
+              take_recording_switch<&RecordingOptions::keeps_credentials>},
     OptionRow{"--fast",
               "",
               "",
@@ -262,13 +353,64 @@ constexpr std::array options = {
               "DIR",
               {Command::ca},
               "folder of the authority; default: the current\nfolder",
-              take_text<&Options::authority_folder>},
+              take_authority_text<&AuthorityOptions::folder>},
     OptionRow{"--days",
               "",
               "NUMBER",
               {Command::ca},
               "how long it is valid; default: 825, of an\nauthority 3650",
-              take_days},
+              take_days<&AuthorityOptions::days>},
+    OptionRow{
+        "--list-days",
+        "",
+        "NUMBER",
+        {Command::ca},
+        "init, refresh: how long lists of revoked\ncertificates are valid; default: 7, then as\n"
+        "before",
+        take_days<&AuthorityOptions::list_days>},
+    OptionRow{"--name",
+              "",
+              "TEXT",
+              {Command::ca},
+              "issue, sign: what list shows beside the node;\ninit: of the authority",
+              take_authority_text<&AuthorityOptions::name>},
+    OptionRow{"--renew",
+              "",
+              "",
+              {Command::ca},
+              "issue, request: for a node that has a\ncertificate, with its key",
+              take_authority_switch<&AuthorityOptions::is_renewal>},
+    OptionRow{"--new-key",
+              "",
+              "",
+              {Command::ca},
+              "issue --renew: with another key",
+              take_authority_switch<&AuthorityOptions::takes_new_key>},
+    OptionRow{"--revoke-old",
+              "",
+              "",
+              {Command::ca},
+              "issue, sign: revoke the node's earlier\ncertificates",
+              take_authority_switch<&AuthorityOptions::revokes_earlier>},
+    OptionRow{"--passphrase",
+              "",
+              "",
+              {Command::ca},
+              "init: ask for a passphrase for the key",
+              take_authority_switch<&AuthorityOptions::has_passphrase>},
+    OptionRow{
+        "--passphrase-file",
+        "",
+        "FILE",
+        {Command::ca},
+        "the first line of this file is the passphrase\nof the key; /dev/fd/N for a descriptor",
+        take_authority_text<&AuthorityOptions::passphrase_file>},
+    OptionRow{"--output",
+              "-o",
+              "DIR",
+              {Command::ca},
+              "request: folder of the key and the request;\ndefault: the current folder",
+              take_authority_text<&AuthorityOptions::output>},
 };
 
 template <class Row, std::size_t size>

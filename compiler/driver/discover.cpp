@@ -7,6 +7,7 @@
 #include <rr/discovery.hpp>
 #include <rr/error.hpp>
 #include <rr/node.hpp>
+#include <rr/printable.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,13 +19,6 @@ namespace robdef {
 namespace {
 
 using Services = std::vector<rr::FoundService>;
-
-// What other nodes say goes to a terminal: nothing in it may steer that.
-std::string printable(std::string_view text) {
-  std::string result;
-  for (const char c : text) result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
-  return result;
-}
 
 void write_urls(JsonWriter& json, const std::vector<std::string>& urls) {
   json.key("urls").begin_array();
@@ -45,16 +39,17 @@ void write_service(JsonWriter& json, const rr::FoundService& service, bool names
 }
 
 std::string node_line(const rr::DetectedNode& node) {
-  return "node " + node.id.text() + (node.name.empty() ? "" : " " + printable(node.name));
+  return "node " + node.id.text() + (node.name.empty() ? "" : " " + rr::printable(node.name));
 }
 
 std::string service_line(const rr::FoundService& service) {
-  return "service " + printable(service.name) + " (" + printable(service.object_type) + ") at " +
-         (service.node_name.empty() ? service.node.text() : printable(service.node_name));
+  return "service " + rr::printable(service.name) + " (" + rr::printable(service.object_type) +
+         ") at " +
+         (service.node_name.empty() ? service.node.text() : rr::printable(service.node_name));
 }
 
 void print_urls(std::ostream& out, const std::vector<std::string>& urls) {
-  for (const std::string& url : urls) out << "    " << printable(url) << '\n';
+  for (const std::string& url : urls) out << "    " << rr::printable(url) << '\n';
 }
 
 Services services_of(const rr::Discovery& discovery, const DiscoverOptions& wanted) {
@@ -89,7 +84,7 @@ void print_once(const rr::Discovery& discovery, const Options& options, std::ost
     }
   }
   json.end_array().end_object();
-  if (is_json) out << std::move(json).text();
+  if (is_json) out << rr::printable_json(std::move(json).text());
 }
 
 // Prints what comes and goes, a line or an object each.
@@ -106,7 +101,7 @@ class Live {
       json.member("id", node.id.text()).member("name", node.name);
       write_urls(json, node.urls);
       json.end_object().end_object();
-      out_ << std::move(json).text() << std::endl;
+      out_ << rr::printable_json(std::move(json).text()) << std::endl;
       return;
     }
     out_ << mark << ' ' << node_line(node) << std::endl;
@@ -118,7 +113,7 @@ class Live {
       json.begin_object().member("event", event).key("service");
       write_service(json, service, true);
       json.end_object();
-      out_ << std::move(json).text() << std::endl;
+      out_ << rr::printable_json(std::move(json).text()) << std::endl;
       return;
     }
     out_ << mark << ' ' << service_line(service) << '\n';
@@ -163,7 +158,7 @@ ExitStatus discover(const Options& options, std::ostream& out, std::ostream& err
   const DiscoverOptions& wanted = options.discover;
   const EndSignals signals;
   try {
-    rr::Node node;
+    rr::Node node({.tls = options.live.tls.options()});
     node.discovery().listen({.network = {.ipv4_broadcast = wanted.uses_ipv4,
                                          .interfaces = wanted.interfaces,
                                          .port = wanted.port}});
@@ -174,7 +169,7 @@ ExitStatus discover(const Options& options, std::ostream& out, std::ostream& err
     }
     return exit_fine;
   } catch (const rr::Error& error) {
-    err << "robdef: " << error.message() << '\n';
+    err << "robdef: " << rr::printable(error.message()) << '\n';
   }
   return exit_errors;
 }

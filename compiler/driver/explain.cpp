@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "compiler/diagnostics/levels.hpp"
 #include "compiler/output/json.hpp"
 
 namespace robdef {
@@ -19,6 +20,11 @@ bool is_same_name(std::string_view left, std::string_view right) {
     return std::toupper(static_cast<unsigned char>(a)) ==
            std::toupper(static_cast<unsigned char>(b));
   });
+}
+
+bool has(const WarningGroup& group, const CodeEntry& entry) {
+  if (!group.codes.empty()) return std::ranges::find(group.codes, entry.code) != group.codes.end();
+  return entry.severity == Severity::warning && !entry.name.starts_with("R07");
 }
 
 std::string_view name_of(Severity severity) {
@@ -36,6 +42,12 @@ std::vector<const CodeEntry*> find_entries(const std::vector<std::string>& names
       const bool is_rule = !entry.rule.empty() && is_same_name(entry.rule, name);
       if (is_rule || is_same_name(entry.name, name)) found.push_back(&entry);
     }
+    for (const WarningGroup& group : warning_groups()) {
+      if (group.name != name) continue;
+      for (const CodeEntry& entry : code_entries()) {
+        if (has(group, entry)) found.push_back(&entry);
+      }
+    }
     if (found.size() == before) {
       unknown = name;
       return found;
@@ -49,6 +61,18 @@ std::string entry_list(const std::vector<const CodeEntry*>& entries) {
   for (const CodeEntry* entry : entries) {
     text += fmt::format("{}  {:<4} {:<8} {}\n", entry->name, entry->rule, name_of(entry->severity),
                         entry->summary);
+  }
+  return text;
+}
+
+std::string group_list() {
+  std::string text = "\n";
+  for (const WarningGroup& group : warning_groups()) {
+    text += fmt::format("{:<12} {}", group.name, group.summary);
+    for (const Code code : group.codes) {
+      text += fmt::format("{}{}", code == group.codes.front() ? ": " : ", ", entry_of(code).name);
+    }
+    text += '\n';
   }
   return text;
 }

@@ -18,6 +18,8 @@ std::vector<const CodeEntry*> find_entries(const std::vector<std::string>& names
 /// One line for each entry: code, rule, severity, summary.
 std::string entry_list(const std::vector<const CodeEntry*>& entries);
 /// Headline and explanation of each entry.
+/// Groups of warnings, a line each, behind an empty line.
+std::string group_list();
 std::string entry_text(const std::vector<const CodeEntry*>& entries);
 /// Array of objects: code, rule, severity, summary, explanation.
 std::string entry_json(const std::vector<const CodeEntry*>& entries);

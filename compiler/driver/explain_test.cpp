@@ -48,7 +48,7 @@ TEST(Explain, AnUnknownCodeIsAMistakeInTheCommandLine) {
   const Outcome outcome = run({"explain", "R0203", "R9999"});
   EXPECT_EQ(outcome.status, exit_usage);
   EXPECT_EQ(outcome.out, "");
-  EXPECT_THAT(outcome.err, HasSubstr("no code or rule `R9999`"));
+  EXPECT_THAT(outcome.err, HasSubstr("no code, rule or group `R9999`"));
 }
 
 TEST(Explain, TheListHasEachCodeOnceWithRuleAndSeverity) {
@@ -57,8 +57,20 @@ TEST(Explain, TheListHasEachCodeOnceWithRuleAndSeverity) {
   std::istringstream lines(text);
   std::set<std::string> codes;
   std::string line;
-  while (std::getline(lines, line)) EXPECT_TRUE(codes.insert(line.substr(0, 5)).second) << line;
+  while (std::getline(lines, line) && !line.empty())
+    EXPECT_TRUE(codes.insert(line.substr(0, 5)).second) << line;
   EXPECT_EQ(codes.size(), code_entries().size());
+}
+
+TEST(Explain, GroupsOfWarningsStandBelowTheList) {
+  EXPECT_THAT(run({"explain", "--list"}).out,
+              AllOf(HasSubstr("\n\nwarnings     all warnings\n"),
+                    HasSubstr("\ntarget       what a language changes or leaves out: R0903, "
+                              "R0904\n")));
+  EXPECT_THAT(run({"explain", "target"}).out,
+              AllOf(StartsWith("warning[R0903]"), HasSubstr("\nwarning[R0904]")));
+  EXPECT_THAT(run({"explain", "warnings"}).out,
+              AllOf(HasSubstr("warning[R0136]"), Not(HasSubstr("error["))));
 }
 
 TEST(Explain, JsonHasTheRuleBesideTheCode) {

@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <optional>
 #include <ostream>
 #include <rr/error.hpp>
+#include <rr/printable.hpp>
 #include <rr/recording.hpp>
 
 #include "compiler/driver/inspect_json.hpp"
 #include "compiler/driver/inspect_summary.hpp"
 #include "compiler/driver/inspect_text.hpp"
 #include "compiler/driver/recordings.hpp"
+#include "compiler/syntax/read.hpp"
 
 namespace robdef {
 namespace {
@@ -58,9 +67,36 @@ std::string complaint_about(const rr::Recording& recording) {
   return "";
 }
 
+/// Standard input as a file: recordings are read back and forth, which a pipe is not.
+class SpooledInput {
+ public:
+  SpooledInput() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "robdef-XXXXXX").string();
+    const int file = ::mkstemp(pattern.data());
+    if (file < 0) throw rr::Error(rr::ErrorCode::io_error, "no room for a copy of standard input");
+    ::close(file);
+    path_ = pattern;
+    std::ofstream copy(path_, std::ios::binary);
+    copy << std::cin.rdbuf();
+  }
+  SpooledInput(const SpooledInput&) = delete;
+  SpooledInput& operator=(const SpooledInput&) = delete;
+  ~SpooledInput() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
 ExitStatus inspect_file(const std::string& path, const Options& options, std::ostream& out,
                         std::ostream& err) {
-  rr::Recording recording(path);
+  std::optional<SpooledInput> spooled;
+  if (ast::is_standard_input(path)) spooled.emplace();
+  rr::Recording recording(spooled ? spooled->path() : path);
   const Filter filter(options.recording);
   Summary summary;
   for (rr::Record record; recording.next(record);) {
@@ -68,16 +104,20 @@ ExitStatus inspect_file(const std::string& path, const Options& options, std::os
     if (options.recording.is_summary) {
       summary.add(record);
     } else {
-      out << (options.is_json ? json_of(record) : line_of(record)) << '\n';
+      out << (options.is_json ? rr::printable_json(json_of(record))
+                              : rr::printable(line_of(record), rr::printable_whole))
+          << '\n';
       if (!out) break;
     }
   }
   if (options.recording.is_summary) {
-    out << (options.is_json ? summary.json() : summary.text(recording.start()));
+    out << (options.is_json ? rr::printable_json(summary.json())
+                            : rr::printable(summary.text(recording.start()), rr::printable_whole,
+                                            rr::LineBreaks::kept));
   }
   const std::string complaint = complaint_about(recording);
   if (complaint.empty()) return exit_fine;
-  err << "robdef: " << path << ": " << complaint << '\n';
+  err << "robdef: " << ast::shown_name(path) << ": " << complaint << '\n';
   return exit_errors;
 }
 
@@ -90,7 +130,7 @@ ExitStatus inspect(const Options& options, std::ostream& out, std::ostream& err)
       const ExitStatus each = inspect_file(path, options, out, err);
       if (each != exit_fine) status = each;
     } catch (const rr::Error& error) {
-      err << "robdef: " << error.message() << '\n';
+      err << "robdef: " << rr::printable(error.message()) << '\n';
       status = exit_errors;
     }
   }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "compiler/driver/tls_files.hpp"
+
 namespace robdef {
 
 /// What the commands that connect to a service are told besides its URL.
@@ -14,6 +16,7 @@ struct LiveOptions {
   std::string user;           ///< empty: no log-in
   std::string password_file;  ///< empty: the environment or a question
   std::optional<std::chrono::milliseconds> timeout;
+  TlsFiles tls;  ///< also of `discover` and `bridge`
 
   // memories
   std::optional<std::vector<std::uint64_t>> position;  ///< none: the beginning

@@ -37,7 +37,7 @@ std::optional<Number> number_in(std::string_view text) {
 
 std::string take_language(Options& options, const std::string& value) {
   if (find_backend(value) != nullptr) {
-    options.language = value;
+    options.languages = {value};
     return "";
   }
   std::string known;
@@ -49,6 +49,21 @@ std::string take_language(Options& options, const std::string& value) {
   const std::string_view near = nearest(value, names);
   return "unknown language `" + value + "`; " +
          (near.empty() ? "known: " + known : "did you mean `" + std::string(near) + "`?");
+}
+
+std::string take_languages(Options& options, const std::string& value) {
+  for (std::size_t begin = 0; begin <= value.size();) {
+    const std::size_t end = std::min(value.find(',', begin), value.size());
+    Options one;
+    std::string complaint = take_language(one, value.substr(begin, end - begin));
+    if (!complaint.empty()) return complaint;
+    const std::string& name = one.languages.front();
+    if (std::ranges::find(options.languages, name) == options.languages.end()) {
+      options.languages.push_back(name);
+    }
+    begin = end + 1;
+  }
+  return "";
 }
 
 std::string take_format(Options& options, const std::string& value) {
@@ -64,19 +79,53 @@ std::string take_format(Options& options, const std::string& value) {
   return "";
 }
 
-std::string take_silenced(Options& options, const std::string& value) {
-  const CodeEntry* entry = find_code(upper_case(value));
-  if (entry == nullptr) return "there is no code `" + value + "`; see `robdef explain --list`";
-  if (entry->severity == Severity::error) {
-    return "`" + std::string(entry->name) + "` is an error; only warnings can be turned off";
+std::string take_breaking_form(Options& options, const std::string& value) {
+  using Form = BreakingOptions::Form;
+  if (value == "text") {
+    options.breaking.form = Form::text;
+  } else if (value == "json") {
+    options.breaking.form = Form::json;
+  } else if (value == "github") {
+    options.breaking.form = Form::github;
+  } else {
+    return "unknown format `" + value + "`; known: `text`, `json`, `github`";
   }
-  options.silenced.push_back(entry->code);
+  return "";
+}
+
+std::string take_categories(Options& options, const std::string& value) {
+  for (std::size_t begin = 0; begin <= value.size();) {
+    const std::size_t end = std::min(value.find(',', begin), value.size());
+    const std::string name = value.substr(begin, end - begin);
+    const auto category = breaking::category_of(name);
+    if (!category) {
+      return "unknown category `" + name + "`; known: `wire`, `source`, `behaviour`";
+    }
+    options.breaking.wanted.categories.insert(*category);
+    begin = end + 1;
+  }
+  return "";
+}
+
+std::string take_allowed(Options& options, const std::string& value) {
+  const CodeEntry* const entry = find_code(upper_case(value));
+  if (entry == nullptr || breaking::find_rule(entry->code) == nullptr) {
+    return "`" + value + "` is no code of a breaking change; see docs/breaking.md";
+  }
+  options.breaking.wanted.allowed.insert(entry->code);
   return "";
 }
 
 std::string take_import_folder(Options& options, const std::string& value) {
   options.search_path.folders.push_back(value);
   return value.empty() ? "the value is empty" : "";
+}
+
+std::string take_rename(Options& options, const std::string& value) {
+  const std::size_t sign = value.find('=');
+  if (sign == std::string::npos) return "`" + value + "` is not PATH=NAME";
+  options.renames.push_back({value.substr(0, sign), value.substr(sign + 1)});
+  return "";
 }
 
 std::string take_entry_types(Options& options, const std::string& value) {
@@ -125,9 +174,9 @@ std::string take_interface(Options& options, const std::string& value) {
   return value.empty() ? "the value is empty" : "";
 }
 
-std::string take_days(Options& options, const std::string& value) {
-  options.days = number_in<int>(value);
-  const bool is_right = options.days && *options.days > 0 && *options.days <= 36500;
+std::string take_number_of_days(std::optional<int>& days, const std::string& value) {
+  days = number_in<int>(value);
+  const bool is_right = days && *days > 0 && *days <= 36500;
   return is_right ? "" : "`" + value + "` is no number of days from 1 to 36500";
 }
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/driver/options.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
 #include "compiler/diagnostics/spelling.hpp"
+#include "compiler/driver/authority_verbs.hpp"
 #include "compiler/driver/command_table.hpp"
 #include "compiler/driver/live/commands.hpp"
 #include "compiler/driver/live/table.hpp"
@@ -132,17 +134,13 @@ class ArgumentReader {
   }
 
   [[nodiscard]] std::string missing() const {
-    const bool needs_language =
-        command_.command == Command::generate || command_.command == Command::view;
-    if (needs_language && options_.language.empty()) return "`--lang` is missing";
     if (options_.inputs.empty() && command_.command == Command::explain && !options_.lists_codes) {
       return "no code given";
     }
     if (command_.command == Command::record) return missing_to_record();
     if (command_.command == Command::bridge) return missing_to_bridge();
-    if (command_.command == Command::ca) {
-      return options_.inputs.size() == 2 ? "" : "give `init DIR`, `issue NODE` or `revoke NODE`";
-    }
+    if (command_.command == Command::breaking) return missing_to_compare();
+    if (command_.command == Command::ca) return missing_for_authority(options_);
     if (command_.command == Command::discover) {
       return options_.inputs.empty() ? "" : "`robdef discover` takes no files";
     }
@@ -151,9 +149,18 @@ class ArgumentReader {
          is_url(options_.inputs.front()))) {
       return live::missing(options_);
     }
+    if (reading_definitions.contains(command_.command)) return missing_to_compile();
     if (options_.inputs.empty() && command_.command != Command::explain) return "no file given";
     if (command_.command == Command::replay) return missing_to_replay();
     if (!options_.inputs.empty() && options_.lists_codes) return "`--list` takes no codes";
+    return "";
+  }
+
+  /// Inputs and languages may be in a project file: job.hpp asks for them.
+  [[nodiscard]] std::string missing_to_compile() const {
+    if (!options_.config_file.empty() && options_.ignores_config) {
+      return "give either `--config` or `--no-config`";
+    }
     if (!options_.depfile_target.empty() && options_.depfile.empty()) {
       return "`--depfile-target` needs `--depfile`";
     }
@@ -171,6 +178,13 @@ class ArgumentReader {
   [[nodiscard]] std::string missing_to_bridge() const {
     if (options_.inputs.empty()) return "no board given";
     return options_.recording.port ? "" : "`--listen` is missing";
+  }
+
+  [[nodiscard]] std::string missing_to_compare() const {
+    if (options_.inputs.size() != 2) return "give two versions: the old and the new one";
+    const bool has_url = std::any_of(options_.inputs.begin(), options_.inputs.end(), is_url);
+    if (!has_url) return options_.live.user.empty() ? "" : "`--user` is for the URL of a service";
+    return live::missing_to_connect(options_);
   }
 
   [[nodiscard]] std::string missing_to_replay() const {
@@ -209,6 +223,7 @@ std::variant<Options, Answer, UsageError> parse_options(std::span<const std::str
   }
   auto result = ArgumentReader(*command, arguments.subspan(1)).read();
   if (auto* options = std::get_if<Options>(&result)) {
+    options->own_import_folders = options->search_path.folders.size();
     options->search_path =
         ast::make_search_path(std::move(options->search_path.folders), import_variable);
   }

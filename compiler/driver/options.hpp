@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -8,11 +9,15 @@
 #include <variant>
 #include <vector>
 
+#include "compiler/diagnostics/levels.hpp"
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/diagnostics/report.hpp"
+#include "compiler/driver/authority_options.hpp"
+#include "compiler/driver/breaking_options.hpp"
 #include "compiler/driver/discover_options.hpp"
 #include "compiler/driver/live_options.hpp"
 #include "compiler/driver/recording_options.hpp"
+#include "compiler/model/rename.hpp"
 #include "compiler/syntax/read.hpp"
 
 /// The command line of `robdef`: one table of commands, one of options, read by the parser and by
@@ -22,6 +27,8 @@ namespace robdef {
 enum class Command {
   generate,
   check,
+  format,
+  breaking,
   describe,
   model,
   view,
@@ -43,27 +50,33 @@ enum class Command {
 /// What the user asked for. Which parts mean something depends on the command.
 struct Options {
   Command command{};
-  /// Definition files; for explain: codes and rules; for inspect and replay: recordings; for ca:
-  /// what to do and with what; for what uses a running service: its URL, and members or a path.
+  /// Definition files, `-` for standard input; for explain: codes and rules; for inspect and
+  /// replay: recordings; for breaking: the old and the new version; for ca: what to do and with
+  /// what; for what uses a running service: its URL, and members or a path.
   std::vector<std::string> inputs;
   /// Folders in which imports are looked for: those of `-I`, then those of the environment.
   ast::SearchPath search_path;
-  std::string language;
-  std::string output_folder = ".";
-  std::string template_folder;  ///< empty: the templates of the backend
-  std::string depfile;          ///< empty: none
-  std::string depfile_target;   ///< empty: the outputs
+  std::size_t own_import_folders = 0;  ///< those of `-I`
+  std::vector<std::string> languages;  ///< generate, view: one at most
+  std::string output_folder;           ///< empty: not given
+  std::string template_folder;         ///< empty: the templates of the backend
+  std::string config_file;             ///< empty: the one that is found
+  bool ignores_config = false;
+  std::vector<model::Rename> renames;
+  std::string depfile;         ///< empty: none
+  std::string depfile_target;  ///< empty: the outputs
   Format format = Format::text;
-  std::vector<Code> silenced;  ///< warnings not to be reported
+  Levels levels;  ///< of warnings
   bool is_strict = false;
   bool lists_outputs = false;
   bool lists_codes = false;
   bool is_json = false;
+  bool checks_only = false;  ///< format: says what would change, and writes nothing
+  BreakingOptions breaking;
   RecordingOptions recording;
   DiscoverOptions discover;
   LiveOptions live;
-  std::string authority_folder = ".";  ///< of `ca`
-  std::optional<int> days;             ///< of `ca`; none: as usual
+  AuthorityOptions authority;
 };
 
 /// Text that answers the command line itself: help or the version.

@@ -35,7 +35,7 @@ TEST(Options, ValuesMayStandBehindABlankAnEqualsSignOrTheLetter) {
   const Options options = understood({"generate", "--lang=cpp", "-Ifirst", "-I", "second", "-o",
                                       "out", "a.robdef", "--import-path", "third", "b.robdef"});
   EXPECT_EQ(options.command, Command::generate);
-  EXPECT_EQ(options.language, "cpp");
+  EXPECT_THAT(options.languages, ElementsAre("cpp"));
   EXPECT_EQ(options.output_folder, "out");
   EXPECT_THAT(options.search_path.folders, ElementsAre("first", "second", "third"));
   EXPECT_THAT(options.inputs, ElementsAre("a.robdef", "b.robdef"));
@@ -51,8 +51,10 @@ TEST(Options, BehindTwoDashesEverythingIsAFile) {
 }
 
 TEST(Options, AWarningIsTurnedOffByItsCodeInEitherCase) {
-  EXPECT_THAT(understood({"check", "--no-warning=r0610", "--no-warning", "R0611", "a"}).silenced,
-              ElementsAre(Code::R0610, Code::R0611));
+  const Levels levels = understood({"check", "--no-warning=r0610", "--allow", "R0611", "a"}).levels;
+  EXPECT_EQ(levels.find(Code::R0610), Level::allow);
+  EXPECT_EQ(levels.find(Code::R0611), Level::allow);
+  EXPECT_EQ(levels.find(Code::R0612), std::nullopt);
 }
 
 TEST(Options, AnErrorCannotBeTurnedOff) {
@@ -67,18 +69,21 @@ TEST(Options, WhatIsMisspelledIsGuessed) {
 }
 
 TEST(Options, AnOptionOfAnotherCommandIsNamedAsSuch) {
-  EXPECT_THAT(complaint({"check", "--lang", "cpp", "a"}),
-              HasSubstr("`robdef check` has no option `--lang`"));
+  EXPECT_THAT(complaint({"model", "--lang", "cpp", "a"}),
+              HasSubstr("`robdef model` has no option `--lang`"));
 }
 
 TEST(Options, WhatIsMissingIsNamed) {
   EXPECT_THAT(complaint({}), HasSubstr("no command given"));
-  EXPECT_THAT(complaint({"check"}), HasSubstr("no file given"));
+  EXPECT_THAT(complaint({"format"}), HasSubstr("no file given"));
   EXPECT_THAT(complaint({"explain"}), HasSubstr("no code given"));
-  EXPECT_THAT(complaint({"generate", "a"}), HasSubstr("`--lang` is missing"));
   EXPECT_THAT(complaint({"generate", "a", "--lang"}), HasSubstr("`--lang` needs a value: LANG"));
   EXPECT_THAT(complaint({"generate", "--lang", "cpp", "--depfile-target", "x", "a"}),
               HasSubstr("`--depfile-target` needs `--depfile`"));
+  EXPECT_THAT(complaint({"generate", "--lang", "csharp", "--rename", "a.B", "a"}),
+              HasSubstr("`a.B` is not PATH=NAME"));
+  EXPECT_THAT(complaint({"check", "--config", "x.toml", "--no-config", "a"}),
+              HasSubstr("give either `--config` or `--no-config`"));
 }
 
 TEST(Options, ASwitchTakesNoValueAndAFormatOnlyKnownOnes) {

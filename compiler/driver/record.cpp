@@ -3,6 +3,7 @@
 #include <mutex>
 #include <ostream>
 #include <rr/error.hpp>
+#include <rr/printable.hpp>
 #include <rr/tap.hpp>
 
 #include "compiler/driver/end_signals.hpp"
@@ -19,19 +20,21 @@ ExitStatus record(const Options& options, std::ostream& out, std::ostream& err) 
     const auto recorder = std::make_shared<rr::Recorder>(
         wanted.output,
         rr::RecorderOptions{.when_full = wanted.drops ? rr::RecorderOptions::WhenFull::drop
-                                                      : rr::RecorderOptions::WhenFull::wait});
+                                                      : rr::RecorderOptions::WhenFull::wait,
+                            .keeps_credentials = wanted.keeps_credentials});
     {
       rr::replay::Proxy proxy(recorder, rr::replay::host_port_of(wanted.connect),
                               {.port = *wanted.port,
                                .listens_everywhere = wanted.listens_everywhere,
                                .log = [&](const std::string& text) {
                                  const std::lock_guard lock(printing);
-                                 err << "robdef: " << text << std::endl;
+                                 err << "robdef: " << rr::printable(text) << std::endl;
                                }});
       {
         const std::lock_guard lock(printing);
         out << "recording connections to " << wanted.connect << " that come to port "
             << proxy.port() << std::endl;
+        err << place_line(wanted) << std::endl;
       }
       while (!signals.wait() && recorder->failure().empty()) continue;
     }
@@ -42,7 +45,7 @@ ExitStatus record(const Options& options, std::ostream& out, std::ostream& err) 
     if (recorder->failure().empty()) return exit_fine;
     err << "robdef: " << recorder->failure() << '\n';
   } catch (const rr::Error& error) {
-    err << "robdef: " << error.message() << '\n';
+    err << "robdef: " << rr::printable(error.message()) << '\n';
   }
   return exit_errors;
 }

@@ -22,7 +22,15 @@ struct RecordingOptions {
   std::optional<std::uint16_t> port;  ///< of --listen
   bool listens_everywhere = false;
   bool drops = false;
+  bool keeps_credentials = false;
   bool is_fast = false;
 };
+
+/// Who can connect to a command that listens, and how that is changed: a line for standard error.
+inline const char* place_line(const RecordingOptions& options) {
+  return options.listens_everywhere
+             ? "robdef: other machines can connect"
+             : "robdef: only this machine can connect; --everywhere lets others in";
+}
 
 }  // namespace robdef

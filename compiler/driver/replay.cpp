@@ -21,6 +21,7 @@ ExitStatus replay(const Options& options, std::ostream& out, std::ostream& err) 
     how.is_fast = wanted.is_fast;
     how.on_listening = [&](int port) {
       out << "playing the service at port " << port << std::endl;
+      err << place_line(wanted) << std::endl;
     };
     const rr::replay::PlayReport report = rr::replay::play(options.inputs.front(), how);
     for (const std::string& gap : report.gaps) err << "robdef: " << gap << '\n';

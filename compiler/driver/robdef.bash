@@ -19,11 +19,11 @@ _robdef_members() {
 
 _robdef() {
   local word=$2 previous=$3 command=${COMP_WORDS[1]}
-  local reading='--import-path -I --format --no-warning --help'
+  local reading='--import-path -I --format --deny --warn --allow --no-warning --config --no-config --help'
   COMPREPLY=()
   if [ "$COMP_CWORD" = 1 ]; then
     mapfile -t COMPREPLY < <(compgen -W \
-      'generate check describe model view explain inspect record replay bridge ca discover get set call watch connect
+      'generate check format breaking describe model view explain inspect record replay bridge ca discover get set call watch connect
       --help --version' -- "$word")
     return
   fi
@@ -34,7 +34,26 @@ _robdef() {
       return
       ;;
     --format)
+      if [ "$command" = breaking ]; then
+        mapfile -t COMPREPLY < <(compgen -W 'text json github' -- "$word")
+        return
+      fi
       mapfile -t COMPREPLY < <(compgen -W 'text line json' -- "$word")
+      return
+      ;;
+    --category)
+      mapfile -t COMPREPLY < <(compgen -W 'wire source behaviour' -- "$word")
+      return
+      ;;
+    --allow | --warn | --deny)
+      if [ "$command" != breaking ]; then
+        mapfile -t COMPREPLY < <(compgen -W \
+          "$(robdef explain --list 2>/dev/null | awk '$3 == "warning" || $2 == "warning" || !/^R0/ {print $1}')" \
+          -- "$word")
+        return
+      fi
+      mapfile -t COMPREPLY < <(compgen -W \
+        "$(robdef explain --list 2>/dev/null | awk '/^R07/ {print $1}')" -- "$word")
       return
       ;;
     --no-warning)
@@ -49,7 +68,7 @@ _robdef() {
         return
       fi
       ;;&
-    --output | -o | --import-path | -I | --templates)
+    --output | -o | --import-path | -I | --templates | --ca)
       mapfile -t COMPREPLY < <(compgen -d -- "$word")
       return
       ;;
@@ -59,19 +78,22 @@ _robdef() {
         CallbackCallRet WirePacket MemoryRead MemoryReadRet MemoryWrite' -- "$word")
       return
       ;;
-    --depfile | --password-file)
+    --config | --depfile | --password-file | --passphrase-file | --tls-authority | --tls-revocation | --tls-certificate | --tls-key)
       mapfile -t COMPREPLY < <(compgen -f -- "$word")
       return
       ;;
   esac
-  local live='--user --password-file --timeout'
+  local tls='--tls-authority --tls-revocation --tls-certificate --tls-key --require-tls'
+  local live="--user --password-file --timeout $tls"
   if [[ $word == -* ]]; then
     local options
     case $command in
       generate)
-        options="--lang --output -o --templates --list-outputs --depfile --depfile-target $reading" ;;
-      check) options="--strict $reading" ;;
-      view) options="--lang $reading" ;;
+        options="--lang --output -o --templates --rename --list-outputs --depfile --depfile-target $reading" ;;
+      check) options="--strict --lang $reading" ;;
+      format) options="--check --help" ;;
+      breaking) options="--import-path -I --format --category --allow $live --help" ;;
+      view) options="--lang --rename $reading" ;;
       describe) options="$reading $live" ;;
       model) options=$reading ;;
       get) options="--at --count $live --help" ;;
@@ -81,11 +103,13 @@ _robdef() {
       connect) options="$live --help" ;;
       explain) options='--list --json --help' ;;
       inspect) options='--json --entries --path --connection --summary --help' ;;
-      record) options='--connect --listen --everywhere --output -o --drop --help' ;;
-      discover) options='--once --type --format --wait --ipv4 --interface --port --help' ;;
-      bridge) options='--listen --everywhere --help' ;;
+      record) options='--connect --listen --everywhere --output -o --drop --keep-credentials --help' ;;
+      discover) options="--once --type --format --wait --ipv4 --interface --port $tls --help" ;;
+      bridge) options="--listen --everywhere $tls --help" ;;
       replay) options='--connect --listen --everywhere --connection --fast --help' ;;
-      ca) options='--ca --days --help' ;;
+      ca)
+        options='--ca --days --list-days --name --renew --new-key --revoke-old --passphrase --passphrase-file
+          --output -o --json --help' ;;
     esac
     mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")
   elif [ "$command" = explain ]; then
@@ -94,7 +118,7 @@ _robdef() {
   elif [[ $command == @(get|set|call|watch|connect) || $COMP_LINE == *describe*://* ]]; then
     _robdef_members
   elif [ "$command" = ca ] && [ "$COMP_CWORD" = 2 ]; then
-    mapfile -t COMPREPLY < <(compgen -W 'init issue revoke' -- "$word")
+    mapfile -t COMPREPLY < <(compgen -W 'init issue request sign revoke refresh list passphrase' -- "$word")
   elif [ "$command" = bridge ] || [ "$command" = ca ] || [ "$command" = inspect ] || [ "$command" = replay ]; then
     mapfile -t COMPREPLY < <(compgen -f -- "$word")
   else

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "compiler/driver/authority.hpp"
+#include "compiler/driver/breaking.hpp"
 #include "compiler/driver/discover.hpp"
 #include "compiler/driver/explain.hpp"
+#include "compiler/driver/format.hpp"
 #include "compiler/driver/live/commands.hpp"
 #include "compiler/driver/recordings.hpp"
 
@@ -24,13 +26,13 @@ ExitStatus explain(const Options& options, std::ostream& out, std::ostream& err)
     std::string unknown;
     entries = find_entries(options.inputs, unknown);
     if (!unknown.empty()) {
-      err << "robdef: there is no code or rule `" << unknown
+      err << "robdef: there is no code, rule or group `" << unknown
           << "`\n`robdef explain --list` shows all\n";
       return exit_usage;
     }
   }
   out << (options.is_json       ? entry_json(entries)
-          : options.lists_codes ? entry_list(entries)
+          : options.lists_codes ? entry_list(entries) + group_list()
                                 : entry_text(entries));
   return exit_fine;
 }
@@ -50,6 +52,10 @@ ExitStatus answer(std::span<const std::string> arguments, std::string_view impor
   switch (options.command) {
     case Command::explain:
       return explain(options, out, err);
+    case Command::format:
+      return format_files(options, out, err);
+    case Command::breaking:
+      return breaking_changes(options, out, err);
     case Command::inspect:
       return inspect(options, out, err);
     case Command::record:
@@ -70,7 +76,9 @@ ExitStatus answer(std::span<const std::string> arguments, std::string_view impor
     case Command::complete:
       return run_live(options, out, err);
     case Command::describe:
-      if (is_url(options.inputs.front())) return run_live(options, out, err);
+      if (!options.inputs.empty() && is_url(options.inputs.front())) {
+        return run_live(options, out, err);
+      }
       return compile(options, out, err);
     default:
       return compile(options, out, err);

@@ -14,9 +14,9 @@ definition
     (recordBlock | objectBlock | optionLine)* EOF
   ;
 
-enumBlock : enumHeader enumLine* endLine ;
+enumBlock : enumHeader (joinedEnumLine* enumLine)? endLine ;
 
-recordBlock : recordHeader (optionLine | constantLine | fieldLine)* endLine ;
+recordBlock : recordHeader (optionLine | constantLine)* (optionLine | fieldLine)* endLine ;
 
 objectBlock
   : objectHeader (optionLine | implementsLine | constantLine)* (optionLine | memberLine)* endLine
@@ -55,6 +55,9 @@ recordHeader
 objectHeader : OBJECT NAME NL ;
 
 endLine : END BLOCK_KIND? NL ;
+
+// All lines of an enum but its last.
+joinedEnumLine : enumValue (COMMA enumValue)* COMMA+ NL ;
 
 enumLine : enumValue (COMMA enumValue)* COMMA* NL ;
 

@@ -29,6 +29,8 @@ void check(const Model& model, Report& report) {
     rules::modifier_arguments_are_constants(*definition, report);      // W3
   }
   rules::implements_are_complete(model, syntax_errors, report);  // V24-V27
+  // With errors, findings that are allowed may be missing.
+  if (report.errors() == 0) report.report_unused_allows();
 }
 
 void check_strictly(const Model& model, Report& report) {

@@ -18,6 +18,9 @@
 namespace robdef::model::rules {
 namespace {
 
+// Everything that is missing is named, with what to add, unless that gets too much (Report).
+constexpr std::size_t naming_cost = 300;
+
 class ImplementsRules {
  public:
   ImplementsRules(const Model& model, const SyntaxErrors& syntax_errors, Report& report)
@@ -53,16 +56,19 @@ class ImplementsRules {
 
   void report_cycles(const Graph& graph);
   void check_object(const Object& object, const std::vector<bool>& is_cyclic);
+  const std::vector<const Object*>& firsts_of(const Object& object);
   bool is_within_reach(const Object& object, std::size_t line);
   void check_listed(const Object& object, std::size_t line,
                     std::unordered_set<const Object*>& known);
-  void check_members(const Object& object, std::size_t line,
+  using Members = std::unordered_map<std::string_view, const Member*>;
+  void check_members(const Object& object, const Members& own, std::size_t line,
                      std::unordered_set<std::string_view>& reported);
 
   const SyntaxErrors& syntax_errors_;
   Report& report_;
   std::vector<const Object*> objects_;
   std::unordered_map<const Object*, std::size_t> number_;
+  std::unordered_map<const Object*, std::vector<const Object*>> firsts_;
 };
 
 // V25
@@ -85,19 +91,33 @@ void ImplementsRules::check_object(const Object& object, const std::vector<bool>
   std::unordered_set<const Object*> listed(object.implements.begin(), object.implements.end());
   listed.insert(&object);
   std::unordered_set<std::string_view> reported;
+  Members own;
+  for (const Member& member : object.members) own.try_emplace(member.name, &member);
   for (std::size_t line = 0; line < object.implements.size(); ++line) {
     if (is_cyclic[number_.at(object.implements[line])]) continue;
     if (!is_within_reach(object, line)) continue;
     check_listed(object, line, listed);
-    check_members(object, line, reported);
+    check_members(object, own, line, reported);
   }
+}
+
+// Of each definition that an object implements something of, the first such.
+const std::vector<const Object*>& ImplementsRules::firsts_of(const Object& object) {
+  const auto [place, is_new] = firsts_.try_emplace(&object);
+  if (is_new) {
+    std::unordered_set<const Definition*> definitions;
+    for (const Object* above : object.implements) {
+      if (definitions.insert(above->definition).second) place->second.push_back(above);
+    }
+  }
+  return place->second;
 }
 
 // V24: whatever the implemented object implements must be nameable here.
 bool ImplementsRules::is_within_reach(const Object& object, std::size_t line) {
   const Object& base = *object.implements[line];
   const std::vector<const Definition*>& imports = object.definition->imports;
-  for (const Object* above : base.implements) {
+  for (const Object* above : firsts_of(base)) {
     const bool is_nameable =
         above->definition == object.definition ||
         std::find(imports.begin(), imports.end(), above->definition) != imports.end();
@@ -119,7 +139,9 @@ void ImplementsRules::check_listed(const Object& object, std::size_t line,
   const Object& base = *object.implements[line];
   std::vector<std::string> missing;
   for (const Object* above : base.implements) {
-    if (known.insert(above).second) missing.push_back(written(*above, *object.definition));
+    if (!known.insert(above).second) continue;
+    missing.push_back(written(*above, *object.definition));
+    if (!report_.may_suggest(1, naming_cost)) break;
   }
   if (missing.empty()) return;
   Diagnostic& diagnostic =
@@ -225,18 +247,18 @@ class Difference {
 };
 
 // V27
-void ImplementsRules::check_members(const Object& object, std::size_t line,
+void ImplementsRules::check_members(const Object& object, const Members& own, std::size_t line,
                                     std::unordered_set<std::string_view>& reported) {
   const Object& base = *object.implements[line];
   const Definition& file = *object.definition;
-  std::unordered_map<std::string_view, const Member*> own;
-  for (const Member& member : object.members) own.try_emplace(member.name, &member);
   std::vector<const Member*> missing;
   for (const Member& member : base.members) {
     const auto found = own.find(member.name);
     if (found == own.end()) {
       if (syntax_errors_.mention(file, member.name)) continue;
-      if (reported.insert(member.name).second) missing.push_back(&member);
+      if (!reported.insert(member.name).second) continue;
+      missing.push_back(&member);
+      if (!report_.may_suggest(1, naming_cost)) break;
       continue;
     }
     const Difference difference(*found->second, member, file);

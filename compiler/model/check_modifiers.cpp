@@ -1,27 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rules on versions and modifiers: V06, W1, W2, W3.
+// Rules on versions and modifiers: V06, W1, W2, W3, R0613.
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
-#include "compiler/diagnostics/spelling.hpp"
 #include "compiler/model/phrases.hpp"
 #include "compiler/model/resolve.hpp"
 #include "compiler/model/rules.hpp"
+#include "compiler/syntax/words.hpp"
 
 namespace robdef::model::rules {
 namespace {
 
 constexpr ast::Version first_with_features{{0, 9, 0, 0}};
-
-// All modifiers of the language, for spelling help.
-const std::array<std::string_view, 7> all_modifiers{
-    "readonly", "writeonly", "unreliable", "nolock", "nolockread", "perclient", "urgent"};
 
 // Calls `visit(modifiers, kind, constants of the block)` for each field and member. A field knows
 // the modifiers of a property, without effect.
@@ -42,7 +39,8 @@ void each_modifier_list(const Definition& definition, Visitor visit) {
 }
 
 bool is_language_word(std::string_view name) {
-  return std::find(all_modifiers.begin(), all_modifiers.end(), name) != all_modifiers.end();
+  const auto& words = syntax::modifier_words();
+  return std::find(words.begin(), words.end(), name) != words.end();
 }
 
 const Modifier* find(const std::vector<Modifier>& modifiers, std::string_view name) {
@@ -86,6 +84,22 @@ void report_feature(Span span, const std::string& feature, const Definition& def
 void report_statement(Span name, std::string_view keyword, const Definition& definition,
                       Report& report) {
   report_feature(keyword_before(definition, name, keyword), quoted(keyword), definition, report);
+}
+
+// A slip would change what is generated, so it is an error; a word of one's own is not. What a peer
+// sends is never refused for either.
+void report_unknown(const Modifier& modifier, Report& report) {
+  const std::string_view near = report.origin() == Origin::user && modifier.arguments.empty()
+                                    ? syntax::nearest_modifier(modifier.name)
+                                    : std::string_view();
+  const std::string message = "unknown modifier " + quoted(modifier.name);
+  if (near.empty()) {
+    report.add(Code::R0610, modifier.span, message).label("has no effect");
+  } else {
+    report.add(Code::R0613, modifier.span, message)
+        .label("would have no effect")
+        .help("write " + quoted(near));
+  }
 }
 
 bool is_name(std::string_view argument) {
@@ -133,12 +147,7 @@ void modifiers_are_known(const Definition& definition, Report& report) {
         report.add(Code::R0610, modifier.span, quoted(modifier.name) + of_kind)
             .label("belongs to other kinds of members");
       } else {
-        Diagnostic& diagnostic =
-            report.add(Code::R0610, modifier.span, "unknown modifier " + quoted(modifier.name));
-        diagnostic.label("has no effect");
-        const std::string_view near =
-            nearest(modifier.name, {all_modifiers.begin(), all_modifiers.end()});
-        if (!near.empty()) diagnostic.help(quoted(near) + " is close");
+        report_unknown(modifier, report);
       }
     }
   });
@@ -152,11 +161,11 @@ void modifiers_do_not_contradict(const Definition& definition, Report& report) {
     if (knows_modifier(kind, "nolockread")) {
       report_contradiction(modifiers, "nolock", "nolockread", report);
     }
+    std::unordered_map<std::string_view, const Modifier*> firsts;
     for (const Modifier& modifier : modifiers) {
-      const Modifier* first = find(modifiers, modifier.name);
-      const bool is_repeated = first != nullptr && first != &modifier &&
-                               modifier.arguments.empty() && knows_modifier(kind, modifier.name);
-      if (!is_repeated) continue;
+      if (!modifier.arguments.empty() || !knows_modifier(kind, modifier.name)) continue;
+      const Modifier* const first = firsts.try_emplace(modifier.name, &modifier).first->second;
+      if (first == &modifier) continue;
       report.add(Code::R0611, modifier.span, quoted(modifier.name) + " is repeated")
           .label("means nothing more")
           .also(first->span, "first given here")
@@ -166,10 +175,14 @@ void modifiers_do_not_contradict(const Definition& definition, Report& report) {
 }
 
 void modifier_arguments_are_constants(const Definition& definition, Report& report) {
+  std::unordered_map<const void*, std::unordered_set<std::string_view>> names;  // of each block
   each_modifier_list(definition, [&](const auto& modifiers, MemberKind, const auto& constants) {
-    const auto is_constant = [&constants](std::string_view name) {
-      return std::any_of(constants.begin(), constants.end(),
-                         [name](const Constant& constant) { return constant.name == name; });
+    const auto is_constant = [&](std::string_view name) {
+      const auto [block, is_new] = names.try_emplace(&constants);
+      if (is_new) {
+        for (const Constant& constant : constants) block->second.insert(constant.name);
+      }
+      return block->second.contains(name);
     };
     for (const Modifier& modifier : modifiers) {
       if (is_language_word(modifier.name)) continue;

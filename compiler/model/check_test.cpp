@@ -4,6 +4,8 @@
 #include <string>
 
 #include "compiler/model/compiled.hpp"
+#include "compiler/model/resolve.hpp"
+#include "compiler/syntax/read.hpp"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
@@ -83,13 +85,34 @@ TEST(Check, AMemoryOfStructArraysIsReportedOnce) {
 
 TEST(Check, AModifierOfAnotherKindIsAWarning) {
   const Compiled result = compiled_lines(
-      "object O\nfunction void f() [readonly]\nproperty double p [redonly]\n"
-      "property double q [urgent(1)]\nend\n");
-  EXPECT_THAT(result.codes(), ElementsAre("R0610", "R0610", "R0610"));
+      "object O\nfunction void f() [readonly]\nproperty double p [shiny]\n"
+      "property double q [urgent(1)]\nproperty double r [redonly(1)]\nend\n");
+  EXPECT_THAT(result.codes(), ElementsAre("R0610", "R0610", "R0610", "R0610"));
   EXPECT_FALSE(result.report->has_errors());
   EXPECT_EQ(message(result), "`readonly` has no effect on a function");
-  EXPECT_EQ(result.help(1), "`readonly` is close");
   EXPECT_EQ(message(result, 2), "`urgent` takes no arguments");
+}
+
+TEST(Check, AModifierThatIsCloseToOneOfTheLanguageIsAnError) {
+  const Compiled result = compiled_lines(
+      "object O\nproperty double p [redonly]\nproperty double q [ReadOnly, no_lock]\nend\n"
+      "struct S\nfield double f [urgnt]\nend\n");
+  EXPECT_THAT(result.errors(), ElementsAre("R0613", "R0613", "R0613", "R0613"));
+  EXPECT_EQ(result.help(0), "write `readonly`");
+  EXPECT_EQ(result.help(2), "write `nolock`");
+}
+
+TEST(Check, ATextFromAPeerIsNeverRefusedForAModifier) {
+  Sources sources;
+  Report report(Origin::network);
+  const ast::Program program = ast::read_texts(
+      {{"a", "service a\nstdver 0.10\nobject O\nproperty double p [readonli]\nend\n", false}},
+      sources, report);
+  const Model model = resolve(program, sources, report);
+  check(model, report);
+  EXPECT_FALSE(report.has_errors());
+  ASSERT_EQ(report.sorted().size(), 1U);
+  EXPECT_EQ(report.sorted().front()->code(), Code::R0610);
 }
 
 TEST(Check, RepeatedAndContradictingModifiersAreWarnings) {

@@ -170,6 +170,8 @@ TEST(Corpus, EachCodeHasAnExampleThatIsNamedAfterIt) {
     collect_shown(file, "", outcome.report, shown);
   }
   for (const CodeEntry& entry : code_entries()) {
+    if (entry.name.starts_with("R07")) continue;  // two versions, shown in compiler/breaking
+    if (entry.name.starts_with("R08")) continue;  // project files, shown in compiler/project
     if (entry.name.starts_with("R09")) continue;  // limits of a target, shown beside its backend
     EXPECT_TRUE(shown.contains(entry.name)) << entry.name << ' ' << entry.rule;
   }

@@ -9,11 +9,12 @@
 #include <vector>
 
 #include "compiler/output/json.hpp"
+#include "compiler/syntax/parse.hpp"
 
 namespace robdef::model {
 namespace {
 
-constexpr int model_version = 1;
+constexpr int model_version = 2;
 
 std::string_view name_of(ArrayForm form) {
   switch (form) {
@@ -100,7 +101,9 @@ struct BaseKind {
 class Dump {
  public:
   Dump(const Sources& sources, Detail detail)
-      : sources_(sources), is_full_(detail == Detail::full) {}
+      : sources_(sources),
+        is_full_(detail == Detail::full),
+        is_documented_(detail != Detail::shape) {}
 
   std::string run(const Model& model) {
     json_.begin_object().member("model_version", model_version);
@@ -121,11 +124,28 @@ class Dump {
     list(key, items, [this](const std::string& text) { json_.value(text); });
   }
 
-  void origin(const std::string& documentation, Span span) {
-    if (!is_full_) return;
-    json_.member("documentation", documentation);
-    json_.member("line", sources_[span.source].position(span.begin).line);
+  void documentation(const std::string& text) {
+    if (is_documented_) json_.member("documentation", text);
   }
+
+  void offsets(std::uint32_t begin, std::uint32_t end) {
+    json_.begin_array().value(begin).value(end).end_array();
+  }
+
+  void place(std::string_view key, Span span) {
+    if (!is_full_) return;
+    json_.key(key);
+    offsets(span.begin, span.end);
+  }
+
+  void origin(const std::string& text, Span span) {
+    documentation(text);
+    if (!is_full_) return;
+    json_.member("line", sources_[span.source].position(span.begin).line);
+    place("span", span);
+  }
+
+  void lines(const Definition& definition);
 
   void definition(const Definition& definition);
   void declarations(const Definition& definition);
@@ -147,6 +167,7 @@ class Dump {
 
   const Sources& sources_;
   bool is_full_;
+  bool is_documented_;
   JsonWriter json_;
 };
 
@@ -159,10 +180,14 @@ void Dump::definition(const Definition& definition) {
   }
   json_.member("version", has_version ? text_of(definition.version) : std::string());
   json_.member("version_spelling", name_of(definition.version_spelling));
-  if (is_full_) json_.member("documentation", definition.documentation);
+  place("version_span", definition.version_span);
+  documentation(definition.documentation);
+  place("span", definition.span);
   list("imports", definition.imports, [this](const Definition* one) { json_.value(one->name); });
   list("aliases", definition.aliases, [this](const Alias& alias) {
-    json_.begin_object().member("name", alias.name).member("of", alias.qualified_name).end_object();
+    json_.begin_object().member("name", alias.name).member("of", alias.qualified_name);
+    place("span", alias.span);
+    json_.end_object();
   });
   texts("options", definition.options);
   constants(definition.constants);
@@ -176,11 +201,29 @@ void Dump::definition(const Definition& definition) {
   records("pods", definition, RecordKind::pod);
   records("namedarrays", definition, RecordKind::namedarray);
   list("objects", definition.objects, [this](const Object& one) { object(one); });
+  if (is_documented_) declarations(definition);
   if (is_full_) {
-    declarations(definition);
     json_.member("text", definition.text);
+    lines(definition);
   }
   json_.end_object();
+}
+
+// Read once more: models that are not printed need no room for them.
+void Dump::lines(const Definition& definition) {
+  Report unused;
+  const ast::File file = ast::parse(sources_[definition.source], definition.source, unused);
+  list("lines", file.written.lines, [this, &file](const ast::Line& line) {
+    json_.begin_object().member("kind", ast::name_of(line.kind));
+    json_.member("is_in_block", line.is_in_block).key("span");
+    offsets(line.begin, line.end);
+    list("tokens", file.written.tokens_of(line), [this](const ast::Token& token) {
+      json_.begin_object().member("kind", ast::name_of(token.kind)).key("span");
+      offsets(token.begin, token.end);
+      json_.end_object();
+    });
+    json_.end_object();
+  });
 }
 
 void Dump::declarations(const Definition& definition) {
@@ -208,7 +251,9 @@ void Dump::constant(const Constant& constant) {
     json_.begin_array();
     for (const auto& field : std::get<std::vector<StructValueField>>(constant.value)) {
       json_.begin_object().member("field", field.field);
-      json_.member("constant", field.constant->name).end_object();
+      json_.member("constant", field.constant->name);
+      place("span", field.span);
+      json_.end_object();
     }
     json_.end_array();
   }
@@ -221,7 +266,8 @@ void Dump::enumeration(const Enum& enumeration) {
   list("values", enumeration.values, [this](const EnumValue& value) {
     json_.begin_object().member("name", value.name).member("value", value.value);
     json_.member("is_hexadecimal", value.is_hexadecimal);
-    if (is_full_) json_.member("documentation", value.documentation);
+    documentation(value.documentation);
+    place("span", value.span);
     json_.end_object();
   });
   origin(enumeration.documentation, enumeration.span);
@@ -295,6 +341,7 @@ void Dump::member(const Member& member) {
 void Dump::parameter(const Parameter& parameter) {
   json_.begin_object().member("name", parameter.name).key("type");
   type(parameter.type);
+  place("span", parameter.span);
   json_.end_object();
 }
 
@@ -302,6 +349,7 @@ void Dump::modifiers(const std::vector<Modifier>& modifiers) {
   list("modifiers", modifiers, [this](const Modifier& modifier) {
     json_.begin_object().member("name", modifier.name);
     texts("arguments", modifier.arguments);
+    place("span", modifier.span);
     json_.end_object();
   });
 }
@@ -326,7 +374,9 @@ void Dump::type(const Type& type) {
   json_.member("kind", std::visit(BaseKind{}, type.base)).member("name", base.text());
   json_.member("array", name_of(type.array)).key("dimensions").begin_array();
   for (const std::uint32_t dimension : type.dimensions) json_.value(dimension);
-  json_.end_array().member("container", name_of(type.container)).end_object();
+  json_.end_array().member("container", name_of(type.container));
+  place("span", type.span);
+  json_.end_object();
 }
 
 }  // namespace

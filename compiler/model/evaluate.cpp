@@ -113,6 +113,8 @@ class Constants {
         report_.add(Code::R0305, name.span, "unknown constant " + quoted(name.text));
     const std::string_view scope = is_block_ ? "block" : "file";
     diagnostic.label("no constant of this " + std::string(scope) + " has this name");
+    const std::size_t count = constants_.size() + definition_.constants.size();
+    if (!report_.may_suggest(count, comparisons(name.text))) return;
     if (is_block_ && suggest_file_constant(diagnostic, name.text)) return;
     std::vector<std::string_view> candidates;
     for (const Constant& constant : constants_) candidates.push_back(constant.name);

@@ -135,15 +135,22 @@ void Graph::remove(const Edge& edge) {
 }
 
 std::vector<std::vector<Graph::Edge>> Graph::cycles() const {
+  // Each cycle costs a look at the whole graph: of a large one not all are told.
+  constexpr std::size_t most_work = 4'000'000;
+  std::size_t cost = size() + 1;
+  for (const std::vector<Edge>& edges : edges_) cost += edges.size();
+  const std::size_t most = std::max<std::size_t>(1, most_work / cost);
+
   std::vector<std::vector<Edge>> found;
   Graph rest = *this;
-  while (true) {
+  while (found.size() < most) {
     const std::vector<bool> is_cyclic = rest.cyclic();
     const auto start = std::find(is_cyclic.begin(), is_cyclic.end(), true);
     if (start == is_cyclic.end()) return found;
     found.push_back(rest.shortest_cycle(static_cast<std::size_t>(start - is_cyclic.begin())));
     rest.remove(found.back().front());
   }
+  return found;
 }
 
 }  // namespace robdef::model

@@ -27,7 +27,8 @@ class Graph {
   /// For each node, whether it is on a cycle.
   [[nodiscard]] std::vector<bool> cyclic() const;
   /// Enough cycles to break all by breaking the first edge of each, every one a shortest cycle that
-  /// begins at its smallest node, in ascending order of these.
+  /// begins at its smallest node, in ascending order of these. Of a graph so large that looking for
+  /// all would take the square of its size, the first ones.
   [[nodiscard]] std::vector<std::vector<Edge>> cycles() const;
 
  private:

@@ -44,7 +44,7 @@ class ImportRules {
   Definition& definition(std::size_t index) const { return *model_.definitions()[index]; }
 
   void resolve_import(const ast::Import& import, Definition& user);
-  void report_missing_import(const ast::Import& import);
+  void report_missing_import(const ast::Import& import, const Definition& user);
   void check_import_version(const ast::Import& import, const Definition& user,
                             const Definition& imported);
   void check_import_cycles();
@@ -60,7 +60,7 @@ class ImportRules {
 void ImportRules::resolve_import(const ast::Import& import, Definition& user) {
   const Definition* imported = model_.find(import.name.text);
   if (imported == nullptr) {
-    if (!import.is_reported) report_missing_import(import);
+    if (!import.is_reported) report_missing_import(import, user);
     return;
   }
   if (imported == &user) return;  // a circle of one
@@ -71,13 +71,19 @@ void ImportRules::resolve_import(const ast::Import& import, Definition& user) {
 }
 
 // V03
-void ImportRules::report_missing_import(const ast::Import& import) {
+void ImportRules::report_missing_import(const ast::Import& import, const Definition& user) {
   const std::string& name = import.name.text;
   const std::string expected_file = name + ".robdef";
   std::vector<std::string_view> loaded;
   const Definition* in_its_file = nullptr;
+  if (!report_.may_suggest(model_.definitions().size(), comparisons(name))) {
+    report_.add(Code::R0505, import.name.span, "the import " + quoted(name) + " is not found")
+        .label("no definition of this name is loaded");
+    return;
+  }
   for (const auto& definition : model_.definitions()) {
-    if (!definition->name.empty()) loaded.push_back(definition->name);
+    const bool is_importable = !definition->name.empty() && definition.get() != &user;
+    if (is_importable) loaded.push_back(definition->name);
     const Source& source = sources_[definition->source];
     if (file_name(source.name()) == expected_file) in_its_file = definition.get();
   }
@@ -87,7 +93,10 @@ void ImportRules::report_missing_import(const ast::Import& import) {
   diagnostic.label("no definition of this name is loaded");
   if (in_its_file != nullptr) {
     diagnostic.also(in_its_file->span, "the file of that name has another service name");
-    diagnostic.help("import " + quoted(in_its_file->name) + ", or correct its service line");
+    diagnostic.help(in_its_file == &user
+                        ? "write " + quoted("service " + name) +
+                              " if this file is meant, and no import"
+                        : "import " + quoted(in_its_file->name) + ", or correct its service line");
     return;
   }
   const std::string_view near = nearest(name, loaded);

@@ -111,7 +111,8 @@ struct Constant {
   ast::ConstantValue written;  ///< the literal: evaluate reads it, print repeats its numbers
   bool is_option = false;      ///< in the old spelling `option constant`
   std::string documentation;
-  Span span;  ///< of the name
+  Span span;                ///< of the name
+  std::string code_name{};  ///< rename.hpp
 };
 
 struct Exception {
@@ -119,6 +120,7 @@ struct Exception {
   const Definition* definition = nullptr;
   std::string documentation;
   Span span;
+  std::string code_name{};  ///< rename.hpp
 };
 
 struct EnumValue {
@@ -128,6 +130,7 @@ struct EnumValue {
   std::optional<ast::NumberLiteral> written;  ///< absent: the previous plus one
   std::string documentation;
   Span span;
+  std::string code_name{};  ///< rename.hpp
 };
 
 struct Enum {
@@ -136,6 +139,7 @@ struct Enum {
   std::vector<EnumValue> values;
   std::string documentation;
   Span span;
+  std::string code_name{};  ///< rename.hpp
 };
 
 /// An unknown modifier is kept: it compares in implements (V27) and shows in `describe`.
@@ -155,6 +159,7 @@ struct Field {
   std::vector<Modifier> modifiers;
   std::string documentation;
   Span span;
+  std::string code_name{};  ///< rename.hpp
 };
 
 /// A struct, pod or namedarray.
@@ -176,6 +181,7 @@ struct Record {
   std::uint64_t packed_size = 0;
   /// struct: may contain itself, directly or through other structs and containers.
   bool is_recursive = false;
+  std::string code_name{};  ///< rename.hpp
 
   /// `<service>.<name>`, as it stands in ElementTypeName.
   [[nodiscard]] std::string qualified_name() const;
@@ -197,6 +203,7 @@ struct Parameter {
   std::string name;
   Type type;
   Span span;
+  std::string code_name{};  ///< rename.hpp
 };
 
 /// How a function iterates (06, section 6).
@@ -221,6 +228,7 @@ struct Member {
   Access access;
   std::string documentation;
   Span span;
+  std::string code_name{};  ///< rename.hpp
 };
 
 struct Object {
@@ -233,6 +241,7 @@ struct Object {
   std::vector<std::string> options;  ///< as in Definition
   std::string documentation;
   Span span;
+  std::string code_name{};  ///< rename.hpp
 
   [[nodiscard]] std::string qualified_name() const;
 };

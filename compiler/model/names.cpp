@@ -217,6 +217,7 @@ void Names::report_not_imported(const Scope& scope, const ast::Name& name, const
 // A plain name that another definition declares: the import, or the qualification, was forgotten.
 bool Names::suggest_elsewhere(Diagnostic& diagnostic, const Scope& scope, std::string_view name,
                               const Wanted& wanted) const {
+  if (!report_.may_suggest(scope.import_order.size() + order_.size())) return false;
   const auto declares = [&](const Definition* definition) {
     if (definition == nullptr || definition->name.empty()) return false;
     const auto& declared = scopes_.at(definition).declared;
@@ -247,6 +248,8 @@ void Names::suggest_near(Diagnostic& diagnostic, const Scope& scope, std::string
       return;
     }
   }
+  const std::size_t count = scope.alias_order.size() + scope.order.size() + built_in.size();
+  if (!report_.may_suggest(count, comparisons(name))) return;
   std::vector<std::string_view> candidates;
   for (const std::string_view alias : scope.alias_order) {
     if (wanted.fits(*scope.aliases.at(alias))) candidates.push_back(alias);
@@ -267,6 +270,7 @@ void Names::suggest_near(Diagnostic& diagnostic, const Scope& scope, std::string
 
 void Names::suggest_declared(Diagnostic& diagnostic, const Scope& scope, std::string_view name,
                              bool (*fits)(const Named&)) const {
+  if (!report_.may_suggest(scope.order.size(), comparisons(name))) return;
   std::vector<std::string_view> candidates;
   for (const std::string_view candidate : scope.order) {
     if (fits(scope.declared.at(candidate))) candidates.push_back(candidate);
@@ -277,6 +281,8 @@ void Names::suggest_declared(Diagnostic& diagnostic, const Scope& scope, std::st
 
 void Names::suggest_import(Diagnostic& diagnostic, const Scope& scope,
                            std::string_view service) const {
+  const std::size_t count = order_.size() + 2 * scope.import_order.size();
+  if (!report_.may_suggest(count, comparisons(service))) return;
   for (const Definition* definition : order_) {
     if (definition->name != service) continue;
     diagnostic.help("add " + quoted("import " + std::string(service)));

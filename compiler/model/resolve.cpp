@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -68,7 +69,9 @@ class Resolver {
   Type value_type(const ast::TypeRef& written, const Definition& user);
   Field field(const ast::Field& written, const Record& record);
   Parameter parameter(const ast::Parameter& written, const Definition& user);
-  Member member(const ast::Member& written, const ast::Object& object, const Definition& user);
+  Member member(const ast::Member& written,
+                const std::unordered_set<std::string_view>& unreliable_pipes,
+                const Definition& user);
   void resolve_reference(const ast::TypeRef& written, const Definition& user, Member& member);
   void resolve_signature(const ast::Member& written, const Definition& user, Member& member);
   void resolve_record(const ast::Record& written, Record& record);
@@ -179,23 +182,28 @@ void Resolver::resolve_record(const ast::Record& written, Record& record) {
 }
 
 void Resolver::resolve_object(const ast::Object& written, Object& object) {
+  std::unordered_set<const Object*> known;
   for (const ast::Implements& line : written.implements) {
     const Object* base = names_.object(*object.definition, line.name, Code::R0606);
-    if (base == nullptr) continue;
-    if (std::find(object.implements.begin(), object.implements.end(), base) !=
-        object.implements.end()) {
-      continue;
-    }
+    if (base == nullptr || !known.insert(base).second) continue;
     object.implements.push_back(base);
     object.implements_spans.push_back(line.name.span);
   }
   object.members.reserve(written.members.size());
+  // The old spelling: `option pipe NAME unreliable`.
+  std::unordered_set<std::string_view> unreliable_pipes;
+  for (const ast::Option& option : written.options) {
+    const std::vector<std::string_view> words = words_of(option.text);
+    const bool is_one = words.size() == 3 && words[0] == "pipe" && words[2] == "unreliable";
+    if (is_one) unreliable_pipes.insert(words[1]);
+  }
   for (const ast::Member& line : written.members) {
-    object.members.push_back(member(line, written, *object.definition));
+    object.members.push_back(member(line, unreliable_pipes, *object.definition));
   }
 }
 
-Member Resolver::member(const ast::Member& written, const ast::Object& object,
+Member Resolver::member(const ast::Member& written,
+                        const std::unordered_set<std::string_view>& unreliable_pipes,
                         const Definition& user) {
   Member member;
   member.kind = written.kind;
@@ -225,12 +233,7 @@ Member Resolver::member(const ast::Member& written, const ast::Object& object,
       break;
   }
   if (written.kind == MemberKind::pipe) {
-    // The old spelling: `option pipe NAME unreliable`.
-    for (const ast::Option& option : object.options) {
-      const bool is_meant =
-          words_of(option.text) == std::vector<std::string_view>{"pipe", member.name, "unreliable"};
-      if (is_meant) member.access.is_unreliable = true;
-    }
+    if (unreliable_pipes.contains(member.name)) member.access.is_unreliable = true;
   }
   return member;
 }

@@ -103,6 +103,11 @@ TEST(Resolve, AMissingImportSilencesEverythingThatNeedsIt) {
   EXPECT_EQ(result.marked(0), "example.nothere");
 }
 
+TEST(Resolve, HelpForAMissingImportDoesNotNameTheFileItself) {
+  EXPECT_EQ(compiled({"service example.mount\nimport example.mounts\n"}).help(0),
+            "name the file of the definition, or the folder of `example.mounts.robdef` with -I");
+}
+
 TEST(Resolve, AnUnknownAliasIsReportedAtTheUsingLineOnly) {
   const Compiled result = compiled(
       {user_file("import example.base\nusing example.base.Pont\nobject O\nproperty Pont a\nend\n"),

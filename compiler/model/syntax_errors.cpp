@@ -10,15 +10,6 @@
 namespace robdef::model {
 namespace {
 
-bool has_word(std::string_view text, std::string_view word) {
-  for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) {
-    const std::size_t end = at + word.size();
-    const bool begins = at == 0 || !syntax::is_word_character(text[at - 1]);
-    if (begins && (end == text.size() || !syntax::is_word_character(text[end]))) return true;
-  }
-  return false;
-}
-
 // The whole lines on which the span lies.
 std::string_view lines_of(std::string_view text, Span span) {
   const std::size_t first = std::min<std::size_t>(span.begin, text.size());
@@ -30,6 +21,16 @@ std::string_view lines_of(std::string_view text, Span span) {
   return text.substr(begin, end == text.npos ? text.npos : end - begin);
 }
 
+// The words of a text, each once.
+void add_words(std::string_view text, std::unordered_set<std::string_view>& words) {
+  std::size_t begin = 0;
+  for (std::size_t at = 0; at <= text.size(); ++at) {
+    if (at < text.size() && syntax::is_word_character(text[at])) continue;
+    if (at > begin) words.insert(text.substr(begin, at - begin));
+    begin = at + 1;
+  }
+}
+
 }  // namespace
 
 SyntaxErrors::SyntaxErrors(const Report& report) {
@@ -39,19 +40,31 @@ SyntaxErrors::SyntaxErrors(const Report& report) {
     const bool is_syntax = !rule.empty() && (rule.front() == 'L' || rule.front() == 'P');
     if (diagnostic->severity() != Severity::error || !is_syntax) continue;
     const Span span = diagnostic->primary().span;
-    spans_[static_cast<std::uint32_t>(span.source)].push_back(span);
+    files_[static_cast<std::uint32_t>(span.source)].spans.push_back(span);
   }
 }
 
 bool SyntaxErrors::any_in(const Definition& definition) const {
-  return spans_.contains(static_cast<std::uint32_t>(definition.source));
+  return files_.contains(static_cast<std::uint32_t>(definition.source));
 }
 
 bool SyntaxErrors::mention(const Definition& definition, std::string_view word) const {
-  const auto found = spans_.find(static_cast<std::uint32_t>(definition.source));
-  if (found == spans_.end() || word.empty()) return false;
-  return std::any_of(found->second.begin(), found->second.end(),
-                     [&](Span span) { return has_word(lines_of(definition.text, span), word); });
+  const auto found = files_.find(static_cast<std::uint32_t>(definition.source));
+  if (found == files_.end() || word.empty()) return false;
+  File& file = found->second;
+  if (!file.words) {
+    std::unordered_set<std::string_view>& words = file.words.emplace();
+    std::string_view before;
+    for (const Span span : file.spans) {
+      const std::string_view lines = lines_of(definition.text, span);
+      if (lines.data() != before.data()) add_words(lines, words);
+      before = lines;
+    }
+  }
+  std::unordered_set<std::string_view> parts;
+  add_words(word, parts);
+  return std::all_of(parts.begin(), parts.end(),
+                     [&](std::string_view part) { return file.words->contains(part); });
 }
 
 }  // namespace robdef::model

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "compiler/diagnostics/report.hpp"
@@ -18,11 +20,16 @@ class SyntaxErrors {
 
   /// Whether anything in the definition's file could not be parsed.
   [[nodiscard]] bool any_in(const Definition& definition) const;
-  /// Whether a line that could not be parsed holds the word.
+  /// Whether lines that could not be parsed hold the word, or the parts of a qualified name. Not
+  /// for several threads at once.
   [[nodiscard]] bool mention(const Definition& definition, std::string_view word) const;
 
  private:
-  std::unordered_map<std::uint32_t, std::vector<Span>> spans_;
+  struct File {
+    std::vector<Span> spans;
+    std::optional<std::unordered_set<std::string_view>> words;  // on their lines; when first asked
+  };
+  mutable std::unordered_map<std::uint32_t, File> files_;
 };
 
 }  // namespace robdef::model

@@ -6,6 +6,8 @@
 #include <system_error>
 #include <utility>
 
+#include "compiler/output/pending_files.hpp"
+
 namespace robdef {
 namespace {
 
@@ -21,45 +23,6 @@ bool holds(const fs::path& file, std::string_view content) {
   in.read(there.data(), static_cast<std::streamsize>(there.size()));
   return in && there == content;
 }
-
-/// Files written beside their places. Those that were not moved are removed at the end.
-class Pending {
- public:
-  Pending() = default;
-  Pending(const Pending&) = delete;
-  Pending& operator=(const Pending&) = delete;
-  ~Pending() {
-    std::error_code ignored;
-    for (const auto& [temporary, target] : files_) fs::remove(temporary, ignored);
-  }
-
-  /// Empty when it went well.
-  std::string write(const fs::path& target, std::string_view content) {
-    std::error_code error;
-    fs::create_directories(target.parent_path(), error);
-    if (error) return target.parent_path().string() + ": " + error.message();
-    if (fs::is_directory(target, error)) return target.string() + ": is a folder";
-    const fs::path temporary = target.string() + ".robdef-new";
-    files_.emplace_back(temporary, target);
-    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-    out.write(content.data(), static_cast<std::streamsize>(content.size()));
-    out.close();
-    return out ? std::string() : target.string() + ": cannot be written";
-  }
-
-  std::string move_all() {
-    for (const auto& [temporary, target] : files_) {
-      std::error_code error;
-      fs::rename(temporary, target, error);
-      if (error) return target.string() + ": " + error.message();
-    }
-    files_.clear();
-    return {};
-  }
-
- private:
-  std::vector<std::pair<fs::path, fs::path>> files_;
-};
 
 }  // namespace
 
@@ -79,9 +42,8 @@ void FileSet::add_draft(std::string path, std::string content) {
   drafts_.insert(std::move(normal));
 }
 
-FileSet::Written FileSet::write(const std::filesystem::path& folder) const {
+FileSet::Written FileSet::prepare(const fs::path& folder, PendingFiles& pending) const {
   Written written;
-  Pending pending;
   for (const auto& [path, content] : files_) {
     const fs::path target = folder / path;
     std::error_code error;
@@ -94,7 +56,15 @@ FileSet::Written FileSet::write(const std::filesystem::path& folder) const {
     }
     written.changed.push_back(path);
   }
+  return written;
+}
+
+FileSet::Written FileSet::write(const fs::path& folder) const {
+  PendingFiles pending;
+  Written written = prepare(folder, pending);
+  if (!written.failure.empty()) return written;
   written.failure = pending.move_all();
+  if (!written.failure.empty()) written.changed.clear();
   return written;
 }
 

@@ -11,6 +11,8 @@
 
 namespace robdef {
 
+class PendingFiles;
+
 /// Files to be written: each name once, in the order of their names, together or not at all.
 class FileSet {
  public:
@@ -34,11 +36,15 @@ class FileSet {
     return files_;
   }
   [[nodiscard]] bool contains(std::string_view path) const { return files_.contains(path); }
+  [[nodiscard]] bool is_draft(std::string_view path) const { return drafts_.contains(path); }
 
   /// Writes below `folder`, which is made when missing. A file that already has its content is not
   /// touched. All others are written beside their place first and renamed when all are complete, so
-  /// a full disk or a folder without permission leaves everything as it was.
+  /// a full disk or a folder without permission leaves everything as it was (PendingFiles).
   [[nodiscard]] Written write(const std::filesystem::path& folder) const;
+
+  /// Only writes what changes beside its place: `pending` moves it there, with other files.
+  [[nodiscard]] Written prepare(const std::filesystem::path& folder, PendingFiles& pending) const;
 
  private:
   std::map<std::string, std::string, std::less<>> files_;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compiler/diagnostics/source.hpp"
+#include "compiler/syntax/lossless.hpp"
 
 /// The syntax tree: what was written, where, and nothing that has to be looked up. One plain
 /// struct per construct of the language; names are unresolved text with their spans.
@@ -204,6 +205,7 @@ struct File {
   std::vector<Using> usings;
   std::vector<Option> options;
   std::vector<Declaration> declarations;  ///< in the order written
+  LosslessText written;                   ///< every byte, what could not be parsed included
 };
 
 /// A file of a program, and whether the user asked for it or an import did.

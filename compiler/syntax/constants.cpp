@@ -184,7 +184,7 @@ class ConstantCheck {
     const ast::Name& base = constant_.type.base;
     Diagnostic& diagnostic = report_.add(Code::R0301, place, "a constant cannot have this type");
     diagnostic.label("numbers, arrays of numbers of one dimension, strings and structs only");
-    if (!is_built_in_type(base.text) && base.span == place) {
+    if (!is_built_in_type(base.text) && base.span == place && report_.may_suggest(1)) {
       static const std::vector<std::string_view> types = {"double", "single", "int8",   "uint8",
                                                           "int16",  "uint16", "int32",  "uint32",
                                                           "int64",  "uint64", "string", "struct"};

@@ -58,6 +58,8 @@ class Explanation {
   void not_a_word(Code code, std::string_view noun);
   bool explain_comment();
   bool explain_backslash();
+  bool explain_modifiers_in_parentheses();
+  void help_with_habits(Diagnostic& diagnostic) const;
   bool explain_blank_in_type();
 
   [[nodiscard]] std::size_t rule() const { return fault_.rules.front(); }
@@ -67,6 +69,7 @@ class Explanation {
   [[nodiscard]] bool is(std::size_t type) const { return fault_.token.type == type; }
   [[nodiscard]] bool follows(std::size_t type) const { return fault_.previous.type == type; }
   [[nodiscard]] bool is_word() const;
+  [[nodiscard]] std::string_view rest() const;
   [[nodiscard]] bool follows_type() const;
   [[nodiscard]] std::string_view text(FaultToken token) const;
   [[nodiscard]] std::string_view text() const { return text(fault_.token); }

@@ -128,11 +128,52 @@ void Explanation::parameters() {
   }
 }
 
+// `event void e()`, or `event e double a` without parentheses.
 void Explanation::event_with_type() {
+  const std::string_view first = text(fault_.previous);
+  const bool has_type_second = !is_built_in_type(first) && is_word() && is_built_in_type(text());
+  if (has_type_second) {
+    const std::string_view parameters = rest();
+    const bool is_short = parameters.size() <= longest_quote &&
+                          parameters.find(' ') != parameters.npos &&
+                          parameters.find_first_of("()") == parameters.npos &&
+                          parameters.find(" [") == parameters.npos;
+    add_at(Code::R0125, {Parser::NL, fault_.previous.end, fault_.previous.end},
+           "the parentheses of an event are missing")
+        .label("`(` belongs here")
+        .help(fmt::format("write `event {}({})`", first.substr(0, longest_quote),
+                          is_short ? parameters : "..."));
+    return;
+  }
   Diagnostic& diagnostic =
       add_at(Code::R0125, fault_.previous, "an event with a type").label("an event has no type");
-  if (is_word())
+  if (is_word() && rest().find('(') != std::string_view::npos)
     diagnostic.help(fmt::format("write `event {}(...)`", text().substr(0, longest_quote)));
+}
+
+// The rest of the line, from the token on.
+std::string_view Explanation::rest() const {
+  std::string_view text = line_.text();
+  text.remove_prefix(std::min(fault_.token.begin, text.size()));
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  return text;
+}
+
+// `property double x (readonly)`
+bool Explanation::explain_modifiers_in_parentheses() {
+  std::string_view inside = rest();
+  if (!inside.starts_with('(')) return false;
+  inside = inside.substr(1, inside.find(')') - 1);
+  const auto first_end = std::find_if_not(inside.begin(), inside.end(), is_word_character);
+  const auto word = inside.substr(0, static_cast<std::size_t>(first_end - inside.begin()));
+  if (word.empty() || nearest_modifier(word).empty()) return false;
+  const bool is_short = inside.size() <= longest_quote;
+  add(Code::R0126, "modifiers in parentheses")
+      .label("modifiers stand in brackets")
+      .help(fmt::format("write `[{}]`", is_short && word == nearest_modifier(word)
+                                            ? inside
+                                            : nearest_modifier(word)));
+  return true;
 }
 
 void Explanation::modifiers() {
@@ -164,6 +205,7 @@ void Explanation::after_member() {
   if (follows(Parser::MEMBER_WORD) && (is(Parser::OPEN_ARRAY) || is(Parser::OPEN_CONTAINER))) {
     event_with_type();
   } else if (is(Parser::OPEN_PARAMETERS)) {
+    if (explain_modifiers_in_parentheses()) return;
     add(Code::R0125, fmt::format("{} with parentheses", with_article()))
         .label(fmt::format("{} has no parameters", with_article()))
         .help("a `function` has parameters");

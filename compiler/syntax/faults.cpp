@@ -148,7 +148,19 @@ Diagnostic& Explanation::add_at(Code code, FaultToken place, std::string message
     span = line_.span(size - 1, size);
     span.begin = span.end;
   }
-  return report_.add(code, span, std::move(message));
+  Diagnostic& diagnostic = report_.add(code, span, std::move(message));
+  help_with_habits(diagnostic);
+  return diagnostic;
+}
+
+// Signs that other languages have.
+void Explanation::help_with_habits(Diagnostic& diagnostic) const {
+  const std::string_view sign = text();
+  if (sign == ";") {
+    diagnostic.help("remove it: the end of the line ends a statement");
+  } else if (sign == "{" && fault_.keyword >= Parser::ENUM && fault_.keyword <= Parser::OBJECT) {
+    diagnostic.help("remove it: a block has no braces, and ends with a line `end`");
+  }
 }
 
 Diagnostic& Explanation::unexpected(Code code, std::string_view where) {
@@ -185,10 +197,14 @@ void Explanation::not_a_word(Code code, std::string_view noun) {
 }
 
 bool Explanation::explain_comment() {
-  if (!is(Parser::UNEXPECTED) || text() != "#") return false;
-  add(Code::R0105, "a comment behind a statement")
-      .label("not a comment here")
-      .help("write the comment on a line of its own, above");
+  if (!is(Parser::UNEXPECTED)) return false;
+  const char next = character_at(fault_.token.end);
+  const bool is_other_sign = text() == "/" && (next == '/' || next == '*');
+  if (text() != "#" && !is_other_sign) return false;
+  Diagnostic& diagnostic =
+      add(Code::R0105, "a comment behind a statement").label("not a comment here");
+  diagnostic.help(is_other_sign ? "a comment begins with `#`, on a line of its own, above"
+                                : "write the comment on a line of its own, above");
   return true;
 }
 

@@ -20,6 +20,7 @@ FileParser::FileParser(const Source& source, SourceId id, Report& report)
 ast::File FileParser::run() {
   while (reader_.next(is_in_block(), line_)) read_line();
   finish();
+  file_.written.lines = std::move(reader_.written());
   return std::move(file_);
 }
 
@@ -34,6 +35,8 @@ void FileParser::read_line() {
   const Keyword keyword = keyword_of(first_word());
   block_.has_content = block_.has_content || keyword != Keyword::end;
   const std::size_t errors = report_.errors();
+  const bool was_in_block = is_in_block();
+  const Span block = block_.header;
   switch (block_.kind) {
     case BlockKind::none:
       read_outside(keyword);
@@ -49,6 +52,34 @@ void FileParser::read_line() {
       break;
   }
   if (report_.errors() != errors || line_.is_damaged()) block_.is_whole = false;
+  const bool is_same_block = is_in_block() && block_.header == block;
+  if (was_in_block && is_in_block() && !is_same_block) leave_comments_outside();
+  keep_line(was_in_block && is_same_block);
+}
+
+// Adds to what is kept of the line that was read.
+void FileParser::keep_line(bool is_inside) {
+  ast::Line& line = reader_.written().back();
+  line.first_token = static_cast<std::uint32_t>(file_.written.tokens.size());
+  line.is_in_block = is_inside;
+  line.token_count = parser_.take_tokens(line_, file_.written.tokens);
+  if (line.token_count == 0) return;
+  line.kind = ast::LineKind::statement;
+  if (!line_.is_damaged()) return;
+  // Its tokens are those of the text that was read in place of the bytes.
+  file_.written.tokens.resize(line.first_token);
+  line.token_count = 0;
+  line.kind = ast::LineKind::unread;
+}
+
+// Above a block that begins before another has ended, comments belong to what follows.
+void FileParser::leave_comments_outside() {
+  auto& lines = reader_.written();
+  for (std::size_t above = lines.size() - 1; above > 0; --above) {
+    ast::Line& line = lines[above - 1];
+    if (line.kind == ast::LineKind::statement || line.kind == ast::LineKind::unread) return;
+    line.is_in_block = false;
+  }
 }
 
 void FileParser::read_outside(Keyword keyword) {
@@ -153,6 +184,7 @@ void FileParser::option() {
         .label("not allowed from version 0.9.2 on")
         .also(file_.version_span, "the version")
         .help("use `constant`, or the modifier `[unreliable]` of a pipe");
+    parser_.option(line_, discarded_);  // its form may be right
     return;
   }
   auto content = parser_.option(line_, report());

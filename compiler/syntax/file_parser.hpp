@@ -46,6 +46,8 @@ class FileParser {
   };
 
   void read_line();
+  void keep_line(bool is_inside);
+  void leave_comments_outside();
   void read_outside(Keyword keyword);
   void read_in_record(Keyword keyword);
   void read_in_object(Keyword keyword);

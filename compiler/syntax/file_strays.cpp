@@ -3,12 +3,62 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "compiler/diagnostics/spelling.hpp"
 #include "compiler/syntax/file_parser.hpp"
 
 namespace robdef::syntax {
+namespace {
+
+struct Habit {
+  std::string_view word;
+  std::string_view help;
+};
+
+// What other languages call it.
+constexpr std::array habits = {
+    Habit{"message", "a type with fields is a `struct`"},
+    Habit{"record", "a type with fields is a `struct`"},
+    Habit{"class", "a type with members is an `object`, one with fields a `struct`"},
+    Habit{"interface", "a type with members is an `object`"},
+    Habit{"module", "the first line names the definition: `service some.name`"},
+    Habit{"namespace", "the first line names the definition: `service some.name`"},
+    Habit{"package", "the first line names the definition: `service some.name`"},
+    Habit{"syntax", "the version of the language is a line such as `stdver 0.10`"},
+    Habit{"include", "other definitions are read by `import some.name`"},
+    Habit{"typedef", "a name of another definition gets a short one by `using`"},
+    Habit{"const", "write `constant`"},
+    Habit{"rpc", "write `function`"},
+    Habit{"method", "write `function`"},
+    Habit{"def", "write `function`"},
+    Habit{"attribute", "write `property`"},
+    Habit{"signal", "write `event`"},
+};
+
+constexpr std::array<std::string_view, 8> types_elsewhere = {
+    "int", "float", "char", "long", "short", "unsigned", "boolean", "repeated"};
+
+std::string_view help_with_word(std::string_view word) {
+  const auto found = std::find_if(habits.begin(), habits.end(),
+                                  [word](const Habit& habit) { return habit.word == word; });
+  if (found != habits.end()) return found->help;
+  const bool is_type =
+      is_built_in_type(word) ||
+      std::find(types_elsewhere.begin(), types_elsewhere.end(), word) != types_elsewhere.end();
+  return is_type ? "a line begins with its keyword: `field double x`, `property double x`" : "";
+}
+
+std::string_view help_with_sign(std::string_view line) {
+  if (line.starts_with("//") || line.starts_with("/*")) return "a comment begins with `#`";
+  if (line.starts_with('}')) return "a block ends with a line `end`";
+  if (line.starts_with('{')) return "remove it: a block has no braces, and ends with a line `end`";
+  if (line.starts_with(';')) return "remove it: the end of the line ends a statement";
+  return "";
+}
+
+}  // namespace
 
 // A keyword is followed by a blank and a word.
 bool FileParser::has_operand(Keyword keyword) {
@@ -55,20 +105,26 @@ void FileParser::unknown_statement() {
   if (explain_split_keyword()) return;
   const std::string_view word = first_word();
   if (word.empty()) {
-    report()
-        .add(Code::R0107, line_.span(0, 1),
-             fmt::format("a line that begins with `{}`", line_.text().front()))
-        .label("a keyword belongs here");
+    Diagnostic& diagnostic =
+        report().add(Code::R0107, line_.span(0, 1),
+                     fmt::format("a line that begins with `{}`", line_.text().front()));
+    diagnostic.label("a keyword belongs here");
+    const std::string_view help = help_with_sign(line_.text());
+    if (!help.empty()) diagnostic.help(std::string(help));
     return;
   }
   Diagnostic& diagnostic = report().add(Code::R0107, line_.span(0, word.size()),
                                         fmt::format("unknown statement `{}`", word.substr(0, 60)));
   diagnostic.label("not a keyword");
+  if (!report().may_suggest(1)) return;
   std::string lower(word);
   std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   const std::string_view near = nearest(word, keyword_texts());
-  if (keyword_of(lower) != Keyword::none) {
+  const std::string_view habit = help_with_word(word);
+  if (!habit.empty()) {
+    diagnostic.help(std::string(habit));
+  } else if (keyword_of(lower) != Keyword::none) {
     diagnostic.help(fmt::format("keywords are written in lower case: `{}`", lower));
   } else if (!near.empty()) {
     diagnostic.help(fmt::format("`{}` is close", near));

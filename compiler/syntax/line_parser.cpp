@@ -18,6 +18,7 @@ struct LineParser::Machinery {
   LineTokens tokens;
   Grammar parser{&tokens};
   std::shared_ptr<FirstFault> faults = std::make_shared<FirstFault>(tokens);
+  bool fits = false;  ///< the tokens are those of a line that fits the grammar
 
   Machinery() {
     lexer.removeErrorListeners();
@@ -35,6 +36,7 @@ struct LineParser::Machinery {
     lexer.setMode(mode);
     tokens.load(lexer);
     parser.reset();
+    fits = false;
     Context* context = nullptr;
     try {
       context = (parser.*rule)();
@@ -42,12 +44,20 @@ struct LineParser::Machinery {
       report_fault(faults->fault(), line, report);
       return std::nullopt;
     }
+    fits = true;
     LineTree tree(line, report);
     auto result = build(tree, context);
     if (tree.failed()) return std::nullopt;
     return result;
   }
 };
+
+std::uint32_t LineParser::take_tokens(const LogicalLine& line, std::vector<ast::Token>& tokens) {
+  if (!std::exchange(machinery_->fits, false)) return 0;
+  const std::size_t before = tokens.size();
+  machinery_->tokens.append_to(line, tokens);
+  return static_cast<std::uint32_t>(tokens.size() - before);
+}
 
 LineParser::LineParser() : machinery_(std::make_unique<Machinery>()) {}
 LineParser::~LineParser() = default;

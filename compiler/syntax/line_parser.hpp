@@ -58,6 +58,10 @@ class LineParser {
   std::optional<ast::Field> field(const LogicalLine& line, Report& report);
   std::optional<ast::Member> member(const LogicalLine& line, Report& report);
 
+  /// Adds the tokens of the line that was read since the last call, and returns how many. 0 if
+  /// there was none, or if it does not fit the grammar.
+  std::uint32_t take_tokens(const LogicalLine& line, std::vector<ast::Token>& tokens);
+
  private:
   struct Machinery;
   std::unique_ptr<Machinery> machinery_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes logical lines of physical ones. Reads bytes; reports R0101 (characters), R0102 (NUL), R0103
 // (carriage returns), R0104 (a continuation with nothing to join), R0145 (documentation that
-// swallows a line).
+// swallows a line), R0146 (a comment for us that is not understood).
 #include "compiler/syntax/lines.hpp"
 
 #include <fmt/format.h>
@@ -26,6 +26,14 @@ std::string_view without_leading_blanks(std::string_view text) {
 std::string_view without_trailing_blanks(std::string_view text) {
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
   return text;
+}
+
+// Of a comment as it stands in the file. One that follows a byte that is no blank is not
+// understood.
+ast::LineKind comment_kind(std::string_view written) {
+  const std::string_view text = without_leading_blanks(written);
+  if (!text.starts_with('#')) return ast::LineKind::unread;
+  return text.starts_with("##") ? ast::LineKind::documentation : ast::LineKind::comment;
 }
 
 }  // namespace
@@ -60,23 +68,44 @@ bool LineReader::next(bool is_in_block, LogicalLine& line) {
   while (!at_end()) {
     const Physical physical = read_physical();
     const std::string_view content = without_leading_blanks(physical.text);
+    const std::uint32_t begin = physical.offset;
     if (content.empty()) {
       blank_after_documentation_ = has_documentation_;
+      keep(physical.is_damaged ? ast::LineKind::unread : ast::LineKind::blank, is_in_block, begin);
     } else if (content.front() == '#') {
+      const auto kind = comment_kind(text_.substr(begin, physical.text.size()));
       read_comment(physical, is_in_block);
+      keep(kind, is_in_block, begin);
     } else {
       join(physical, line);
+      keep(ast::LineKind::unread, is_in_block, begin);
       if (line.text_.empty()) continue;
       line.documentation_ = std::exchange(documentation_, {});
       has_documentation_ = blank_after_documentation_ = false;
+      end_allows();
       return true;
     }
   }
+  end_allows();
   return false;
+}
+
+/// What was allowed above the statement that ends where reading goes on.
+void LineReader::end_allows() {
+  for (const auto& [code, comment] : allows_) {
+    report_.allow_at(code, {id_, comment.begin, static_cast<std::uint32_t>(next_)}, comment);
+  }
+  allows_.clear();
 }
 
 void LineReader::skip_physical_line() {
   if (!at_end()) read_physical();
+  if (!written_.empty()) written_.back().end = static_cast<std::uint32_t>(next_);
+}
+
+// The line that ends where reading goes on.
+void LineReader::keep(ast::LineKind kind, bool is_in_block, std::uint32_t begin) {
+  written_.push_back({kind, is_in_block, begin, static_cast<std::uint32_t>(next_), 0, 0});
 }
 
 LineReader::Physical LineReader::read_physical() {
@@ -145,6 +174,7 @@ void LineReader::read_comment(Physical physical, bool is_in_block) {
   if (!text.starts_with("##")) {
     documentation_.clear();
     has_documentation_ = blank_after_documentation_ = false;
+    read_remark(physical);
     return;
   }
   while (is_in_block && text.ends_with('\\') && !at_end()) {
@@ -165,6 +195,52 @@ void LineReader::read_comment(Physical physical, bool is_in_block) {
   documentation_ += without_trailing_blanks(content);
   has_documentation_ = true;
   blank_after_documentation_ = false;
+}
+
+/// `# robdef: allow R0610`; any other comment is none of ours.
+void LineReader::read_remark(const Physical& physical) {
+  constexpr std::string_view address = "robdef:";
+  const std::string_view text = physical.text;
+  const std::size_t first = text.find_first_not_of(" \t", text.find('#') + 1);
+  if (first == std::string_view::npos || !text.substr(first).starts_with(address)) return;
+  const std::size_t word = text.find_first_not_of(" \t", first + address.size());
+  constexpr std::string_view allow = "allow";
+  const std::string_view rest = word == std::string_view::npos ? "" : text.substr(word);
+  const auto begin = static_cast<std::uint32_t>(physical.offset + first);
+  if (rest.starts_with(allow) && (rest.size() == allow.size() || is_blank(rest[allow.size()]))) {
+    const std::size_t codes = word + allow.size();
+    read_allowed(text.substr(codes), static_cast<std::uint32_t>(physical.offset + codes));
+    return;
+  }
+  const auto end = static_cast<std::uint32_t>(physical.offset + text.size());
+  report_.add(Code::R0146, {id_, begin, end}, "a comment for robdef that is not understood")
+      .label("only `allow` can be here")
+      .help("write `# robdef: allow` and codes of warnings, such as R0610");
+}
+
+void LineReader::read_allowed(std::string_view codes, std::uint32_t begin) {
+  bool is_empty = true;
+  for (std::size_t at = 0; at < codes.size();) {
+    const std::size_t end = std::min(codes.find_first_of(" \t,", at), codes.size());
+    const std::string_view name = codes.substr(at, end - at);
+    const Span span{id_, begin + static_cast<std::uint32_t>(at),
+                    begin + static_cast<std::uint32_t>(end)};
+    at = end + 1;
+    if (name.empty()) continue;
+    is_empty = false;
+    const CodeEntry* const entry = find_code(name);
+    if (entry == nullptr) {
+      report_.add(Code::R0146, span, fmt::format("there is no code `{}`", name))
+          .help("`robdef explain --list` shows all");
+    } else if (entry->severity == Severity::error) {
+      report_.add(Code::R0146, span, fmt::format("`{}` cannot be allowed", name)).label("an error");
+    } else {
+      allows_.emplace_back(entry->code, span);
+    }
+  }
+  if (!is_empty) return;
+  report_.add(Code::R0146, {id_, begin, begin}, "a comment for robdef that allows nothing")
+      .help("write codes of warnings behind `allow`, such as R0610");
 }
 
 void LineReader::join(Physical physical, LogicalLine& line) {

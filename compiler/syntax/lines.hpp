@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/diagnostics/report.hpp"
@@ -51,7 +52,8 @@ class LogicalLine {
 };
 
 /// Reads a source line by line: joins continued lines, leaves out comments and empty lines,
-/// collects documentation. Reports L1 to L4 and Q22.
+/// collects documentation, and tells the report what comments allow. Reports L1 to L4, Q22 and
+/// R0146.
 class LineReader {
  public:
   /// The source must outlive the reader and the lines.
@@ -60,8 +62,12 @@ class LineReader {
   /// Reads the next statement; false at the end. Inside a block a `##` line can be continued.
   bool next(bool is_in_block, LogicalLine& line);
 
-  /// Leaves out one physical line: the intended second half of a statement that was cut badly.
+  /// Leaves out one physical line: the intended second half of a statement that was cut badly. It
+  /// becomes part of that statement's line.
   void skip_physical_line();
+
+  /// All lines up to the statement that was read last, each statement as LineKind::unread.
+  [[nodiscard]] std::vector<ast::Line>& written() { return written_; }
 
  private:
   /// A physical line without its end.
@@ -76,6 +82,10 @@ class LineReader {
   void check_bytes(Physical& physical);
   void report_byte(const Physical& physical, std::size_t at);
   void read_comment(Physical physical, bool is_in_block);
+  void read_remark(const Physical& physical);
+  void read_allowed(std::string_view codes, std::uint32_t begin);
+  void end_allows();
+  void keep(ast::LineKind kind, bool is_in_block, std::uint32_t begin);
   void join(Physical physical, LogicalLine& line);
   void append(const Physical& physical, LogicalLine& line);
 
@@ -88,6 +98,9 @@ class LineReader {
   ast::Documentation documentation_;
   bool has_documentation_ = false;
   bool blank_after_documentation_ = false;
+  std::vector<ast::Line> written_;
+  /// Codes of comments since the last statement, at their places.
+  std::vector<std::pair<Code, Span>> allows_;
 };
 
 }  // namespace robdef::syntax

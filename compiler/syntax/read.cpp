@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstdio>
 #include <filesystem>
-#include <fstream>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -24,48 +26,44 @@ namespace fs = std::filesystem;
 // Far beyond any definition, and well within what a span can reach.
 constexpr std::size_t largest_file = 64U << 20U;
 
-// What is in a file, or that it cannot be read and why, as far as that is known.
-struct Contents {
-  std::optional<std::string> text;
-  std::string_view failure = "cannot be read";
+std::string reason(int code) {
+  return "cannot be read: " + std::error_code(code, std::generic_category()).message();
+}
+
+struct CloseFile {
+  void operator()(std::FILE* file) const {
+    if (file != stdin) std::fclose(file);
+  }
 };
 
-Contents read_file(const std::string& path) {
-  std::error_code error;
-  // Opening a folder for reading succeeds on some systems.
-  if (fs::is_directory(path, error)) return {};
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return {};
-  std::string text;
-  std::array<char, 65536> buffer;
-  do {
-    file.read(buffer.data(), buffer.size());
-    text.append(buffer.data(), static_cast<std::size_t>(file.gcount()));
-    if (text.size() > largest_file) {
-      static_assert(largest_file == 64U << 20U);
-      return {std::nullopt, "cannot be read: it is larger than 64 MiB"};
-    }
-  } while (file);
-  if (file.bad()) return {};
-  return {std::move(text)};
-}
+using OpenFile = std::unique_ptr<std::FILE, CloseFile>;
 
 bool exists(const std::string& path) {
   std::error_code error;
   return fs::exists(path, error);
 }
 
-// One spelling for each file, so that a file given twice is loaded once.
-std::string identity(const std::string& path) {
-  std::error_code error;
-  const fs::path result = fs::weakly_canonical(path, error);
-  return error ? path : result.string();
+// Where the first folder of a list ends. Folders may have a `:` in their names: of what begins the
+// list, the longest text that names a folder is one.
+std::size_t first_folder_end(std::string_view list) {
+  const std::size_t first = std::min(list.find_first_of(":;"), list.size());
+  std::size_t result = first;
+  constexpr int most_colons = 16;
+  std::size_t end = first;
+  for (int colon = 0; colon < most_colons && end < list.size() && list[end] == ':'; ++colon) {
+    end = std::min(list.find_first_of(":;", end + 1), list.size());
+    std::error_code error;
+    const bool is_whole = end > 0 && list[end - 1] != ':';
+    if (is_whole && fs::is_directory(fs::path(list.substr(0, end)), error)) result = end;
+  }
+  return result;
 }
 
 class Loader {
  public:
-  Loader(const SearchPath& path, Sources& sources, Report& report)
-      : path_(path), sources_(sources), report_(report) {}
+  // Without `find` imports are files.
+  Loader(const SearchPath& path, Sources& sources, Report& report, FindImport find = {})
+      : path_(path), sources_(sources), report_(report), find_(std::move(find)) {}
 
   Program run(const std::vector<std::string>& inputs) {
     for (const std::string& input : inputs) load_input(input);
@@ -78,21 +76,23 @@ class Loader {
       const SourceId id = sources_.add(std::move(text.name), std::move(text.text));
       add(parse(sources_[id], id, report_), text.is_import);
     }
+    if (find_) follow_imports();
     return std::move(program_);
   }
 
  private:
   void load_input(const std::string& path) {
-    if (!loaded_.insert(identity(path)).second) return;
-    auto [text, failure] = read_file(path);
-    const bool is_found = text.has_value();
-    const SourceId id = sources_.add(path, std::move(text).value_or(std::string()));
-    if (is_found) {
+    if (!loaded_.insert(identity_of(path)).second) return;
+    FileText read = read_file(path);
+    const bool is_read = read.text.has_value();
+    const SourceId id =
+        sources_.add(shown_name(path), std::move(read.text).value_or(std::string()));
+    if (is_read) {
       add(parse(sources_[id], id, report_), false);
-    } else if (exists(path)) {
-      report_.add(Code::R0510, {id, 0, 0}, fmt::format("`{}` {}", path, failure));
-    } else {
+    } else if (read.is_missing) {
       report_.add(Code::R0509, {id, 0, 0}, fmt::format("there is no file `{}`", path));
+    } else {
+      report_.add(Code::R0510, {id, 0, 0}, fmt::format("`{}` {}", path, read.failure));
     }
   }
 
@@ -118,7 +118,7 @@ class Loader {
         // A copy: the list moves when a file is added.
         const Name name = program_.files[file].file.imports[import].name;
         if (services_.contains(name.text)) continue;
-        const bool is_fit = load_import(name);
+        const bool is_fit = find_ ? load_found(name) : load_import(name);
         program_.files[file].file.imports[import].is_reported = !is_fit;
       }
     }
@@ -128,14 +128,24 @@ class Loader {
   bool load_import(const Name& name) {
     const std::string path = find(name);
     if (path.empty()) return true;
-    auto [text, failure] = read_file(path);
-    if (!text) {
-      report_.add(Code::R0510, name.span, fmt::format("`{}` {}", path, failure))
+    FileText read = read_file(path);
+    if (!read.text) {
+      report_.add(Code::R0510, name.span, fmt::format("`{}` {}", path, read.failure))
           .label("imported here");
       return false;
     }
-    if (!loaded_.insert(identity(path)).second) return true;
-    const SourceId id = sources_.add(path, *std::move(text));
+    if (!loaded_.insert(identity_of(path)).second) return true;
+    return add_import(name, path, *std::move(read.text));
+  }
+
+  bool load_found(const Name& name) {
+    std::optional<NamedText> found = find_(name.text, sources_[name.span.source].name());
+    if (!found || !loaded_.insert(found->name).second) return true;
+    return add_import(name, found->name, std::move(found->text));
+  }
+
+  bool add_import(const Name& name, const std::string& path, std::string text) {
+    const SourceId id = sources_.add(path, std::move(text));
     File file = parse(sources_[id], id, report_);
     // Without a name the file has a mistake of its own.
     if (file.service && file.service->text != name.text) {
@@ -166,6 +176,7 @@ class Loader {
   const SearchPath& path_;
   Sources& sources_;
   Report& report_;
+  const FindImport find_;
   Program program_;
   std::unordered_map<std::string, Span> services_;
   std::unordered_set<std::string> loaded_;
@@ -173,10 +184,42 @@ class Loader {
 
 }  // namespace
 
+bool is_standard_input(std::string_view path) { return path == "-"; }
+
+std::string shown_name(const std::string& path) {
+  return is_standard_input(path) ? "<stdin>" : path;
+}
+
+std::string identity_of(const std::string& path) {
+  std::error_code error;
+  const fs::path result = fs::weakly_canonical(path, error);
+  return error || is_standard_input(path) ? path : result.string();
+}
+
+FileText read_file(const std::string& path) {
+  std::error_code error;
+  // Opening a folder for reading succeeds on some systems.
+  if (fs::is_directory(path, error)) return {std::nullopt, reason(EISDIR), false};
+  const OpenFile file(is_standard_input(path) ? stdin : std::fopen(path.c_str(), "rb"));
+  if (!file) return {std::nullopt, reason(errno), errno == ENOENT};
+  FileText read{std::string(), {}, false};
+  std::array<char, 65536> buffer;
+  for (std::size_t count = 1; count > 0;) {
+    count = std::fread(buffer.data(), 1, buffer.size(), file.get());
+    read.text->append(buffer.data(), count);
+    if (read.text->size() > largest_file) {
+      static_assert(largest_file == 64U << 20U);
+      return {std::nullopt, "cannot be read: it is larger than 64 MiB", false};
+    }
+  }
+  if (std::ferror(file.get()) != 0) return {std::nullopt, reason(errno), false};
+  return read;
+}
+
 SearchPath make_search_path(std::vector<std::string> folders, std::string_view variable) {
   SearchPath path{std::move(folders)};
   while (!variable.empty()) {
-    const std::size_t end = std::min(variable.find_first_of(":;"), variable.size());
+    const std::size_t end = first_folder_end(variable);
     if (end > 0) path.folders.emplace_back(variable.substr(0, end));
     variable.remove_prefix(std::min(end + 1, variable.size()));
   }
@@ -191,6 +234,12 @@ Program read(const std::vector<std::string>& inputs, const SearchPath& path, Sou
 Program read_texts(std::vector<NamedText> texts, Sources& sources, Report& report) {
   const SearchPath nowhere;
   return Loader(nowhere, sources, report).run(std::move(texts));
+}
+
+Program read_texts(std::vector<NamedText> texts, const FindImport& find, Sources& sources,
+                   Report& report) {
+  const SearchPath nowhere;
+  return Loader(nowhere, sources, report, find).run(std::move(texts));
 }
 
 }  // namespace robdef::ast

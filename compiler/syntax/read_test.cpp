@@ -117,7 +117,16 @@ TEST_F(ReadTest, AMissingInputIsReportedAndTheOthersAreRead) {
 
 TEST_F(ReadTest, AFolderCannotBeRead) {
   EXPECT_THAT(read_files({folder_.string()}).files, IsEmpty());
-  EXPECT_THAT(findings(), HasSubstr(": error: R0510 "));
+  EXPECT_THAT(findings(), HasSubstr(": error: R0510 `" + folder_.string() +
+                                    "` cannot be read: Is a directory\n"));
+}
+
+TEST_F(ReadTest, TheSystemsReasonIsTold) {
+  const std::string input = write("a.robdef", "service a\n");
+  const std::string name(300, 'x');
+  EXPECT_THAT(read_files({input + "/b.robdef", name}).files, IsEmpty());
+  EXPECT_THAT(findings(), HasSubstr("cannot be read: Not a directory\n"));
+  EXPECT_THAT(findings(), HasSubstr("cannot be read: File name too long\n"));
 }
 
 TEST_F(ReadTest, AFileThatIsTooLargeIsReportedWithItsLimit) {
@@ -175,6 +184,17 @@ TEST(SearchPath, IsTheFoldersAndThenTheVariable) {
   EXPECT_THAT(make_search_path({"a", "b"}, "c:d;e").folders, ElementsAre("a", "b", "c", "d", "e"));
   EXPECT_THAT(make_search_path({}, ":;c::").folders, ElementsAre("c"));
   EXPECT_THAT(make_search_path({}, "").folders, IsEmpty());
+}
+
+TEST_F(ReadTest, AFolderMayHaveAColonInItsName) {
+  fs::create_directories(folder_ / "v1:2:3");
+  const std::string whole = (folder_ / "v1:2:3").string();
+  EXPECT_THAT(make_search_path({}, "a:" + whole + ":c;" + whole).folders,
+              ElementsAre("a", whole, "c", whole));
+  EXPECT_THAT(make_search_path({}, (folder_ / "v2:3").string()).folders,
+              ElementsAre((folder_ / "v2").string(), "3"))
+      << "no folder of that name is there";
+  EXPECT_THAT(make_search_path({whole}, "").folders, ElementsAre(whole));
 }
 
 }  // namespace

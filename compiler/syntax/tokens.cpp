@@ -3,11 +3,77 @@
 
 #include <algorithm>
 
+#include "compiler/syntax/words.hpp"
+
 namespace robdef::syntax {
 namespace {
 
 FaultToken fault_token(const antlr4::Token& token) {
   return {token.getType(), token.getStartIndex(), token.getStopIndex() + 1};
+}
+
+using Parser = grammar::RobdefParser;
+
+ast::TokenKind kind_of(const antlr4::Token& token) {
+  using ast::TokenKind;
+  switch (token.getType()) {
+    case Parser::NAME:
+    case Parser::DOTTED:
+    case Parser::MEMBER_WORD:
+    case Parser::MEMBER_QUALIFIED:
+    case Parser::MEMBER_OTHER_WORD:
+    case Parser::SPACED_WORD:
+    case Parser::ENUM_WORD:
+      return TokenKind::name;
+    case Parser::INT:
+    case Parser::HEX:
+    case Parser::FLOAT:
+    case Parser::DIGITS:
+      return TokenKind::number;
+    case Parser::VERSION:
+      return TokenKind::version;
+    case Parser::STRING:
+      return TokenKind::string;
+    case Parser::OPTION_WORD:
+    case Parser::OPTION_TEXT:
+      return TokenKind::text;
+    case Parser::MINUS:
+    case Parser::STAR:
+      return TokenKind::symbol;
+    case Parser::COMMA:
+    case Parser::SPACED_COMMA:
+      return TokenKind::comma;
+    case Parser::EQUALS:
+      return TokenKind::equals;
+    case Parser::COLON:
+      return TokenKind::colon;
+    case Parser::OPEN_PARAMETERS:
+      return TokenKind::open_parameters;
+    case Parser::CLOSE_PARAMETERS:
+      return TokenKind::close_parameters;
+    case Parser::OPEN_ARRAY:
+      return TokenKind::open_array;
+    case Parser::CLOSE_ARRAY:
+      return TokenKind::close_array;
+    case Parser::OPEN_CONTAINER:
+      return TokenKind::open_container;
+    case Parser::CLOSE_CONTAINER:
+      return TokenKind::close_container;
+    case Parser::OPEN_MODIFIERS:
+      return TokenKind::open_modifiers;
+    case Parser::CLOSE_MODIFIERS:
+      return TokenKind::close_modifiers;
+    case Parser::OPEN_ARGUMENTS:
+      return TokenKind::open_arguments;
+    case Parser::CLOSE_ARGUMENTS:
+      return TokenKind::close_arguments;
+    case Parser::OPEN_VALUE:
+      return TokenKind::open_value;
+    case Parser::CLOSE_VALUE:
+      return TokenKind::close_value;
+    default:
+      return TokenKind::keyword;
+  }
 }
 
 }  // namespace
@@ -39,6 +105,19 @@ void LineTokens::load(antlr4::Lexer& lexer) {
     auto& token = static_cast<antlr4::CommonToken&>(*tokens_.back());
     token.setTokenIndex(tokens_.size() - 1);
   } while (tokens_.back()->getType() != grammar::RobdefLexer::NL);
+}
+
+void LineTokens::append_to(const LogicalLine& line, std::vector<ast::Token>& tokens) const {
+  const std::string_view text = line.text();
+  for (std::size_t index = 0; index + 1 < tokens_.size(); ++index) {
+    const antlr4::Token& token = *tokens_[index];
+    std::size_t begin = token.getStartIndex();
+    std::size_t end = token.getStopIndex() + 1;
+    while (begin < end && is_blank(text[begin])) ++begin;
+    while (begin < end && is_blank(text[end - 1])) --end;
+    const Span span = line.span(begin, end);
+    tokens.push_back({kind_of(token), span.begin, span.end});
+  }
 }
 
 void LineTokens::consume() {

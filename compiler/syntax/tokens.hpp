@@ -42,6 +42,10 @@ class LineTokens : public antlr4::TokenStream {
   /// Reads all tokens up to the line's end.
   void load(antlr4::Lexer& lexer);
 
+  /// Adds them as parts of a file: without the line's end, and without the blanks that the grammar
+  /// holds inside of tokens.
+  void append_to(const LogicalLine& line, std::vector<ast::Token>& tokens) const;
+
   void consume() override;
   size_t LA(ssize_t offset) override { return LT(offset)->getType(); }
   antlr4::Token* LT(ssize_t offset) override;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "compiler/diagnostics/spelling.hpp"
+
 namespace robdef::syntax {
 namespace {
 
@@ -52,6 +54,18 @@ std::string_view text_of(Keyword keyword) {
 const std::vector<std::string_view>& keyword_texts() {
   static const std::vector<std::string_view> texts(keywords.begin(), keywords.end());
   return texts;
+}
+
+const std::vector<std::string_view>& modifier_words() {
+  static const std::vector<std::string_view> words = {
+      "readonly", "writeonly", "unreliable", "nolock", "nolockread", "perclient", "urgent"};
+  return words;
+}
+
+std::string_view nearest_modifier(std::string_view word) {
+  // Twice the longest modifier: longer words mean something else, and need no comparison.
+  constexpr std::size_t longest = 20;
+  return word.size() > longest ? std::string_view() : nearest(word, modifier_words());
 }
 
 bool is_reserved_word(std::string_view word) {

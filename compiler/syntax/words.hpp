@@ -55,6 +55,11 @@ bool has_reserved_prefix(std::string_view word);
 bool is_block_keyword(Keyword keyword);
 /// property to memory: the members of objects.
 bool is_member_keyword(Keyword keyword);
+/// The modifiers of the language, `readonly` first.
+const std::vector<std::string_view>& modifier_words();
+/// The modifier that a word was probably meant to be; empty when none is close.
+std::string_view nearest_modifier(std::string_view word);
+
 /// `a struct`, `an object`
 std::string with_article(Keyword keyword);
 

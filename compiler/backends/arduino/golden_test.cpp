@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <regex>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -38,6 +40,24 @@ TEST(BoardGolden, EachDefinitionGivesWhatStandsInTheGoldenFolder) {
     input.replace_extension(".robdef");
     EXPECT_EQ(corpus.difference(input, ending, content), "");
   }
+}
+
+TEST(BoardGolden, NothingIsComputedWithZeroOrOne) {
+  // `slot - 0`, `0 + index`, `index / 1`, `slot >= 0`, which is always so, `true && a`.
+  const std::regex idle(
+      R"([-+] 0[^-.x0-9]|[^-.x0-9]0 \+ |[*/%] 1[^.x0-9]|[^.x0-9]1 \* |>= 0 |true &&)");
+  int headers = 0;
+  for (const fs::path& folder : fs::directory_iterator(ROBDEF_GOLDEN_DIR)) {
+    for (const fs::path& path : fs::directory_iterator(folder)) {
+      if (path.extension() != ".h") continue;
+      ++headers;
+      std::istringstream lines(GoldenCorpus::read(path));
+      for (std::string line; std::getline(lines, line);) {
+        EXPECT_FALSE(std::regex_search(line, idle)) << path.filename() << ": " << line;
+      }
+    }
+  }
+  EXPECT_EQ(headers, 5);
 }
 
 TEST(BoardGolden, ASketchIsWrittenOnce) {

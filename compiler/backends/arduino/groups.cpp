@@ -5,6 +5,8 @@
 #include <set>
 #include <variant>
 
+#include "compiler/model/rename.hpp"
+
 namespace robdef::arduino {
 namespace {
 
@@ -84,7 +86,7 @@ class Finder {
                 .fan = fan,
                 .first = first,
                 .count = count};
-    group.path.push_back(member.name);
+    group.path.push_back(model::code_name(member));
     groups_.push_back(std::move(group));
   }
 

@@ -3,6 +3,7 @@
 
 #include "compiler/backends/arduino/backend.hpp"
 #include "compiler/backends/arduino/names.hpp"
+#include "compiler/backends/implements.hpp"
 #include "compiler/backends/words.hpp"
 #include "compiler/output/prose.hpp"
 
@@ -16,11 +17,13 @@ std::string group_name(const Group& group) {
   return name.empty() ? "root" : name;
 }
 
-std::string device_name(const model::Object& object) { return pascal(object.name) + "Device"; }
+std::string device_name(const model::Object& object) {
+  return pascal(code_name(object)) + "Device";
+}
 
 std::vector<MemberView> MemberMaker::make(std::size_t group) {
   std::vector<MemberView> views;
-  Scope scope(report_);
+  MemberNames names{Scope(report_), Scope(report_)};
   const model::Object& object = *groups_[group].object;
   if (object.members.size() > 255) {
     report_.add(Code::R0922, object.span, "an object of a board has 255 members at most")
@@ -39,7 +42,7 @@ std::vector<MemberView> MemberMaker::make(std::size_t group) {
           .help(is_memory ? "use a function that gives a part of it, of a bounded length"
                           : "use a pipe, or a function that gives one value at each call");
     } else {
-      make_one(member, group, view, scope);
+      make_one(member, group, view, names);
     }
     views.push_back(std::move(view));
   }
@@ -47,14 +50,26 @@ std::vector<MemberView> MemberMaker::make(std::size_t group) {
 }
 
 void MemberMaker::make_one(const model::Member& member, std::size_t group, MemberView& view,
-                           Scope& scope) {
-  const std::string name = scope.add(camel(member.name), member.name, member.span);
-  const std::string big = pascal(member.name);
+                           MemberNames& names) {
+  const std::string path = full_name(*groups_[group].object, member);
+  const bool is_new = !names.own.has(identifier(camel(code_name(member))));
+  const std::string name = names.own.add(camel(code_name(member)), member.name, member.span, path);
+  const std::string big = pascal(code_name(member));
   view.getter = "get" + big;
   view.setter = "set" + big;
-  view.field = camel(member.name) + "_";
+  view.field = camel(code_name(member)) + "_";
   view.can_get = !member.access.is_writeonly;
   view.can_set = !member.access.is_readonly;
+  // One of two whose own names are one has been reported.
+  const auto take = [&](const std::string& hook) {
+    if (is_new) (void)names.hooks.add(hook, member.name, member.span, path);
+  };
+  const bool is_value = member.kind == MemberKind::property || member.kind == MemberKind::wire;
+  if (is_value && view.can_get) take(view.getter);
+  if (is_value && view.can_set) take(view.setter);
+  if (member.kind == MemberKind::objref || member.kind == MemberKind::function) take(name);
+  if (member.kind == MemberKind::callback) take("answered" + big);
+  if (member.kind == MemberKind::pipe && view.can_set) take("receive" + big);
   if (member.kind == MemberKind::objref) {
     view.hook = name;
     make_objref(member, group, view);
@@ -63,7 +78,7 @@ void MemberMaker::make_one(const model::Member& member, std::size_t group, Membe
   }
   const Limits limits(member.documentation, member.span, report_);
   make_value(member, view, limits);
-  const std::uint64_t parameters = make_parameters(member, view, limits);
+  const std::uint64_t parameters = make_parameters(member, group, view, limits);
   limits.report_unused(report_);
   switch (member.kind) {
     case MemberKind::property:
@@ -87,7 +102,7 @@ void MemberMaker::make_one(const model::Member& member, std::size_t group, Membe
       take_slots(group, view);
       break;
     case MemberKind::wire:
-      view.sender = camel(member.name) + "Changed";
+      view.sender = camel(code_name(member)) + "Changed";
       take_slots(group, view);
       break;
     case MemberKind::objref:
@@ -119,8 +134,9 @@ void MemberMaker::make_value(const model::Member& member, MemberView& view, cons
   }
 }
 
-std::uint64_t MemberMaker::make_parameters(const model::Member& member, MemberView& view,
-                                           const Limits& limits) {
+std::uint64_t MemberMaker::make_parameters(const model::Member& member, std::size_t group,
+                                           MemberView& view, const Limits& limits) {
+  const std::string path = full_name(*groups_[group].object, member) + ".";
   std::uint64_t size = 0;
   Scope scope(report_);
   std::vector<std::string> declared;
@@ -129,12 +145,12 @@ std::uint64_t MemberMaker::make_parameters(const model::Member& member, MemberVi
     const BoardType type = types_.spell(parameter.type, {limits, parameter.name});
     size += type.size;
     sizes_.has_double = sizes_.has_double || type.has_double;
-    const std::string written = camel(parameter.name);
+    const std::string written = as_variable(camel(code_name(parameter)));
     // Names of the generated functions' own variables.
     const bool is_taken = written == "request" || written == "reply" || written == "device" ||
                           written == "index" || written == "result" || written == "status";
-    const std::string name =
-        scope.add(is_taken ? written + "_" : written, parameter.name, parameter.span);
+    const std::string name = scope.add(is_taken ? written + "_" : written, parameter.name,
+                                       parameter.span, path + parameter.name);
     view.parameters.push_back({type.text, name});
     if (!type.text.empty()) declared.push_back(type.passed() + " " + name);
     arguments.push_back(name);
@@ -153,8 +169,11 @@ std::uint64_t MemberMaker::make_parameters(const model::Member& member, MemberVi
 void MemberMaker::make_objref(const model::Member& member, std::size_t group, MemberView& view) {
   for (const Group& child : groups_) {
     if (child.via != &member || child.parent != group) continue;
-    view.child_first = std::to_string(child.first);
+    view.child_first_plus = plus(child.first);
     view.child_count = std::to_string(child.fan);
+    view.child_index = groups_[group].count == 1 ? "which"
+                       : child.fan == 1          ? "index + which"
+                                                 : "index * " + view.child_count + " + which";
     view.child_class = device_name(*child.object);
     view.child_find = "find" + pascal(group_name(child));
     view.is_indexed = member.index == model::IndexForm::int32;
@@ -162,7 +181,9 @@ void MemberMaker::make_objref(const model::Member& member, std::size_t group, Me
 }
 
 void MemberMaker::take_slots(std::size_t group, MemberView& view) {
-  view.slot = std::to_string(sizes_.slots);
+  view.slot_plus = plus(sizes_.slots);
+  view.slot_minus = minus(sizes_.slots);
+  view.slot_from = sizes_.slots == 0 ? "" : "slot >= " + std::to_string(sizes_.slots) + " && ";
   sizes_.slots += groups_[group].count;
   view.slot_end = std::to_string(sizes_.slots);
 }

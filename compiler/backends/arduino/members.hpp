@@ -32,6 +32,12 @@ struct Sizes {
 };
 
 /// Makes the members of each group. Reports what a board cannot serve.
+/// What members of one object are called, and what a device has for them.
+struct MemberNames {
+  Scope own;
+  Scope hooks;
+};
+
 class MemberMaker {
  public:
   MemberMaker(BoardTypes& types, const std::vector<Group>& groups, Report& report)
@@ -41,9 +47,10 @@ class MemberMaker {
   [[nodiscard]] const Sizes& sizes() const { return sizes_; }
 
  private:
-  void make_one(const model::Member& member, std::size_t group, MemberView& view, Scope& scope);
+  void make_one(const model::Member& member, std::size_t group, MemberView& view,
+                MemberNames& names);
   void make_value(const model::Member& member, MemberView& view, const Limits& limits);
-  std::uint64_t make_parameters(const model::Member& member, MemberView& view,
+  std::uint64_t make_parameters(const model::Member& member, std::size_t group, MemberView& view,
                                 const Limits& limits);
   void make_objref(const model::Member& member, std::size_t group, MemberView& view);
   void take_slots(std::size_t group, MemberView& view);

@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "compiler/backends/cpp/names.hpp"
+#include "compiler/backends/name_set.hpp"
 #include "compiler/backends/words.hpp"
 
 namespace robdef::arduino {
@@ -23,8 +24,8 @@ constexpr std::array core_names = {
     "boolean",      "byte",       "constrain",  "degrees",     "delay",   "digitalRead",
     "digitalWrite", "highByte",   "interrupts", "loop",        "lowByte", "main",
     "map",          "max",        "micros",     "millis",      "min",     "radians",
-    "random",       "read",       "round",      "setup",       "sq",      "word",
-    "write"};
+    "random",       "read",       "round",      "setup",       "sq",      "typeof",
+    "word",         "write"};
 
 }  // namespace
 
@@ -53,7 +54,12 @@ std::string qualified(const model::Definition& definition, std::string_view name
   return result + "::" + std::string(name);
 }
 
-std::string Scope::add(const std::string& name, std::string_view written, Span span) {
+std::string plus(std::size_t number) { return number == 0 ? "" : std::to_string(number) + " + "; }
+
+std::string minus(std::size_t number) { return number == 0 ? "" : " - " + std::to_string(number); }
+
+std::string Scope::add(const std::string& name, std::string_view written, Span span,
+                       const std::string& path) {
   const std::string used = identifier(name);
   if (used != name) {
     report_.add(Code::R0903, span, "`" + name + "` is reserved in a sketch")
@@ -61,10 +67,11 @@ std::string Scope::add(const std::string& name, std::string_view written, Span s
   }
   const auto [place, is_new] = taken_.emplace(used, span);
   if (!is_new) {
-    report_
-        .add(Code::R0901, span,
-             "`" + std::string(written) + "` becomes `" + used + "`, which is taken in the sketch")
-        .also(place->second, "also becomes `" + used + "`");
+    Diagnostic& diagnostic = report_.add(
+        Code::R0901, span,
+        "`" + std::string(written) + "` becomes `" + used + "`, which is taken in the sketch");
+    diagnostic.also(place->second, "also becomes `" + used + "`");
+    help_rename(diagnostic, arduino_language, path);
   }
   return used;
 }

@@ -42,7 +42,7 @@ void add_constant(const model::Constant& constant, const std::string& name,
     lines.push_back("namespace " + name + " {");
     for (const model::StructValueField& field : *fields) {
       const std::string part = identifier(camel(field.field));
-      const std::string of = identifier(field.constant->name);
+      const std::string of = identifier(code_name(*field.constant));
       lines.push_back(field.constant->is_struct
                           ? "namespace " + part + " = " + of + ";"
                           : "constexpr const auto& " + part + " = " + of + ";");
@@ -74,43 +74,51 @@ void add_constant(const model::Constant& constant, const std::string& name,
                   ";");
 }
 
+/// `path` is that of what has the constants.
 void add_constants(const std::vector<model::Constant>& constants, const std::string& block,
-                   Scope& scope, Report& report, std::vector<std::string>& lines) {
+                   const std::string& path, Scope& scope, Report& report,
+                   std::vector<std::string>& lines) {
   if (constants.empty()) return;
   Scope inner(report);
   const std::string space =
-      block.empty() ? "" : scope.add(block + "Constants", block, constants.front().span);
+      block.empty() ? "" : scope.add(block + "Constants", block, constants.front().span, path);
   if (!block.empty()) lines.push_back("namespace " + space + " {");
   for (const model::Constant& constant : constants) {
     Scope& own = block.empty() ? scope : inner;
-    add_constant(constant, own.add(constant.name, constant.name, constant.span), lines);
+    add_constant(
+        constant,
+        own.add(code_name(constant), constant.name, constant.span, path + "." + constant.name),
+        lines);
   }
   if (!block.empty()) lines.push_back("}  // namespace " + space);
 }
 
 RecordView make_record(const model::Record& record, BoardTypes& types, Report& report) {
   RecordView view{
-      .name = identifier(record.name), .doc = doc_lines(record.documentation), .fields = {}};
+      .name = identifier(code_name(record)), .doc = doc_lines(record.documentation), .fields = {}};
   Scope scope(report);
   // Limits were reported when the record was spelled for the first time.
   Report unheard;
   for (const model::Field& field : record.fields) {
     const Limits limits(field.documentation, field.span, unheard);
-    const std::string name = scope.add(camel(field.name), field.name, field.span);
+    const std::string name = scope.add(camel(code_name(field)), field.name, field.span,
+                                       record.qualified_name() + "." + field.name);
     view.fields.push_back({types.spell(field.type, {limits, ""}).text, name});
   }
+  view.has_fields = !view.fields.empty();
   return view;
 }
 
 EnumView make_enum(const model::Enum& enumeration, Report& report) {
-  EnumView view{.name = identifier(enumeration.name),
+  EnumView view{.name = identifier(code_name(enumeration)),
                 .doc = doc_lines(enumeration.documentation),
                 .values = {}};
   Scope scope(report);
+  const std::string path = enumeration.definition->name + "." + enumeration.name + ".";
   for (const model::EnumValue& value : enumeration.values) {
     for (const std::string& line : doc_lines(value.documentation)) view.values.push_back(line);
-    view.values.push_back(scope.add(value.name, value.name, value.span) + " = " +
-                          enum_literal(value) + ",");
+    view.values.push_back(scope.add(code_name(value), value.name, value.span, path + value.name) +
+                          " = " + enum_literal(value) + ",");
   }
   return view;
 }
@@ -126,21 +134,24 @@ SpaceView make_space(const model::Definition& definition, BoardTypes& types, Rep
   }
   Scope scope(report);
   for (const model::Enum& enumeration : definition.enums) {
-    (void)scope.add(enumeration.name, enumeration.name, enumeration.span);
+    (void)scope.add(code_name(enumeration), enumeration.name, enumeration.span,
+                    definition.name + "." + enumeration.name);
     view.enums.push_back(make_enum(enumeration, report));
   }
   const std::vector<const model::Record*> spelled = types.records();
   for (const model::Record* record : spelled) {
     if (record->definition != &definition) continue;
-    (void)scope.add(record->name, record->name, record->span);
+    (void)scope.add(code_name(*record), record->name, record->span, record->qualified_name());
     view.records.push_back(make_record(*record, types, report));
   }
-  add_constants(definition.constants, "", scope, report, view.constants);
+  add_constants(definition.constants, "", definition.name, scope, report, view.constants);
   for (const model::Record& record : definition.records) {
-    add_constants(record.constants, record.name, scope, report, view.constants);
+    add_constants(record.constants, code_name(record), record.qualified_name(), scope, report,
+                  view.constants);
   }
   for (const model::Object& object : definition.objects) {
-    add_constants(object.constants, object.name, scope, report, view.constants);
+    add_constants(object.constants, code_name(object), object.qualified_name(), scope, report,
+                  view.constants);
   }
   return view;
 }
@@ -156,7 +167,8 @@ std::vector<std::string> exception_lines(const model::Definition& definition, Re
       break;
     }
     lines.push_back("constexpr rr::Status " +
-                    scope.add(exception.name, exception.name, exception.span) +
+                    scope.add(code_name(exception), exception.name, exception.span,
+                              definition.name + "." + exception.name) +
                     " = static_cast<rr::Status>(" + std::to_string(number) + ");");
   }
   return lines;

@@ -61,7 +61,7 @@ void BoardTypes::check_size(std::uint64_t size, Span span, std::string_view what
 BoardType BoardTypes::record(const model::Record& record, Span span) {
   const auto known = std::ranges::find(known_, &record, &decltype(known_)::value_type::first);
   if (known != known_.end()) return known->second;
-  BoardType result{qualified(*record.definition, identifier(record.name))};
+  BoardType result{qualified(*record.definition, identifier(code_name(record)))};
   if (record.is_recursive) {
     refuse(span, "`" + record.name + "`, which may contain itself,",
            "refer to the other one by a number instead");
@@ -96,7 +96,7 @@ BoardType BoardTypes::base(const model::Type& type, const TypePlace& place) {
             *primitive == Primitive::double_ || *primitive == Primitive::cdouble};
   }
   if (const auto* enumeration = std::get_if<const model::Enum*>(&type.base)) {
-    return {qualified(*(*enumeration)->definition, identifier((*enumeration)->name)), 4, true};
+    return {qualified(*(*enumeration)->definition, identifier(code_name(**enumeration))), 4, true};
   }
   if (const auto* found = std::get_if<const model::Record*>(&type.base)) {
     return record(**found, type.span);

@@ -28,16 +28,21 @@ GroupView make_group(const std::vector<Group>& groups, std::size_t at, MemberMak
   view.handler = "handle" + pascal(view.name);
   view.find = "find" + pascal(view.name);
   view.device = device_name(*group.object);
-  view.first = std::to_string(group.first);
+  view.first_plus = plus(group.first);
+  view.first_minus = minus(group.first);
   view.end = std::to_string(group.first + group.count);
   view.is_root = at == 0;
   view.is_several = group.count > 1;
   if (group.via != nullptr) {
     view.parent_find = "find" + pascal(group_name(groups[group.parent]));
-    view.fan = std::to_string(group.fan);
+    const std::string fan = std::to_string(group.fan);
+    const bool has_one_parent = group.count == group.fan;
+    view.parent_index = has_one_parent ? "0" : group.fan == 1 ? "index" : "index / " + fan;
+    view.own_index = has_one_parent ? "index" : group.fan == 1 ? "0" : "index % " + fan;
     view.is_indexed = group.via->index == model::IndexForm::int32;
-    view.hook = identifier(camel(group.via->name));
+    view.hook = identifier(camel(code_name(*group.via)));
   }
+  view.uses_index = group.via != nullptr && (view.is_indexed || group.count != group.fan);
   view.members = members.make(at);
   return view;
 }
@@ -52,7 +57,7 @@ void add_devices(const std::vector<Group>& groups, ServiceView& view) {
     if (!known.insert(&object).second) continue;
     const std::string name = device_name(object);
     view.devices.push_back({.parameter = name,
-                            .name = pascal(object.name),
+                            .name = pascal(code_name(object)),
                             .wire_name = object.name,
                             .doc = prose(without_limits(object.documentation), "/// ", 100),
                             .members = view.groups[at].members});
@@ -63,7 +68,7 @@ void add_devices(const std::vector<Group>& groups, ServiceView& view) {
     }
     parameters.push_back("class " + name);
     arguments.push_back(name);
-    drafted.push_back(pascal(object.name));
+    drafted.push_back(pascal(code_name(object)));
   }
   // Classes that others give come before them.
   std::ranges::reverse(view.devices);
@@ -74,6 +79,7 @@ void add_devices(const std::vector<Group>& groups, ServiceView& view) {
 
 void add_sizes(const Sizes& sizes, const ServiceTexts& texts, ServiceView& view) {
   constexpr std::uint64_t overhead = 5;
+  constexpr std::uint64_t stuffing = 2;
   const std::uint64_t queue =
       std::min<std::uint64_t>(std::max(2 * sizes.queue_most, sizes.queue_sum),
                               std::max<std::uint64_t>(300, sizes.queue_most));
@@ -88,9 +94,9 @@ void add_sizes(const Sizes& sizes, const ServiceTexts& texts, ServiceView& view)
   std::uint64_t members = 0;
   for (const GroupView& group : view.groups) members += group.members.size();
   // Measured on an ATmega328P with avr-gcc 5.4; the core is that of a sketch with a serial port.
-  const std::uint64_t ram = sizes.request + sizes.reply + sizes.out + 3 * overhead + queue +
-                            sizes.slots + 4 * view.texts.size() + 78;
-  const std::uint64_t flash = 2600 + (sizes.has_double ? 900 : 0) + 90 * members + texts.bytes;
+  const std::uint64_t ram = sizes.request + sizes.reply + sizes.out + 3 * overhead + 2 * stuffing +
+                            queue + sizes.slots + 4 * view.texts.size() + 79;
+  const std::uint64_t flash = 2350 + (sizes.has_double ? 700 : 0) + 90 * members + texts.bytes;
   view.estimate = view.path + ": about " + text_of(flash) + " bytes of flash and " + text_of(ram) +
                   " of RAM, besides the core (about 1600 and 185) and the sketch's own";
 }
@@ -100,7 +106,7 @@ ServiceView make_service(const model::Definition& definition, const model::Objec
   ServiceView view;
   view.path = sketch_name(definition.name);
   view.wire_name = definition.name;
-  view.class_name = pascal(root.name) + "Service";
+  view.class_name = pascal(code_name(root)) + "Service";
   view.qualified = qualified(definition, view.class_name);
   view.root_device = device_name(root);
   const std::vector<Group> groups = find_groups(root, report);
@@ -117,6 +123,11 @@ ServiceView make_service(const model::Definition& definition, const model::Objec
       view.own = std::move(space);
     } else {
       view.spaces.push_back(std::move(space));
+    }
+  }
+  for (const GroupView& group : view.groups) {
+    for (const MemberView& member : group.members) {
+      view.sends_wires = view.sends_wires || (member.is_wire && member.can_get);
     }
   }
   view.exceptions = exception_lines(definition, report);

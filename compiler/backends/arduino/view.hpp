@@ -38,11 +38,14 @@ struct MemberView : MemberKindFacts {
   std::string sender;  ///< event, pipe, callback: sends one; wire: says it has changed
   std::string field;   ///< where the drafted sketch keeps the value of a property or wire
 
-  std::string child_first;              ///< objref: number of the first object
+  std::string child_first_plus;         ///< objref: number of the first object: `3 + `, or nothing
+  std::string child_index;              ///< which of its group it is: `index * 2 + which`
   std::string child_count;              ///< for each object of this group
   std::string child_class;              ///< template parameter of the objects
   std::string child_find;               ///< function of the service that finds one
-  std::string slot;                     ///< wire and pipe: number of the first
+  std::string slot_plus;                ///< wire and pipe: number of the first: `3 + `, or nothing
+  std::string slot_minus;               ///< the same, subtracted: ` - 3`, or nothing
+  std::string slot_from;                ///< whether a slot is not below it: `slot >= 3 && `
   std::string slot_end;                 ///< behind the last
   std::vector<std::string> doc;         ///< the definition's words, as comment lines
   std::vector<std::string> hook_lines;  ///< the declarations of its hooks
@@ -54,14 +57,17 @@ struct GroupView {
   std::string handler;       ///< `handleLamp`
   std::string find;          ///< `findLamp`
   std::string device;        ///< template parameter: `LampDevice`
-  std::string first;         ///< number of the first object
+  std::string first_plus;    ///< number of the first object: `3 + `, or nothing
+  std::string first_minus;   ///< the same, subtracted: ` - 3`, or nothing
   std::string end;           ///< behind the last
   std::string parent_find;
-  std::string fan;
-  std::string hook;  ///< function of the parent's device that gives one
+  std::string parent_index;  ///< of the parent of the object `index`: `index / 2`
+  std::string own_index;     ///< for its parent: `index % 2`
+  std::string hook;          ///< function of the parent's device that gives one
   bool is_root = false;
   bool is_indexed = false;
   bool is_several = false;
+  bool uses_index = false;  ///< finding one needs its index
   std::vector<MemberView> members;
 };
 
@@ -77,6 +83,7 @@ struct DeviceView {
 struct RecordView {
   std::string name;
   std::vector<std::string> doc;
+  bool has_fields = false;
   std::vector<ParameterView> fields;
 };
 struct EnumView {
@@ -110,7 +117,7 @@ struct ServiceView {
   SpaceView own;                        ///< of the definition itself, behind those it imports
   std::vector<std::string> exceptions;  ///< whole lines
   std::vector<GroupView> groups;
-  std::vector<MemberView> wires;  ///< values that are sent without being asked for
+  bool sends_wires = false;
   std::vector<DeviceView> devices;
   std::string root_device;          ///< template parameter of the root: `LightDevice`
   std::string template_parameters;  ///< `class LightDevice, class LampDevice`

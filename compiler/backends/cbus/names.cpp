@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include "compiler/backends/cpp/names.hpp"
+#include "compiler/backends/name_set.hpp"
 #include "compiler/backends/words.hpp"
 
 namespace robdef::cbus {
@@ -12,7 +13,7 @@ namespace robdef::cbus {
 std::string prefix_of(std::string_view service) { return replace_all(service, ".", "_"); }
 
 std::string type_name(const model::Record& record) {
-  return prefix_of(record.definition->name) + "_" + record.name;
+  return prefix_of(record.definition->name) + "_" + code_name(record);
 }
 
 std::string guard_of(std::string_view service) {
@@ -32,25 +33,30 @@ std::string field_name(std::string_view name, Span span, Report& report) {
   return changed;
 }
 
-void TypeNames::add(const std::string& name, const std::string& written, Span span) {
+void TypeNames::add(const std::string& name, const std::string& written, Span span,
+                    const std::string& path) {
   const auto [place, is_new] = taken_.emplace(name, span);
   if (is_new) return;
-  report_.add(Code::R0901, span, "`" + written + "` becomes `" + name + "`, which is taken in C")
-      .also(place->second, "also becomes `" + name + "`");
+  Diagnostic& diagnostic = report_.add(
+      Code::R0901, span, "`" + written + "` becomes `" + name + "`, which is taken in C");
+  diagnostic.also(place->second, "also becomes `" + name + "`");
+  help_rename(diagnostic, cbus_language, path);
 }
 
 void TypeNames::add(const model::Record& record) {
   const std::string name = type_name(record);
-  add(name, record.name, record.span);
+  const std::string path = record.qualified_name();
+  add(name, record.name, record.span, path);
+  check_file_name(name, cbus_language, path, record.span, report_);
   constexpr std::array endings{"_put",     "_get",  "_pack",  "_unpack",  "_signals", "_frame",
                                "_receive", "_HASH", "_BYTES", "_SIGNALS", "_sfun"};
-  for (const char* const ending : endings) add(name + ending, record.name, record.span);
+  for (const char* const ending : endings) add(name + ending, record.name, record.span, path);
 }
 
 void TypeNames::add_definition(const model::Definition& definition) {
   const std::string prefix = prefix_of(definition.name);
-  add(prefix + "_bus", definition.name, definition.span);
-  add(prefix + "_buses", definition.name, definition.span);
+  add(prefix + "_bus", definition.name, definition.span, "");
+  add(prefix + "_buses", definition.name, definition.span, "");
 }
 
 }  // namespace robdef::cbus

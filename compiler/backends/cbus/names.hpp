@@ -7,9 +7,12 @@
 
 #include "compiler/diagnostics/report.hpp"
 #include "compiler/model/model.hpp"
+#include "compiler/model/rename.hpp"
 
 /// Every name in generated C is made here.
 namespace robdef::cbus {
+
+using model::code_name;
 
 /// `experimental_arm` for experimental.arm: what all names of its files begin with.
 std::string prefix_of(std::string_view service);
@@ -29,7 +32,7 @@ class TypeNames {
   void add_definition(const model::Definition& definition);
 
  private:
-  void add(const std::string& name, const std::string& written, Span span);
+  void add(const std::string& name, const std::string& written, Span span, const std::string& path);
 
   std::map<std::string, Span> taken_;
   Report& report_;

@@ -9,6 +9,7 @@
 
 #include "compiler/backends/cbus/layout.hpp"
 #include "compiler/backends/cbus/names.hpp"
+#include "compiler/backends/name_set.hpp"
 #include "compiler/output/prose.hpp"
 
 namespace robdef::cbus {
@@ -75,12 +76,12 @@ FieldView make_field(const PlacedField& placed, std::size_t number, const std::s
   const bool is_array = field.type.array != model::ArrayForm::none;
   FieldView view;
   view.wire_name = field.name;
-  view.name = field_name(field.name, field.span, report);
+  view.name = field_name(code_name(field), field.span, report);
   view.doc = comment(field.documentation);
   view.gap = gap_member(number, placed.gap);
   view.offset = std::to_string(placed.offset.eight);
   view.offset_four = std::to_string(placed.offset.four);
-  view.claim = record + "_at_" + field.name;
+  view.claim = record + "_at_" + code_name(field);
   view.count = std::to_string(placed.count);
   view.address = is_array ? "" : "&";
   if (is_array) view.dimension = "[" + view.count + "]";
@@ -107,7 +108,7 @@ FieldView make_field(const PlacedField& placed, std::size_t number, const std::s
 
 std::string name_in_c(const model::Field& field) {
   Report silent;  // the field itself has been reported
-  return field_name(field.name, field.span, silent);
+  return field_name(code_name(field), field.span, silent);
 }
 
 void add_signals(const Record& record, RecordView& view) {
@@ -133,8 +134,11 @@ RecordView make_record(const Record& record, Report& report) {
   view.c_name = type_name(record);
   view.doc = comment(record.documentation);
   view.is_bus = record.kind == model::RecordKind::pod;
+  NameSet names(cbus_language, report);
   for (const PlacedField& placed : layout.fields) {
     view.fields.push_back(make_field(placed, view.fields.size(), view.c_name, report));
+    names.add(view.fields.back().name, placed.field->span, "field",
+              record.qualified_name() + "." + placed.field->name);
   }
   view.gap = gap_member(view.fields.size(), layout.gap_at_end);
   view.size = std::to_string(layout.size.eight);

@@ -76,7 +76,7 @@ ConstantView make_constant(const model::Constant& constant, const std::string& s
                            std::size_t indent, const Context& context) {
   ConstantView view;
   view.wire_name = constant.name;
-  view.name = identifier(constant.name);
+  view.name = identifier(code_name(constant));
   view.doc = doc_lines(constant.documentation, indent);
   view.is_struct = constant.is_struct;
   view.type = constant_type(constant, context.types);
@@ -94,16 +94,20 @@ std::vector<ConstantView> class_constants(const std::vector<model::Constant>& co
   return views;
 }
 
-EnumView make_enum(const model::Enum& enumeration) {
+EnumView make_enum(const model::Enum& enumeration, const Context& context) {
   EnumView view;
   view.wire_name = enumeration.name;
-  view.name = identifier(enumeration.name);
+  view.name = identifier(code_name(enumeration));
   view.qualified = qualified(*enumeration.definition, view.name);
   view.doc = doc_lines(enumeration.documentation, 0);
   view.has_values = !enumeration.values.empty();
+  NameSet names(cpp_language, context.report);
   for (const model::EnumValue& value : enumeration.values) {
+    const std::string name = identifier(code_name(value));
+    names.add(name, value.span, "value",
+              enumeration.definition->name + "." + enumeration.name + "." + value.name);
     view.values.push_back({.wire_name = value.name,
-                           .name = identifier(value.name),
+                           .name = name,
                            .value = enum_literal(value),
                            .doc = doc_lines(value.documentation, 2)});
   }
@@ -113,7 +117,7 @@ EnumView make_enum(const model::Enum& enumeration) {
 ExceptionView make_exception(const model::Exception& exception, const Context& context) {
   ExceptionView view;
   view.wire_name = exception.definition->name + "." + exception.name;
-  view.name = identifier(exception.name);
+  view.name = identifier(code_name(exception));
   view.qualified = qualified(*exception.definition, view.name);
   view.doc = doc_lines(exception.documentation, 0);
   for (const char* header : {"<rr/error.hpp>", "<rr/varvalue.hpp>", "<string>", "<utility>"}) {
@@ -147,7 +151,7 @@ RecordView make_record(const model::Record& record, const Context& context) {
   const RecordNames names(record, context.report);
   RecordView view;
   describe(view, record);
-  view.name = identifier(record.name);
+  view.name = identifier(code_name(record));
   view.qualified = qualified(*record.definition, view.name);
   view.doc = doc_lines(record.documentation, 0);
   if (view.is_namedarray) view.number_type = context.types.number(record.number);

@@ -14,6 +14,7 @@
 #include "experimental/docs.hpp"
 #include "experimental/enums.hpp"
 #include "experimental/exceptions.hpp"
+#include "experimental/functions.hpp"
 #include "experimental/implements.hpp"
 #include "experimental/imports.hpp"
 #include "experimental/line_ends.hpp"
@@ -261,6 +262,21 @@ TEST(Generated, DefaultClassesStoreProperties) {
   board.set_page(3);  // outside of a request: what clients start with
   EXPECT_EQ(board.get_page(), 3);
   EXPECT_EQ(experimental::big_arrays::StoreDefault().get_exact().size(), 100000U);
+}
+
+TEST(Generated, ObjectsOfFunctionsOnlyHaveDefaultClasses) {
+  class Machine : public experimental::functions::MachineDefault {
+   public:
+    double speed() override { return 2.5; }
+  };
+  Machine machine;
+  EXPECT_EQ(machine.speed(), 2.5);
+  try {
+    machine.stop();
+    FAIL() << "did not throw";
+  } catch (const rr::Error& error) {
+    EXPECT_EQ(error.code(), rr::ErrorCode::not_implemented_error);
+  }
 }
 
 TEST(Generated, DefaultClassesFailWhereThereIsNothing) {

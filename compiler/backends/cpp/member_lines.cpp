@@ -2,6 +2,7 @@
 // Members that are calls: properties, functions, generators, callbacks, objrefs.
 #include "compiler/backends/cpp/member_lines.hpp"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -84,6 +85,49 @@ std::string forwarded(const MemberView& view, const std::string& token) {
   return "::std::forward<" + view.token + ">(" + token + ")";
 }
 
+/// The terms of a call: its parameter is the last one of what blocks, and in front of the token of
+/// what does not.
+std::string options_name(const MemberView& view, const Names& names) {
+  std::set<std::string> taken = taken_by(view);
+  taken.insert(token_name(view, names));
+  return names.local("options", taken);
+}
+std::string options_parameter(const std::string& options) {
+  return "const ::rr::CallOptions& " + options;
+}
+std::string defaulted(const std::string& parameter) { return parameter + " = {}"; }
+
+/// What the asynchronous form of a member is made of.
+struct AsyncForm {
+  std::string name;   ///< `async_get_pan`
+  Texts parameters;   ///< without the terms and the token
+  Texts arguments;    ///< their names
+  std::string call;   ///< `return rr_async_get<double>(`
+  Texts passed;       ///< what it takes behind member, terms and token
+  std::string after;  ///< ` const`
+};
+
+/// With terms, and without.
+void lay_out_async(MemberView& view, const Names& names, const AsyncForm& form,
+                   std::string& with_options, std::string& plain) {
+  const std::string token = token_name(view, names);
+  const std::string options = options_name(view, names);
+  const auto signature = [&](const Texts& more) {
+    return Signature{.result = "auto",
+                     .name = form.name,
+                     .parameters = with(form.parameters, more),
+                     .after = form.after};
+  };
+  const std::string handed = forwarded(view, token);
+  with_options =
+      definition(signature({options_parameter(options), token_parameter(view, token)}),
+                 List{form.call, with({view.entry, options, handed}, form.passed), ");"}, in_class);
+  plain = definition(signature({token_parameter(view, token)}),
+                     List{"return " + form.name + "(",
+                          with(form.arguments, {"::rr::CallOptions()", handed}), ");"},
+                     in_class);
+}
+
 Signature getter(const MemberView& view, const std::string& after = "",
                  const std::string& before = "") {
   return {
@@ -98,6 +142,14 @@ Signature setter(const MemberView& view, const std::string& after = "",
           .after = after};
 }
 
+/// How a member is called from where its parameters are: one of them may have its name.
+std::string called(const MemberView& view) {
+  const bool is_hidden =
+      std::any_of(view.parameters.begin(), view.parameters.end(),
+                  [&](const ParameterView& parameter) { return parameter.name == view.name; });
+  return (is_hidden ? "this->" : "") + view.name;
+}
+
 /// The form that may answer later; by default it answers with what the plain one returns.
 std::string answering_form(const MemberView& view, const Names& names, const Texts& parameters) {
   std::set<std::string> taken;
@@ -108,7 +160,7 @@ std::string answering_form(const MemberView& view, const Names& names, const Tex
       .result = "void",
       .name = "async_" + view.name,
       .parameters = with(parameters, {"::rr::Answer<" + view.type + "> " + answer})};
-  List call{.before = view.name + "(", .items = names_of(view.parameters), .after = ");"};
+  List call{.before = called(view) + "(", .items = names_of(view.parameters), .after = ");"};
   if (!view.has_result) return long_definition(signature, call, answer + "();", in_class);
   call.before.insert(0, answer + "(");
   call.after = "));";
@@ -119,10 +171,10 @@ std::string answering_form(const MemberView& view, const Names& names, const Tex
 /// is broken when the inner one cannot be broken at its parenthesis.
 std::string answer_with(const MemberView& view) {
   const std::string outer = "return rr_request.answer(";
-  List call{.before = outer + view.name + "(", .items = moved(view.parameters), .after = "));"};
+  List call{.before = outer + called(view) + "(", .items = moved(view.parameters), .after = "));"};
   std::string result = list(call, in_case);
   if (result.substr(0, result.find('\n')).back() != '(') return result;
-  call.before = view.name + "(";
+  call.before = called(view) + "(";
   return outer + "\n" + std::string(in_case + 4, ' ') + list(call, in_case + 4);
 }
 
@@ -164,26 +216,33 @@ std::string stored_name(const MemberView& view) {
 }
 
 void lay_out_property(MemberView& view, const Names& names) {
-  const std::string token = token_name(view, names);
   const std::string stored = stored_name(view);
+  const std::string options = options_name(view, names);
+  const std::string terms = defaulted(options_parameter(options));
+  Signature get = getter(view);
+  get.parameters.push_back(terms);
   view.stub_get = definition(
-      getter(view), List{"return rr_get<" + view.type + ">(", {view.entry}, ");"}, in_class);
+      get, List{"return rr_get<" + view.type + ">(", {view.entry, options}, ");"}, in_class);
+  Signature set = setter(view);
+  set.parameters.push_back(terms);
   view.stub_set =
-      definition(setter(view), List{"rr_set(", {view.entry, "&" + view.value}, ");"}, in_class);
-  view.async_get = definition(
-      {.result = "auto",
-       .name = "async_" + view.getter,
-       .parameters = {token_parameter(view, token)}},
-      List{"return rr_async_get<" + view.type + ">(", {view.entry, forwarded(view, token)}, ");"},
-      in_class);
-  view.async_set =
-      definition({.result = "auto",
-                  .name = "async_" + view.setter,
-                  .parameters = {view.passed + " " + view.value, token_parameter(view, token)}},
-                 List{"return rr_async_set<" + view.type + ">(",
-                      {view.entry, forwarded(view, token), view.value},
-                      ");"},
-                 in_class);
+      definition(set, List{"rr_set(", {view.entry, options, "&" + view.value}, ");"}, in_class);
+  lay_out_async(view, names,
+                {.name = "async_" + view.getter,
+                 .parameters = {},
+                 .arguments = {},
+                 .call = "return rr_async_get<" + view.type + ">(",
+                 .passed = {},
+                 .after = ""},
+                view.async_get, view.plain_async_get);
+  lay_out_async(view, names,
+                {.name = "async_" + view.setter,
+                 .parameters = {view.passed + " " + view.value},
+                 .arguments = {view.value},
+                 .call = "return rr_async_set<" + view.type + ">(",
+                 .passed = {view.value},
+                 .after = ""},
+                view.async_set, view.plain_async_set);
   view.skeleton_get = declaration(getter(view, " = 0", "virtual "), in_class);
   view.skeleton_set = declaration(setter(view, " = 0", "virtual "), in_class);
   const std::string override_get = view.can_get ? " override" : "";
@@ -195,20 +254,25 @@ void lay_out_property(MemberView& view, const Names& names) {
 }
 
 void lay_out_function(MemberView& view, const Names& names) {
-  const std::string token = token_name(view, names);
+  const std::string options = options_name(view, names);
   const Texts parameters = passed(view.parameters);
   const Texts arguments = names_of(view.parameters);
   const std::string async_name = "async_" + view.name;
   const std::string returns = view.has_result ? "return " : "";
   view.stub_call = definition(
-      {.result = view.type, .name = view.name, .parameters = parameters},
-      List{returns + "rr_call<" + view.type + ">(", with({view.entry}, arguments), ");"}, in_class);
-  view.async_call = definition({.result = "auto",
-                                .name = async_name,
-                                .parameters = with(parameters, {token_parameter(view, token)})},
-                               List{"return rr_async_call<" + view.type + ">(",
-                                    with({view.entry, forwarded(view, token)}, arguments), ");"},
-                               in_class);
+      {.result = view.type,
+       .name = view.name,
+       .parameters = with(parameters, {defaulted(options_parameter(options))})},
+      List{returns + "rr_call<" + view.type + ">(", with({view.entry, options}, arguments), ");"},
+      in_class);
+  lay_out_async(view, names,
+                {.name = async_name,
+                 .parameters = parameters,
+                 .arguments = arguments,
+                 .call = "return rr_async_call<" + view.type + ">(",
+                 .passed = arguments,
+                 .after = ""},
+                view.async_call, view.plain_async_call);
   view.skeleton_call = declaration({.before = "virtual ",
                                     .result = view.type,
                                     .name = view.name,
@@ -223,7 +287,7 @@ void lay_out_function(MemberView& view, const Names& names) {
 }
 
 void lay_out_generator(MemberView& view, const Names& names) {
-  const std::string token = token_name(view, names);
+  const std::string options = options_name(view, names);
   const Texts parameters = passed(view.parameters);
   const Texts arguments = names_of(view.parameters);
   const std::string taken = view.generator_parameter ? view.generator_parameter->type : "void";
@@ -233,14 +297,19 @@ void lay_out_generator(MemberView& view, const Names& names) {
   view.handle = "::rr::Generator" + of;
   view.served = "::rr::Sequence" + of;
   view.stub_call = definition(
-      {.result = view.handle, .name = view.name, .parameters = parameters},
-      List{"return rr_generate" + both + "(", with({view.entry}, arguments), ");"}, in_class);
-  view.async_call = definition({.result = "auto",
-                                .name = "async_" + view.name,
-                                .parameters = with(parameters, {token_parameter(view, token)})},
-                               List{"return rr_async_generate" + both + "(",
-                                    with({view.entry, forwarded(view, token)}, arguments), ");"},
-                               in_class);
+      {.result = view.handle,
+       .name = view.name,
+       .parameters = with(parameters, {defaulted(options_parameter(options))})},
+      List{"return rr_generate" + both + "(", with({view.entry, options}, arguments), ");"},
+      in_class);
+  lay_out_async(view, names,
+                {.name = "async_" + view.name,
+                 .parameters = parameters,
+                 .arguments = arguments,
+                 .call = "return rr_async_generate" + both + "(",
+                 .passed = arguments,
+                 .after = ""},
+                view.async_call, view.plain_async_call);
   view.skeleton_call = declaration({.before = "virtual ",
                                     .result = view.served,
                                     .name = view.name,
@@ -254,7 +323,9 @@ void lay_out_generator(MemberView& view, const Names& names) {
 
 void lay_out_callback(MemberView& view, const Names& names) {
   std::set<std::string> taken = taken_by(view);
-  const std::string token = names.local("token", taken);
+  taken.insert(token_name(view, names));
+  const std::string options = options_name(view, names);
+  taken.insert(options);
   const std::string client = names.local("client", taken);
   const Texts parameters = with({"::std::uint32_t " + client}, passed(view.parameters));
   const Texts arguments = with({client}, names_of(view.parameters));
@@ -265,44 +336,54 @@ void lay_out_callback(MemberView& view, const Names& names) {
                      in_class);
   view.stub_handle = definition({.result = view.handle, .name = view.name},
                                 "return {*this, " + view.entry + "};", in_class);
-  view.skeleton_call = definition(
-      {.result = view.type, .name = view.name, .parameters = parameters, .after = " const"},
-      List{returns + "rr_call_back<" + view.type + ">(", with({view.entry}, arguments), ");"},
-      in_class);
-  view.skeleton_async =
-      definition({.result = "auto",
-                  .name = "async_" + view.name,
-                  .parameters = with(parameters, {token_parameter(view, token)}),
+  view.skeleton_call =
+      definition({.result = view.type,
+                  .name = view.name,
+                  .parameters = with(parameters, {defaulted(options_parameter(options))}),
                   .after = " const"},
-                 List{"return rr_async_call_back<" + view.type + ">(",
-                      with({view.entry, forwarded(view, token)}, arguments), ");"},
+                 List{returns + "rr_call_back<" + view.type + ">(",
+                      with({view.entry, options}, arguments), ");"},
                  in_class);
+  lay_out_async(view, names,
+                {.name = "async_" + view.name,
+                 .parameters = parameters,
+                 .arguments = arguments,
+                 .call = "return rr_async_call_back<" + view.type + ">(",
+                 .passed = arguments,
+                 .after = " const"},
+                view.skeleton_async, view.plain_async_call);
 }
 
 void lay_out_objref(MemberView& view, const Names& names, const std::string& stub_class) {
-  const std::string token = token_name(view, names);
-  std::set<std::string> taken{token};
+  const std::string options = options_name(view, names);
+  std::set<std::string> taken{token_name(view, names), options};
   const std::string index = names.local("index", taken);
   const std::string index_type = view.has_int32_index ? "::std::int32_t " : "const ::std::string& ";
   Texts parameters;
-  Texts arguments{view.entry};
+  Texts arguments;
   if (view.has_index) {
     parameters.push_back(index_type + index);
     arguments.push_back(index);
   }
   const std::string pointer = "::std::shared_ptr<" + view.stub + ">";
   const std::string find = view.is_varobject ? "rr_find(" : "rr_find_as<" + view.stub + ">(";
-  view.stub_find =
-      declaration({.result = pointer, .name = view.getter, .parameters = parameters}, in_class);
-  view.stub_find_definition = definition(
-      {.result = pointer, .name = stub_class + "::" + view.getter, .parameters = parameters},
-      List{"return " + find, arguments, ");"}, 0);
-  arguments.insert(arguments.begin() + 1, forwarded(view, token));
-  view.async_find =
-      definition({.result = "auto",
-                  .name = "async_" + view.getter,
-                  .parameters = with(parameters, {token_parameter(view, token)})},
-                 List{"return rr_async_find<" + view.stub + ">(", arguments, ");"}, in_class);
+  const std::string terms = options_parameter(options);
+  view.stub_find = declaration(
+      {.result = pointer, .name = view.getter, .parameters = with(parameters, {defaulted(terms)})},
+      in_class);
+  view.stub_find_definition =
+      definition({.result = pointer,
+                  .name = stub_class + "::" + view.getter,
+                  .parameters = with(parameters, {terms})},
+                 List{"return " + find, with({view.entry, options}, arguments), ");"}, 0);
+  lay_out_async(view, names,
+                {.name = "async_" + view.getter,
+                 .parameters = parameters,
+                 .arguments = arguments,
+                 .call = "return rr_async_find<" + view.stub + ">(",
+                 .passed = arguments,
+                 .after = ""},
+                view.async_find, view.plain_async_find);
   lay_out_skeleton_objref(view, parameters);
 }
 

@@ -60,7 +60,7 @@ class MemberMaker {
   MemberView common(const Member& member) {
     MemberView view;
     describe(view, object_, member, runtime_abilities);
-    view.name = member_name(object_, member.name);
+    view.name = member_name(object_, member);
     view.doc = doc_lines(member.documentation, in_class);
     return view;
   }
@@ -79,8 +79,8 @@ class MemberMaker {
     for (const ParameterView& parameter : view.parameters) names.push_back(parameter.name);
     view.arguments = join(names, ", ");
     view.token = context_.names.local("Token", taken);
-    view.getter = "get_" + member.name;
-    view.setter = "set_" + member.name;
+    view.getter = "get_" + code_name(member);
+    view.setter = "set_" + code_name(member);
     if (member.kind == MemberKind::objref) {
       make_reference(view, member);
     } else if (member.kind != MemberKind::event) {
@@ -99,7 +99,7 @@ class MemberMaker {
   ParameterView make_parameter(const model::Parameter& parameter, std::set<std::string>& taken) {
     const CppType type = spell(parameter.type);
     ParameterView view;
-    describe(view, parameter, context_.names.local(parameter.name, taken));
+    describe(view, parameter, context_.names.local(code_name(parameter), taken));
     view.type = type.text;
     view.passed = type.passed();
     view.local = variable(type, view.name, 6);

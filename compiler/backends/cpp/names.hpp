@@ -7,11 +7,15 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/backends/name_set.hpp"
 #include "compiler/diagnostics/report.hpp"
 #include "compiler/model/model.hpp"
+#include "compiler/model/rename.hpp"
 
 /// Every C++ name in generated code is made here.
 namespace robdef::cpp {
+
+using model::code_name;
 
 /// A word of C++, one of its alternative tokens, or a macro of a standard header.
 bool is_reserved(std::string_view word);
@@ -31,7 +35,7 @@ std::string qualified(const model::Definition& definition, std::string_view iden
 std::string stub_name(const model::Object& object);
 std::string skeleton_name(const model::Object& object);
 std::string default_name(const model::Object& object);
-/// Objects without properties and memories have nothing to store, and no Default class.
+/// Where a service has nothing to implement there is no Default class.
 bool has_default(const model::Object& object);
 
 /// `rr_type_Angles` and so on: what generated code defines besides the user's names. The word
@@ -65,18 +69,24 @@ class Names {
   [[nodiscard]] std::string local(std::string_view name, std::set<std::string>& taken) const;
 
  private:
-  void add(const std::string& name, Span span, std::string_view what, Report& report);
-  void add_declarations(Report& report);
+  struct Taken {
+    Span span;
+    std::string path;  ///< of what has the name; empty: an alias
+  };
+
+  void add_declarations(NameSet& names, Report& report);
   void check_inner_namespaces(const model::Model& model, Report& report);
-  [[nodiscard]] std::string type_of(const model::Definition& definition, const std::string& name,
+  /// `wire_name` is that of the definition, `name` that in C++.
+  [[nodiscard]] std::string type_of(const model::Definition& definition,
+                                    const std::string& wire_name, const std::string& name,
                                     const std::set<std::string>& hidden) const;
 
   const model::Definition* definition_;
-  std::map<std::string, Span, std::less<>> taken_;
+  std::map<std::string, Taken, std::less<>> taken_;
   std::map<std::string, std::string, std::less<>> aliases_;  ///< by qualified robdef name
 };
 
-/// Names of the fields and constants of a record. Reports R0903.
+/// Names of the fields and constants of a record. Reports R0901 and R0903.
 class RecordNames {
  public:
   RecordNames(const model::Record& record, Report& report);
@@ -91,10 +101,10 @@ class RecordNames {
 };
 
 /// A member's name in the classes of its object: members named like one of them get a `_` too.
-std::string member_name(const model::Object& object, std::string_view name);
+std::string member_name(const model::Object& object, const model::Member& member);
 /// Names that members of the object and of all that it implements have inside its classes.
 std::set<std::string> names_inside(const model::Object& object);
-/// Reports R0903 for the members of an object.
-void report_renamed_members(const model::Object& object, Report& report);
+/// Reports R0901 and R0903 for the members and constants of an object.
+void check_members(const model::Object& object, Report& report);
 
 }  // namespace robdef::cpp

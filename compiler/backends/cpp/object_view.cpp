@@ -37,12 +37,17 @@ void make_docs(ObjectView& view, const model::Object& object) {
       class_doc("Serves one " + name + ": derive from it and implement its members.",
                 object.documentation, left_out);
   const bool has_properties = std::ranges::any_of(view.members, &MemberView::is_property);
-  const std::string stored = !has_properties     ? "its memories"
-                             : view.has_memories ? "the values of its properties and its memories"
-                                                 : "the values of its properties";
-  view.default_doc = class_doc("A " + name + " that stores " + stored +
-                                   ". Functions and objrefs fail until they are overridden.",
-                               "", "");
+  view.has_stored = has_properties || view.has_memories;
+  std::string text = "A " + name;
+  if (view.has_stored) {
+    text += !has_properties     ? " that stores its memories."
+            : view.has_memories ? " that stores the values of its properties and its memories."
+                                : " that stores the values of its properties.";
+    text += " Functions and objrefs fail until they are overridden.";
+  } else {
+    text += " whose functions and objrefs fail until they are overridden.";
+  }
+  view.default_doc = class_doc(text, "", "");
 }
 
 void make_bases(ObjectView& view, const model::Object& object, const Context& context) {
@@ -70,7 +75,7 @@ void make_bases(ObjectView& view, const model::Object& object, const Context& co
 void make_names(ObjectView& view, const model::Object& object) {
   view.wire_name = object.qualified_name();
   view.short_name = object.name;
-  view.name = identifier(object.name);
+  view.name = identifier(code_name(object));
   view.stub = stub_name(object);
   view.skeleton = skeleton_name(object);
   view.default_class = default_name(object);
@@ -141,7 +146,7 @@ ObjectView make_object(const model::Object& object, const Context& context) {
   ObjectView view;
   make_names(view, object);
   make_bases(view, object, context);
-  report_renamed_members(object, context.report);
+  check_members(object, context.report);
   view.constants = class_constants(object.constants, context);
   view.has_constants = !view.constants.empty();
   make_members(view, object, context);

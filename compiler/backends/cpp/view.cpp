@@ -110,23 +110,31 @@ class DefinitionMaker {
       const std::string target = alias.qualified_name.substr(dot + 1);
       for (const model::Definition* import : definition_.imports) {
         if (alias.qualified_name.substr(0, dot) != import->name) continue;
-        if (!has_type(*import, target)) continue;
+        const std::string name = type_name(*import, target);
+        if (name.empty()) continue;
         view_.aliases.push_back({"using " + identifier(alias.name) + " = " +
-                                 qualified(*import, identifier(target)) + ";"});
+                                 qualified(*import, identifier(name)) + ";"});
       }
     }
   }
 
-  static bool has_type(const model::Definition& definition, const std::string& name) {
-    const auto is_called = [&](const auto& declared) { return declared.name == name; };
-    return std::ranges::any_of(definition.records, is_called) ||
-           std::ranges::any_of(definition.enums, is_called) ||
-           std::ranges::any_of(definition.exceptions, is_called);
+  /// What a record, enum or exception is called in code; empty when there is none of that name.
+  static std::string type_name(const model::Definition& definition, const std::string& name) {
+    std::string found;
+    const auto look = [&](const auto& all) {
+      for (const auto& one : all) {
+        if (one.name == name) found = code_name(one);
+      }
+    };
+    look(definition.records);
+    look(definition.enums);
+    look(definition.exceptions);
+    return found;
   }
 
   void add_forward(const model::Declaration& early) {
     if (const auto* record = std::get_if<const model::Record*>(&early)) {
-      view_.forwards.push_back({"struct " + identifier((*record)->name) + ";"});
+      view_.forwards.push_back({"struct " + identifier(code_name(**record)) + ";"});
     } else if (const auto* object = std::get_if<const model::Object*>(&early)) {
       view_.forwards.push_back({"class " + stub_name(**object) + ";"});
       view_.forwards.push_back({"class " + skeleton_name(**object) + ";"});
@@ -147,7 +155,7 @@ class DefinitionMaker {
   DeclarationView make(const model::Enum& enumeration) {
     types_.include("<cstdint>");
     DeclarationView view;
-    view.enumeration = make_enum(enumeration);
+    view.enumeration = make_enum(enumeration, context_);
     view.is_early = std::ranges::any_of(view.enumeration->values, [&](const EnumValueView& value) {
       return names_.is_variable(value.name);
     });

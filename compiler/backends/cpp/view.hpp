@@ -125,10 +125,15 @@ struct MemberView : MemberFacts {
   std::string stub_handle;           ///< event, pipe, callback, wire, memory
   std::string stub_find;             ///< objref: declared in the class
   std::string stub_find_definition;  ///< objref: outside of it
+  // Asynchronous forms take the terms of the call; the plain ones do not.
   std::string async_get;
+  std::string plain_async_get;
   std::string async_set;
+  std::string plain_async_set;
   std::string async_call;
+  std::string plain_async_call;  ///< function, callback
   std::string async_find;
+  std::string plain_async_find;
   std::string skeleton_get;
   std::string skeleton_set;
   std::string skeleton_handle;  ///< pipe, wire, memory
@@ -178,6 +183,7 @@ struct ObjectView {
   bool has_calls = false;       ///< properties or functions
   bool has_objrefs = false;
   bool has_memories = false;
+  bool has_stored = false;  ///< the Default class stores something
   std::string member_count;
   std::string table;                     ///< name of its ObjectType
   std::string member_table;              ///< of the array of its members

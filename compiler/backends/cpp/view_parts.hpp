@@ -35,7 +35,7 @@ ConstantView make_constant(const model::Constant& constant, const std::string& s
 std::vector<ConstantView> class_constants(const std::vector<model::Constant>& constants,
                                           const Context& context);
 
-EnumView make_enum(const model::Enum& enumeration);
+EnumView make_enum(const model::Enum& enumeration, const Context& context);
 ExceptionView make_exception(const model::Exception& exception, const Context& context);
 RecordView make_record(const model::Record& record, const Context& context);
 ObjectView make_object(const model::Object& object, const Context& context);

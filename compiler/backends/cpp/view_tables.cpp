@@ -20,7 +20,8 @@ ROBDEF_VIEW_TYPE(MemberView, name, doc, entry, type, passed, descriptor, value, 
                  served, stored, parameters, arguments, parameter_table, yields,
                  generator_parameter, stub, skeleton, qualified_stub, qualified_skeleton, getter,
                  setter, token, stub_get, stub_set, stub_call, stub_handle, stub_find,
-                 stub_find_definition, async_get, async_set, async_call, async_find, skeleton_get,
+                 stub_find_definition, async_get, plain_async_get, async_set, plain_async_set,
+                 async_call, plain_async_call, async_find, plain_async_find, skeleton_get,
                  skeleton_set, skeleton_handle, skeleton_call, skeleton_async, skeleton_fire,
                  skeleton_find, dispatch_read, dispatch_call, dispatch_find, default_get,
                  default_set, default_call, default_find);
@@ -29,9 +30,9 @@ ROBDEF_VIEW_TYPE(ObjectView, wire_name, short_name, name, stub_doc, skeleton_doc
                  skeleton, default_class, qualified_stub, qualified_skeleton, qualified_default,
                  stub_head, skeleton_head, default_head, has_default, implements, has_implements,
                  constants, has_constants, members, has_members, has_parameters, has_calls,
-                 has_objrefs, has_memories, member_count, table, member_table, member_rows,
-                 implements_table, parameter_tables, stub_type, skeleton_type, dispatch_head,
-                 child_head, memory_head);
+                 has_objrefs, has_memories, has_stored, member_count, table, member_table,
+                 member_rows, implements_table, parameter_tables, stub_type, skeleton_type,
+                 dispatch_head, child_head, memory_head);
 ROBDEF_VIEW_TYPE(DeclarationView, constant, exception, enumeration, record, object, ends_group,
                  is_early);
 ROBDEF_VIEW_TYPE(ForwardView, declaration);

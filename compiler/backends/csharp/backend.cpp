@@ -9,7 +9,7 @@
 namespace robdef::csharp {
 
 std::string_view CSharpBackend::summary() const {
-  return "C# for .NET 10: interfaces, stubs, skeletons and value types";
+  return "C# for .NET 8 and later: interfaces, stubs, skeletons, types";
 }
 
 FileSet CSharpBackend::generate(const model::Model& model, const GenerateOptions& options,

@@ -16,7 +16,7 @@ inline constexpr Abilities runtime_abilities{.properties = true,
                                              .wires = true,
                                              .memories = true};
 
-/// C# for .NET 10 on Robdef.Runtime (README.md in this folder says what is generated).
+/// C# for .NET 8 and later on Robdef.Runtime (README.md in this folder says what is generated).
 class CSharpBackend final : public Backend {
  public:
   [[nodiscard]] std::string_view name() const override { return "csharp"; }

@@ -7,14 +7,11 @@
 
 #include "compiler/backends/literals.hpp"
 #include "compiler/backends/words.hpp"
-#include "compiler/output/escape.hpp"
 
 namespace robdef::csharp {
 namespace {
 
 using model::Primitive;
-
-constexpr std::string_view digits = "0123456789ABCDEF";
 
 std::string number(const model::Constant& constant, const model::Number& value,
                    const std::string& written) {
@@ -38,32 +35,11 @@ std::string struct_definition(const model::Constant& constant, const std::string
 
 }  // namespace
 
-std::string string_literal(std::string_view text) {
-  std::string result = "\"";
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    // A byte order mark, and the two line ends that C# knows beyond ASCII, are escaped.
-    const std::string_view next = text.substr(i, 3);
-    if (next == "\xEF\xBB\xBF") {
-      result += "\\uFEFF";
-      i += 2;
-    } else if (next == "\xE2\x80\xA8" || next == "\xE2\x80\xA9") {
-      result += next.back() == '\xA8' ? "\\u2028" : "\\u2029";
-      i += 2;
-    } else if (text.substr(i, 2) == "\xC2\x85") {
-      result += "\\u0085";
-      ++i;
-    } else {
-      append_escaped(result, text[i], digits);
-    }
-  }
-  return result + '"';
-}
-
 std::string constant_definition(const model::Constant& constant, const std::string& name,
                                 Types& types, Names& names, std::size_t indent) {
   if (constant.is_struct) return struct_definition(constant, name, types, names, indent);
   if (const auto* text = std::get_if<std::string>(&constant.value)) {
-    return "public const string " + name + " = " + string_literal(*text) + ";";
+    return "public const string " + name + " = " + unicode_literal(*text) + ";";
   }
   const std::string type = types.number(std::get<Primitive>(constant.type.base));
   if (const auto* numbers = std::get_if<std::vector<model::Number>>(&constant.value)) {

@@ -11,9 +11,6 @@
 /// Constants and literals in C#.
 namespace robdef::csharp {
 
-/// `text` between quotes, with escapes.
-std::string string_literal(std::string_view text);
-
 /// The whole definition of a constant called `name`, in a class. A struct constant becomes a static
 /// class whose members are its values; an array a property that gives a span of constant memory.
 std::string constant_definition(const model::Constant& constant, const std::string& name,

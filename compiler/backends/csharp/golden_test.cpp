@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The feature definitions of conformance/ and those of C# alone, what is generated from them, and
 // the findings of the backend. The goldens are one output folder, as a user has it, and compiled.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include "compiler/diagnostics/golden_corpus.hpp"
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/model/compiled.hpp"
+#include "compiler/model/rename.hpp"
 
 namespace robdef::csharp {
 namespace {
@@ -76,6 +78,28 @@ TEST(CSharpReject, EachCodeOfBackendsHasAFile) {
       return input.filename().string().starts_with(entry.name);
     })) << entry.name;
   }
+}
+
+TEST(CSharpRename, LetsNamesThatCollideBeTold) {
+  model::Compiled compiled =
+      model::compiled({"service example\nstdver 0.10\nobject Arm\n  property double nectarAnchor\n"
+                       "  property double nectar_anchor\nend\n"});
+  Report collision;
+  (void)make_view(compiled.model, collision);
+  EXPECT_TRUE(collision.has_errors());
+  const std::vector<model::Rename> renames{{"example.Arm.nectar_anchor", "second_anchor"},
+                                           {"example.Arm", "robot_arm"}};
+  ASSERT_TRUE(model::rename(compiled.model, renames).empty());
+  Report report;
+  const FileSet files = CSharpBackend().generate(compiled.model, {}, report);
+  EXPECT_FALSE(report.has_errors());
+  const std::string& code = files.files().begin()->second;
+  using testing::HasSubstr;
+  EXPECT_THAT(code, HasSubstr("public class RobotArmStub("));
+  EXPECT_THAT(code, HasSubstr("public double GetNectarAnchor("));
+  EXPECT_THAT(code, HasSubstr("public double GetSecondAnchor("));
+  EXPECT_THAT(code, HasSubstr("RrGet(\"nectar_anchor\"u8)"));
+  EXPECT_THAT(code, HasSubstr("\"example.Arm\""));
 }
 
 }  // namespace

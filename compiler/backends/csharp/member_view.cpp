@@ -28,12 +28,14 @@ class MemberMaker {
   MemberMaker(const Object& object, const Context& context)
       : object_(object),
         context_(context),
-        taken_("C#", context.report),
-        served_("C#", context.report) {}
+        taken_(csharp_language, context.report),
+        served_(csharp_language, context.report) {}
 
   void make(ObjectView& object) {
     for (std::size_t i = 0; i < object.constants.size(); ++i) {
-      taken_.add(object.constants[i].name, object_.constants[i].span, "constant");
+      const model::Constant& constant = object_.constants[i];
+      taken_.add(object.constants[i].name, constant.span, "constant",
+                 object_.qualified_name() + "." + constant.name);
     }
     std::size_t served = 0;
     for (const Member& member : object_.members) {
@@ -55,8 +57,8 @@ class MemberMaker {
     MemberView view;
     describe(view, object_, member, runtime_abilities);
     view.name = is_called_by_itself(member)
-                    ? member_name(member.name, "", member.span, context_.report)
-                    : pascal(member.name);
+                    ? member_name(code_name(member), "", member.span, context_.report)
+                    : pascal(code_name(member));
     view.doc = summary(member.documentation, in_class);
     view.is_hiding = !view.is_inherited && is_implemented(member.name);
     view.access = access_text(member.access);
@@ -114,13 +116,14 @@ class MemberMaker {
       if (view.first.ends_with(';')) view.first.pop_back();
     }
     view.cancel = Names::local("cancel", taken);
+    view.served_cancel = Names::local("cancellationToken", taken);
     view.client = Names::local("client", taken);
   }
 
   ParameterView make_parameter(const model::Parameter& parameter, std::set<std::string>& taken) {
     const CsType type = context_.types.spell(parameter.type);
     ParameterView view;
-    describe(view, parameter, Names::local(parameter.name, taken));
+    describe(view, parameter, Names::local(code_name(parameter), taken));
     view.type = type.text;
     view.codec = type.codec;
     return view;
@@ -189,7 +192,7 @@ class MemberMaker {
     view.codecs = view.has_result ? view.codec + ", " : "";
     view.answer = view.has_result ? ", " + view.codec : "";
     view.served = task("ValueTask", view.type);
-    view.served_signature = view.signature;
+    view.served_before = view.signature_before;
     if (view.is_generator) make_generator(view);
     view.task = task("Task", view.result);
     view.invocation = view.has_parameters
@@ -207,7 +210,8 @@ class MemberMaker {
       return;
     }
     const ParameterView& taken = *view.generator_parameter;
-    view.served_signature = view.signature_before + sequence + "<" + taken.type + "> " + taken.name;
+    view.served_before =
+        view.signature_before + sequence + "<" + taken.type + "> " + taken.name + ", ";
     if (view.is_sink) {
       view.result = runtime("GeneratorSink") + "<" + taken.type + ">";
       view.verb = "OpenSink";
@@ -272,11 +276,12 @@ class MemberMaker {
   void add_names(const MemberView& view, const Member& member) {
     // A member is reported once, however many of its names meet others.
     bool is_new = true;
+    const std::string path = full_name(object_, member);
     const auto add = [&](const std::string& name) {
-      is_new = is_new && taken_.add(name, member.span, view.kind);
+      is_new = is_new && taken_.add(name, member.span, view.kind, path);
     };
     const auto serve = [&](const std::string& name) {
-      is_new = is_new && served_.add(name, member.span, view.kind);
+      is_new = is_new && served_.add(name, member.span, view.kind, path);
     };
     if (view.is_property || view.is_objref) {
       if (view.is_objref || view.can_get) {

@@ -29,16 +29,6 @@ constexpr auto inherited_names = std::to_array<std::string_view>(
     {"Clone", "EqualityContract", "Equals", "Finalize", "GetHashCode", "GetType", "MemberwiseClone",
      "PrintMembers", "ReferenceEquals", "ToString"});
 
-std::string without_capitals(std::string_view name) {
-  std::string result(name);
-  const bool has_small = std::ranges::any_of(name, [](char c) { return c >= 'a' && c <= 'z'; });
-  if (has_small) return result;
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return result;
-}
-
 }  // namespace
 
 std::string pascal(std::string_view name) { return pascal_case(without_capitals(name)); }
@@ -66,10 +56,14 @@ std::string qualified(const model::Definition& definition, std::string_view type
   return "global::" + namespace_of(definition.name) + "." + std::string(type);
 }
 
-std::string interface_name(const model::Object& object) { return "I" + pascal(object.name); }
-std::string stub_name(const model::Object& object) { return pascal(object.name) + "Stub"; }
-std::string skeleton_name(const model::Object& object) { return pascal(object.name) + "Skeleton"; }
-std::string default_name(const model::Object& object) { return pascal(object.name) + "Default"; }
+std::string interface_name(const model::Object& object) { return "I" + pascal(code_name(object)); }
+std::string stub_name(const model::Object& object) { return pascal(code_name(object)) + "Stub"; }
+std::string skeleton_name(const model::Object& object) {
+  return pascal(code_name(object)) + "Skeleton";
+}
+std::string default_name(const model::Object& object) {
+  return pascal(code_name(object)) + "Default";
+}
 
 bool has_default(const model::Object& object) {
   return std::ranges::any_of(object.members, [](const model::Member& member) {
@@ -92,7 +86,7 @@ Names::Names(const model::Definition& definition, const model::Model& model, Rep
   add_types(report);
   for (const auto& other : model.definitions()) hide(*other);
   const auto hide_members = [&](const auto& members) {
-    for (const auto& member : members) members_.insert(pascal(member.name));
+    for (const auto& member : members) members_.insert(pascal(code_name(member)));
   };
   for (const model::Record& record : definition.records) hide_members(record.fields);
   for (const model::Object& object : definition.objects) hide_members(object.members);
@@ -100,24 +94,27 @@ Names::Names(const model::Definition& definition, const model::Model& model, Rep
 }
 
 void Names::add_types(Report& report) {
-  NameSet types("C#", report);
+  NameSet types(csharp_language, report);
+  const auto path = [&](const auto& one) { return definition_.name + "." + one.name; };
   const auto add_all = [&](const auto& all, std::string_view what) {
-    for (const auto& one : all) types.add(pascal(one.name), one.span, what);
+    for (const auto& one : all) types.add(pascal(code_name(one)), one.span, what, path(one));
   };
   if (!definition_.constants.empty()) {
     types.add(std::string(constants_class), definition_.constants.front().span,
-              "class of the constants");
+              "class of the constants", "");
   }
   add_all(definition_.exceptions, "exception");
   add_all(definition_.enums, "enum");
   for (const model::Record& record : definition_.records) {
-    types.add(pascal(record.name), record.span, model::name_of(record.kind));
+    types.add(pascal(code_name(record)), record.span, model::name_of(record.kind), path(record));
   }
   for (const model::Object& object : definition_.objects) {
-    types.add(interface_name(object), object.span, "interface");
-    types.add(stub_name(object), object.span, "stub");
-    types.add(skeleton_name(object), object.span, "skeleton");
-    if (has_default(object)) types.add(default_name(object), object.span, "default class");
+    types.add(interface_name(object), object.span, "interface", path(object));
+    types.add(stub_name(object), object.span, "stub", path(object));
+    types.add(skeleton_name(object), object.span, "skeleton", path(object));
+    if (has_default(object)) {
+      types.add(default_name(object), object.span, "default class", path(object));
+    }
   }
 }
 
@@ -126,7 +123,7 @@ void Names::hide(const model::Definition& definition) {
   for (const std::string& segment : segments_of(definition.name)) hidden_.insert(pascal(segment));
   hidden_.insert(std::string(constants_class));
   const auto hide_all = [&](const auto& all) {
-    for (const auto& one : all) hidden_.insert(pascal(one.name));
+    for (const auto& one : all) hidden_.insert(pascal(code_name(one)));
   };
   hide_all(definition.exceptions);
   hide_all(definition.enums);
@@ -153,7 +150,7 @@ std::string Names::library(std::string_view space, std::string_view name) {
 }
 
 std::string Names::local(std::string_view name, std::set<std::string>& taken) {
-  std::string result = camel(name);
+  std::string result = as_variable(camel(name));
   while (!taken.insert(result).second) result += '_';
   return result;
 }

@@ -8,9 +8,12 @@
 #include "compiler/backends/name_set.hpp"
 #include "compiler/diagnostics/report.hpp"
 #include "compiler/model/model.hpp"
+#include "compiler/model/rename.hpp"
 
 /// Every C# name in generated code is made here.
 namespace robdef::csharp {
+
+using model::code_name;
 
 /// `MoveTo` for `move_to`; `MaxPoints` for `MAX_POINTS`: a name without small letters loses its
 /// capitals first.

@@ -112,35 +112,35 @@ CsType Types::base(const model::Type& type) {
   const auto refused = [](const auto&) {
     return CsType{.text = "object", .codec = {}, .initial = {}};
   };
-  return std::visit(
-      Overloaded{[&](Primitive primitive) {
-                   if (primitive == Primitive::void_) return CsType{"void", "", ""};
-                   return CsType{number(primitive), number_codec(primitive),
-                                 primitive == Primitive::string ? " = \"\";" : ""};
-                 },
-                 [&](const model::Record* record) {
-                   const std::string name = names_.type(*record->definition, pascal(record->name));
-                   const std::string value =
-                       names_.type_in_expression(*record->definition, pascal(record->name));
-                   const bool is_struct = record->kind == model::RecordKind::struct_;
-                   const bool is_pod = record->kind == model::RecordKind::pod;
-                   return CsType{name + (is_struct ? "?" : ""), value + ".RrCodec",
-                                 is_pod ? " = new();" : ""};
-                 },
-                 [&](const model::Enum* enumeration) {
-                   const std::string name =
-                       names_.type(*enumeration->definition, pascal(enumeration->name));
-                   return CsType{name, value_codec() + ".Enum<" + name + ">()", ""};
-                 },
-                 [&](model::VarValue) {
-                   return CsType{names_.library(runtime_space, "VarValue") + "?",
-                                 value_codec() + ".VarValue", ""};
-                 },
-                 // Reported before: objects are no values.
-                 [&](const model::Object* object) { return refused(object); },
-                 [&](model::VarObject object) { return refused(object); },
-                 [&](model::Unknown unknown) { return refused(unknown); }},
-      type.base);
+  return std::visit(Overloaded{[&](Primitive primitive) {
+                                 if (primitive == Primitive::void_) return CsType{"void", "", ""};
+                                 return CsType{number(primitive), number_codec(primitive),
+                                               primitive == Primitive::string ? " = \"\";" : ""};
+                               },
+                               [&](const model::Record* record) {
+                                 const std::string name =
+                                     names_.type(*record->definition, pascal(code_name(*record)));
+                                 const std::string value = names_.type_in_expression(
+                                     *record->definition, pascal(code_name(*record)));
+                                 const bool is_struct = record->kind == model::RecordKind::struct_;
+                                 const bool is_pod = record->kind == model::RecordKind::pod;
+                                 return CsType{name + (is_struct ? "?" : ""), value + ".RrCodec",
+                                               is_pod ? " = new();" : ""};
+                               },
+                               [&](const model::Enum* enumeration) {
+                                 const std::string name = names_.type(
+                                     *enumeration->definition, pascal(code_name(*enumeration)));
+                                 return CsType{name, value_codec() + ".Enum<" + name + ">()", ""};
+                               },
+                               [&](model::VarValue) {
+                                 return CsType{names_.library(runtime_space, "VarValue") + "?",
+                                               value_codec() + ".VarValue", ""};
+                               },
+                               // Reported before: objects are no values.
+                               [&](const model::Object* object) { return refused(object); },
+                               [&](model::VarObject object) { return refused(object); },
+                               [&](model::Unknown unknown) { return refused(unknown); }},
+                    type.base);
 }
 
 CsType Types::array(const CsType& item, const model::Type& type, Place place) {

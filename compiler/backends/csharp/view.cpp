@@ -35,7 +35,7 @@ std::vector<ConstantView> make_constants(const std::vector<model::Constant>& con
   for (const model::Constant& constant : constants) {
     ConstantView view;
     view.wire_name = constant.name;
-    view.name = member_name(constant.name, owner, constant.span, context.report);
+    view.name = member_name(code_name(constant), owner, constant.span, context.report);
     view.doc = summary(constant.documentation, indent);
     view.definition =
         constant_definition(constant, view.name, context.types, context.names, indent);
@@ -74,12 +74,13 @@ namespace {
 EnumView make_enum(const model::Enum& enumeration, Report& report) {
   EnumView view;
   view.wire_name = enumeration.name;
-  view.name = pascal(enumeration.name);
+  view.name = pascal(code_name(enumeration));
   view.doc = summary(enumeration.documentation, 0);
-  NameSet names("C#", report);
+  NameSet names(csharp_language, report);
   for (const model::EnumValue& value : enumeration.values) {
-    const std::string name = pascal(value.name);
-    names.add(name, value.span, "value");
+    const std::string name = pascal(code_name(value));
+    names.add(name, value.span, "value",
+              enumeration.definition->name + "." + enumeration.name + "." + value.name);
     view.values.push_back({.wire_name = value.name,
                            .name = name,
                            .value = enum_literal(value),
@@ -90,7 +91,7 @@ EnumView make_enum(const model::Enum& enumeration, Report& report) {
 
 ExceptionView make_exception(const model::Exception& exception) {
   return {.wire_name = exception.definition->name + "." + exception.name,
-          .name = pascal(exception.name),
+          .name = pascal(code_name(exception)),
           .doc = summary(exception.documentation, 0)};
 }
 
@@ -101,7 +102,7 @@ FieldView make_field(const model::Field& field, const model::Record& record,
                                                                      : Place::anywhere;
   FieldView view;
   view.wire_name = field.name;
-  view.name = member_name(field.name, owner, field.span, context.report);
+  view.name = member_name(code_name(field), owner, field.span, context.report);
   view.doc = summary(field.documentation, 4);
   view.robdef_type = field.type.text();
   if (place == Place::in_namedarray && field.type.array != model::ArrayForm::none) {
@@ -120,7 +121,7 @@ FieldView make_field(const model::Field& field, const model::Record& record,
 RecordView make_record(const model::Record& record, const Context& context) {
   RecordView view;
   describe(view, record);
-  view.name = pascal(record.name);
+  view.name = pascal(code_name(record));
   view.doc = summary(record.documentation, 0);
   if (view.is_namedarray) {
     view.number_type = context.types.number(record.number);
@@ -128,30 +129,21 @@ RecordView make_record(const model::Record& record, const Context& context) {
   }
   view.packed_size = std::to_string(record.packed_size);
   view.constants = make_constants(record.constants, view.name, context, 4);
-  NameSet names("C#", context.report);
+  NameSet names(csharp_language, context.report);
+  const std::string path = record.qualified_name() + ".";
   for (std::size_t i = 0; i < view.constants.size(); ++i) {
-    names.add(view.constants[i].name, record.constants[i].span, "constant");
+    const model::Constant& constant = record.constants[i];
+    names.add(view.constants[i].name, constant.span, "constant", path + constant.name);
   }
   for (const model::Field& field : record.fields) {
     view.fields.push_back(make_field(field, record, view.name, context));
-    names.add(view.fields.back().name, field.span, "field");
+    names.add(view.fields.back().name, field.span, "field", path + field.name);
     view.has_rows |= !view.fields.back().items.empty();
   }
   view.writes.assign(view.fields.rbegin(), view.fields.rend());
   view.field_count = std::to_string(view.fields.size());
   view.codec_class = "Rr" + view.name + "Codec";
   return view;
-}
-
-/// The text as literals, one for each line, with what follows all but the last.
-std::vector<std::string> text_lines(std::string_view text) {
-  std::vector<std::string> lines;
-  for (const std::string_view line : lines_of(text)) {
-    if (!lines.empty()) lines.back() += " +";
-    lines.push_back(string_literal(line));
-  }
-  if (lines.empty()) lines.emplace_back("\"\"");
-  return lines;
 }
 
 class DefinitionMaker {
@@ -181,7 +173,7 @@ class DefinitionMaker {
       view_.codecs.push_back({.name = field.name, .type = field.type, .value = field.value});
     }
     view_.has_codecs = !view_.codecs.empty();
-    view_.text = text_lines(definition_.text);
+    view_.text = unicode_literal_lines(definition_.text);
     std::set<std::string> usings = names_.usings();
     usings.emplace(runtime_space);
     // System first, as the formatter wants it.
@@ -230,9 +222,11 @@ class DefinitionMaker {
   }
 
   void check_constants() {
-    NameSet names("C#", context_.report);
+    NameSet names(csharp_language, context_.report);
     for (std::size_t i = 0; i < view_.constants.size(); ++i) {
-      names.add(view_.constants[i].name, definition_.constants[i].span, "constant");
+      const model::Constant& constant = definition_.constants[i];
+      names.add(view_.constants[i].name, constant.span, "constant",
+                definition_.name + "." + constant.name);
     }
   }
 

@@ -100,7 +100,8 @@ struct MemberView : MemberFacts {
   std::string task;                   ///< function, callback: what an asynchronous one gives
   std::string result;                 ///< `double`, `void`, `Generator<double>`
   std::string served;                 ///< function: what the skeleton's member gives
-  std::string served_signature;       ///< function: what it takes
+  std::string served_before;          ///< function: what it takes, with `, ` behind it likewise
+  std::string served_cancel;          ///< a name for the token behind that
   std::string invocation;             ///< function: `RrCallMoveTo(pan, tilt)`
   std::string verb;                   ///< `Run`, `Open`, `OpenSink`, `OpenFilter`
   std::string codecs;  ///< what the verb gets before the token: `ValueCodec.Double, `

@@ -19,9 +19,9 @@ ROBDEF_VIEW_TYPE(ParameterView, type, codec);
 ROBDEF_VIEW_TYPE(MemberView, name, doc, is_hiding, row, access, type, codec, initial, item,
                  item_codec, parameters, writes, signature, signature_before, arguments,
                  arguments_before, cancel, client, urgent, handler, task, result, served,
-                 served_signature, invocation, verb, codecs, answer, generator_parameter, interface,
-                 stub, index_parameter, index_argument, index_type, index_read, handle,
-                 handle_served, first);
+                 served_before, served_cancel, invocation, verb, codecs, answer,
+                 generator_parameter, interface, stub, index_parameter, index_argument, index_type,
+                 index_read, handle, handle_served, first);
 ROBDEF_VIEW_TYPE(ObjectView, wire_name, short_name, doc, interface, bases, stub, skeleton,
                  default_class, has_default, constants, members, has_requests, has_memories);
 ROBDEF_VIEW_TYPE(DeclarationView, exception, enumeration, record, object);

@@ -47,8 +47,8 @@ class MemberMaker {
   MemberView make(const Member& member) {
     MemberView view;
     describe(view, object_, member, runtime_abilities);
-    view.name = member_name(member.name, identifier(object_.name));
-    if (view.is_objref) view.name = "get_" + member.name;
+    view.name = member_name(code_name(member), type_name(code_name(object_)));
+    if (view.is_objref) view.name = "get_" + code_name(member);
     view.declaration = model::written(member, *object_.definition);
     // A generator function has one whatever its steps give.
     view.has_result = view.has_result || view.is_generator;
@@ -67,18 +67,20 @@ class MemberMaker {
 
  private:
   static void make_names(MemberView& view, const Member& member) {
-    if (view.is_property) {
-      view.async_name = "async_get_" + member.name;
-      view.async_set_name = "async_set_" + member.name;
-    } else if (view.is_function) {
-      view.async_name = "async_" + member.name;
-    } else if (view.is_objref) {
-      view.async_name = "async_get_" + member.name;
+    const std::string& name = code_name(member);
+    view.get_name = "get_" + name;
+    view.set_name = "set_" + name;
+    const bool is_got = view.is_property || view.is_objref;
+    const std::string verb = is_got ? "get_" : "";
+    if (is_got || view.is_function) {
+      view.async_name = "async_" + verb + name;
+      view.async_wire_name = "async_" + verb + member.name;
     }
+    if (view.is_property) view.async_set_name = "async_set_" + name;
     const auto* target = std::get_if<const Object*>(&member.type.base);
     // Nothing is generated for imports: their objects are dynamic ones.
     if (view.is_objref && target != nullptr && !(*target)->definition->is_import) {
-      view.object_class = qualified(*(*target)->definition, identifier((*target)->name));
+      view.object_class = qualified(*(*target)->definition, type_name(code_name(**target)));
     }
   }
 
@@ -87,7 +89,7 @@ class MemberMaker {
     std::set<std::string> taken{"obj", "result", "handler", "varargin"};
     std::vector<std::string> names;
     for (const model::Parameter& parameter : member.parameters) {
-      describe(view.parameters.emplace_back(), parameter, local(parameter.name, taken));
+      describe(view.parameters.emplace_back(), parameter, local(code_name(parameter), taken));
       names.push_back(view.parameters.back().name);
     }
     if (view.has_index) names.emplace_back("index");
@@ -116,11 +118,11 @@ class MemberMaker {
     if (!is_call || has_varvalue(member)) return "::rr::matlab::named_member" + name;
     if (view.is_property) {
       return "::rr::matlab::typed_property<" + stub + ", " +
-             (view.can_get ? method("get_" + member.name) : "nullptr") + ", " +
-             (view.can_set ? method("set_" + member.name) : "nullptr") + ">" + name;
+             (view.can_get ? method("get_" + code_name(member)) : "nullptr") + ", " +
+             (view.can_set ? method("set_" + code_name(member)) : "nullptr") + ">" + name;
     }
     return "::rr::matlab::typed_function<" + stub + ", " +
-           method(cpp::member_name(object_, member.name)) + ">" + name;
+           method(cpp::member_name(object_, member)) + ">" + name;
   }
 
   const Object& object_;
@@ -160,7 +162,7 @@ ObjectView make_object(const Object& object, Report& report) {
   ObjectView view;
   view.wire_name = object.qualified_name();
   view.short_name = object.name;
-  view.name = identifier(object.name);
+  view.name = type_name(code_name(object));
   view.qualified = qualified(*object.definition, view.name);
   view.stub = cpp::qualified(*object.definition, cpp::stub_name(object));
   view.stub_alias = stub_alias(object);

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <vector>
 
+#include "compiler/backends/implements.hpp"
 #include "compiler/backends/name_set.hpp"
 #include "compiler/backends/words.hpp"
 
@@ -85,6 +87,17 @@ std::string identifier(std::string_view name) {
   return std::string(name) + (is_keyword(name) ? "_" : "");
 }
 
+std::string type_name(std::string_view name) {
+  constexpr auto blocks =
+      std::to_array<std::string_view>({"enumeration", "events", "methods", "properties"});
+  return std::string(name) + (is_keyword(name) || contains(blocks, name) ? "_" : "");
+}
+
+std::string exception_name(std::string_view name) {
+  constexpr auto own = std::to_array<std::string_view>({"identifier", "is", "raise"});
+  return contains(own, name) ? std::string(name) + "_" : type_name(name);
+}
+
 std::string member_name(std::string_view name, std::string_view owner) {
   const bool is_taken = is_keyword(name) || is_class_word(name) || name == owner;
   return std::string(name) + (is_taken ? "_" : "");
@@ -113,45 +126,75 @@ std::string client_of(const model::Model& model) {
 }
 
 std::string constants_class_of(const model::Record& record) {
-  return record.name + std::string(constants_class);
+  return code_name(record) + std::string(constants_class);
 }
 
 std::string local(std::string_view name, std::set<std::string>& taken) {
-  std::string result = identifier(name);
+  std::string result = as_variable(identifier(name));
+  // Octave would have it, but MATLAB not.
+  if (result.starts_with('_')) result.insert(0, "p");
   while (!taken.insert(result).second) result += '_';
   return result;
 }
 
 namespace {
 
+/// Structs have the fields that are sent.
+void check_fields(const model::Record& record, Report& report) {
+  for (const model::Field& field : record.fields) {
+    refuse_rename(field.name, code_name(field), "field", matlab_language, field.span, report);
+  }
+  NameSet constants(matlab_language, report);
+  for (const model::Constant& constant : record.constants) {
+    constants.add(member_name(code_name(constant), constants_class_of(record)), constant.span,
+                  "constant", record.qualified_name() + "." + constant.name);
+  }
+}
+
+void check_values(const model::Enum& enumeration, Report& report) {
+  NameSet values(matlab_language, report);
+  for (const model::EnumValue& value : enumeration.values) {
+    values.add(member_name(code_name(value), type_name(code_name(enumeration))), value.span,
+               "value", enumeration.definition->name + "." + enumeration.name + "." + value.name);
+  }
+}
+
 void check_members(const model::Object& object, Report& report) {
-  NameSet names(language, report);
-  const auto add = [&](const auto& named, std::string_view what) {
-    const std::string name = member_name(named.name, identifier(object.name));
-    report_renamed(named.name, name, language, named.span, report);
-    names.add(name, named.span, what);
+  NameSet names(matlab_language, report);
+  const auto add = [&](const auto& named, std::string_view what, const std::string& path) {
+    const std::string name = member_name(code_name(named), type_name(code_name(object)));
+    report_renamed(code_name(named), name, language, named.span, report);
+    names.add(name, named.span, what, path);
   };
-  for (const model::Constant& constant : object.constants) add(constant, "constant");
+  for (const model::Constant& constant : object.constants)
+    add(constant, "constant", object.qualified_name() + "." + constant.name);
   for (const model::Member& member : object.members) {
     // An objref appears as get_ only, an event in addlistener.
-    const bool is_named =
-        member.kind != model::MemberKind::objref && member.kind != model::MemberKind::event;
-    if (is_named) add(member, model::name_of(member.kind));
+    if (member.kind == model::MemberKind::event) {
+      refuse_rename(member.name, code_name(member), "event", matlab_language, member.span, report);
+    } else if (member.kind == model::MemberKind::objref) {
+      names.add("get_" + code_name(member), member.span, model::name_of(member.kind),
+                full_name(object, member));
+    } else {
+      add(member, model::name_of(member.kind), full_name(object, member));
+    }
   }
 }
 
 /// A service `a.b.c` makes the package `c` inside that of `a.b`.
 void check_inner_packages(const model::Definition& definition, const model::Model& model,
-                          const std::set<std::string>& files, Report& report) {
+                          const std::map<std::string, std::string>& files, Report& report) {
   const std::string outer = definition.name + ".";
   for (const auto& other : model.definitions()) {
     if (!other->name.starts_with(outer)) continue;
     const std::string inner = identifier(segments_of(other->name.substr(outer.size())).front());
-    if (!files.contains(inner)) continue;
-    report
-        .add(Code::R0901, definition.span,
-             "`" + inner + "` is also a MATLAB package, of the service `" + other->name + "`")
-        .label("has a type of the same name");
+    const auto file = files.find(inner);
+    if (file == files.end()) continue;
+    Diagnostic& diagnostic = report.add(
+        Code::R0901, definition.span,
+        "`" + inner + "` is also a MATLAB package, of the service `" + other->name + "`");
+    diagnostic.label("has a type of the same name");
+    help_rename(diagnostic, matlab_language, file->second);
   }
 }
 
@@ -164,29 +207,41 @@ void check_names(const model::Definition& definition, const model::Model& model,
     report_renamed(segment, is_hidden ? segment + "_" : identifier(segment), language,
                    definition.span, report);
   }
-  NameSet names(language, report);
-  std::set<std::string> files;
-  const auto add = [&](const std::string& name, Span span, std::string_view what) {
-    names.add(name, span, what);
-    files.insert(name);
+  NameSet names(matlab_language, report);
+  std::map<std::string, std::string> files;  // with what they are made for
+  const auto add = [&](const std::string& name, Span span, std::string_view what,
+                       const std::string& path) {
+    names.add(name, span, what, path);
+    files.emplace(name, path);
+    check_file_name(name, matlab_language, path, span, report);
   };
-  const auto add_all = [&](const auto& all, const auto& what) {
+  const auto path = [&](const auto& one) { return definition.name + "." + one.name; };
+  const auto add_all = [&](const auto& all, const auto& what, const auto& in_matlab) {
     for (const auto& one : all) {
-      report_renamed(one.name, identifier(one.name), language, one.span, report);
-      add(identifier(one.name), one.span, what(one));
+      const std::string& name = code_name(one);
+      report_renamed(name, in_matlab(name), language, one.span, report);
+      add(in_matlab(name), one.span, what(one), path(one));
     }
   };
   if (!definition.constants.empty()) {
-    add(std::string(constants_class), definition.constants.front().span, "class of the constants");
+    add(std::string(constants_class), definition.constants.front().span, "class of the constants",
+        "");
   }
-  add_all(definition.exceptions, [](const auto&) { return "exception"; });
-  add_all(definition.enums, [](const auto&) { return "enum"; });
-  add_all(definition.records, [](const auto& record) { return model::name_of(record.kind); });
-  add_all(definition.objects, [](const auto&) { return "object"; });
+  add_all(
+      definition.exceptions, [](const auto&) { return "exception"; }, exception_name);
+  add_all(
+      definition.enums, [](const auto&) { return "enum"; }, type_name);
+  add_all(
+      definition.records, [](const auto& record) { return model::name_of(record.kind); },
+      type_name);
+  add_all(
+      definition.objects, [](const auto&) { return "object"; }, type_name);
   for (const model::Record& record : definition.records) {
     if (record.constants.empty()) continue;
-    add(constants_class_of(record), record.span, "class of the constants");
+    add(constants_class_of(record), record.span, "class of the constants", path(record));
   }
+  for (const model::Record& record : definition.records) check_fields(record, report);
+  for (const model::Enum& enumeration : definition.enums) check_values(enumeration, report);
   for (const model::Object& object : definition.objects) check_members(object, report);
   check_inner_packages(definition, model, files, report);
 }

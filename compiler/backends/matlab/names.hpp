@@ -5,14 +5,18 @@
 #include <string>
 #include <string_view>
 
+#include "compiler/backends/name_set.hpp"
 #include "compiler/diagnostics/report.hpp"
 #include "compiler/model/model.hpp"
+#include "compiler/model/rename.hpp"
 
 /// Every MATLAB name in generated code is made here. Names are as in the definition; a word that
 /// MATLAB or Octave keeps for itself gets a `_`.
 namespace robdef::matlab {
 
-inline constexpr std::string_view language = "MATLAB";
+inline constexpr std::string_view language = matlab_language.shown;
+
+using model::code_name;
 
 /// A word that no name may be, in MATLAB or in Octave.
 bool is_keyword(std::string_view word);
@@ -23,6 +27,10 @@ bool is_function(std::string_view word);
 
 /// The name itself, with `_` behind it when it is a keyword.
 std::string identifier(std::string_view name);
+/// A type: not a keyword, nor a word that a file with a class cannot begin with.
+std::string type_name(std::string_view name);
+/// An exception: nor what its class has.
+std::string exception_name(std::string_view name);
 /// A member of the class `owner`: not a keyword, nor the constructor, nor what it has from its
 /// bases.
 std::string member_name(std::string_view name, std::string_view owner);

@@ -32,13 +32,15 @@ std::string upper(std::string_view name) {
 EnumView make_enum(const model::Enum& enumeration) {
   EnumView view;
   view.wire_name = enumeration.definition->name + "." + enumeration.name;
-  view.name = identifier(enumeration.name);
+  view.name = type_name(code_name(enumeration));
+  view.qualified = qualified(*enumeration.definition, view.name);
   Help text = help(view.name, enumeration.documentation, "The values of " + view.wire_name + ".");
   view.title = std::move(text.title);
   view.help = std::move(text.lines);
+  view.has_values = !enumeration.values.empty();
   for (const model::EnumValue& value : enumeration.values) {
     view.values.push_back({.wire_name = value.name,
-                           .name = member_name(value.name, view.name),
+                           .name = member_name(code_name(value), view.name),
                            .doc = comment(value.documentation),
                            .value = "int32(" + std::to_string(value.value) + ")"});
   }
@@ -49,8 +51,10 @@ ExceptionView make_exception(const model::Exception& exception) {
   const std::string& service = exception.definition->name;
   ExceptionView view;
   view.wire_name = service + "." + exception.name;
-  view.name = identifier(exception.name);
-  view.identifier = service + ":" + exception.name;
+  view.name = exception_name(code_name(exception));
+  // As the runtime does it: rr/matlab/identifier.hpp.
+  view.identifier = view.wire_name;
+  std::replace(view.identifier.begin(), view.identifier.end(), '.', ':');
   Help text = help(view.name, exception.documentation, "The exception " + view.wire_name + ".");
   view.title = std::move(text.title);
   view.help = std::move(text.lines);
@@ -61,9 +65,9 @@ RecordView make_record(const model::Record& record) {
   const model::Definition& definition = *record.definition;
   RecordView view;
   describe(view, record);
-  view.name = identifier(record.name);
+  view.name = type_name(code_name(record));
   view.qualified = qualified(definition, view.name);
-  view.cpp = cpp::qualified(definition, cpp::identifier(record.name));
+  view.cpp = cpp::qualified(definition, cpp::identifier(code_name(record)));
   Help text =
       help(view.name, record.documentation, "A value for the " + view.kind + " " + view.wire_name);
   view.title = std::move(text.title);
@@ -164,7 +168,7 @@ std::vector<ConstantView> make_constants(const std::vector<model::Constant>& con
     // Refused by check_values.
     if (constant.type.container != model::ContainerForm::none) continue;
     views.push_back({.wire_name = constant.name,
-                     .name = member_name(constant.name, owner),
+                     .name = member_name(code_name(constant), owner),
                      .doc = comment(constant.documentation),
                      .value = constant_value(constant)});
   }

@@ -25,9 +25,11 @@ struct ConstantView {
 struct EnumView {
   std::string wire_name;  ///< qualified
   std::string name;
+  std::string qualified;          ///< as MATLAB calls it
   std::string title;              ///< the first line of its help
   std::vector<std::string> help;  ///< lines with their `%`
   std::vector<ConstantView> values;
+  bool has_values = false;
 };
 
 struct ExceptionView {
@@ -35,7 +37,7 @@ struct ExceptionView {
   std::string name;
   std::string title;
   std::vector<std::string> help;
-  std::string identifier;  ///< `experimental.mount:Lost`
+  std::string identifier;  ///< `experimental:mount:Lost`
 };
 
 struct FieldView {
@@ -62,6 +64,9 @@ struct RecordView : RecordFacts {
 /// A member of an object. What does not apply to its kind is empty or false.
 struct MemberView : MemberFacts {
   std::string name;
+  std::string get_name;           ///< `get_speed`
+  std::string set_name;           ///< property: `set_speed`
+  std::string async_wire_name;    ///< `async_get_speed`, as the runtime knows it
   std::string async_name;         ///< property: `async_get_speed`; function, objref likewise
   std::string async_set_name;     ///< property
   std::string title;              ///< the first line of a method's help: its documentation's

@@ -8,14 +8,14 @@ namespace robdef {
 using namespace matlab;
 
 ROBDEF_VIEW_TYPE(ConstantView, wire_name, name, doc, value);
-ROBDEF_VIEW_TYPE(EnumView, wire_name, name, title, help, values);
+ROBDEF_VIEW_TYPE(EnumView, wire_name, name, qualified, title, help, values, has_values);
 ROBDEF_VIEW_TYPE(ExceptionView, wire_name, name, title, help, identifier);
 ROBDEF_VIEW_TYPE(FieldView, wire_name, cpp_name, robdef_type, help);
 ROBDEF_VIEW_TYPE(RecordView, name, qualified, title, help, cpp, number_type, fields, constants,
                  has_constants, constants_class);
-ROBDEF_VIEW_TYPE(MemberView, name, async_name, async_set_name, title, help, property_doc,
-                 declaration, parameters, arguments, arguments_behind, argument_cell, is_stream,
-                 object_class, binding);
+ROBDEF_VIEW_TYPE(MemberView, name, get_name, set_name, async_wire_name, async_name, async_set_name,
+                 title, help, property_doc, declaration, parameters, arguments, arguments_behind,
+                 argument_cell, is_stream, object_class, binding);
 ROBDEF_VIEW_TYPE(ObjectView, wire_name, short_name, name, qualified, title, help, stub, stub_alias,
                  table, constants, has_constants, members, has_members, has_properties,
                  has_methods);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <ostream>
 #include <rr/error.hpp>
+#include <rr/printable.hpp>
 #include <span>
 #include <string>
 
@@ -39,7 +40,7 @@ void complete(const Options& options, std::ostream& out) {
   const std::string word = options.inputs.size() > 2 ? options.inputs[2] : "";
   for (const std::string& each :
        live::completions(connection.root(), {}, options.inputs[0], word)) {
-    out << each << '\n';
+    out << rr::printable(each) << '\n';
   }
 }
 
@@ -86,7 +87,7 @@ ExitStatus run_live(const Options& options, std::ostream& out, std::ostream& err
     return answer(options, out, err);
   } catch (const rr::Error& error) {
     out.flush();
-    err << "robdef: " << error.what() << '\n';
+    err << "robdef: " << rr::printable(error.what(), longest_message) << '\n';
     return exit_errors;
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <iosfwd>
 #include <string_view>
 
@@ -9,6 +10,9 @@
 
 /// The commands that use a running service, known by its URL alone (docs/command_line.md).
 namespace robdef {
+
+/// How much of an error's text is printed: a service has written it.
+inline constexpr std::size_t longest_message = 2000;
 
 /// Whether an argument is a URL and not a file.
 bool is_url(std::string_view text);

@@ -13,7 +13,7 @@ namespace robdef::live {
 /// Name of the variable of the environment that may hold the password.
 inline constexpr const char* password_variable = "ROBDEF_PASSWORD";
 
-/// The node that a command uses, with its time-outs.
+/// The node that a command uses, with its time-outs and TLS.
 rr::NodeOptions node_options(const LiveOptions& options);
 
 /// Credentials of the user: the password from the file, else from the environment, else asked for

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 #include <ostream>
+#include <rr/printable.hpp>
 #include <vector>
 
 namespace robdef::live {
@@ -25,18 +26,18 @@ void print_documentation(const std::string& text, const std::string& indent, std
   std::size_t begin = 0;
   while (begin < text.size()) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    out << indent << text.substr(begin, end - begin) << '\n';
+    out << indent << rr::printable(text.substr(begin, end - begin), rr::printable_whole) << '\n';
     begin = end + 1;
   }
 }
 
 void print_member(const MemberDescription& member, const std::string& indent, std::ostream& out) {
-  out << indent << member.declaration << '\n';
+  out << indent << rr::printable(member.declaration, rr::printable_whole) << '\n';
   print_documentation(member.documentation, indent + "    ", out);
 }
 
 void print_object(const TypeAt& type, std::ostream& out) {
-  out << "object " << type.name << '\n';
+  out << "object " << rr::printable(type.name) << '\n';
   print_documentation(type.types.documentation(type.name), "    ", out);
   for (const MemberDescription& member : type.members()) print_member(member, "  ", out);
 }
@@ -59,15 +60,19 @@ TypeAt object_type_at(const Object& root, const ObjectPath& path) {
 
 void list_members(const Object& root, const ObjectPath& path, std::ostream& out) {
   for (const MemberDescription& member : object_type_at(root, path).members()) {
-    out << member.declaration << '\n';
+    out << rr::printable(member.declaration, rr::printable_whole) << '\n';
   }
 }
 
 void describe_text(const Object& root, std::string_view path, std::ostream& out) {
   if (path.empty()) {
     const Definitions types = root.types();
-    out << "service " << root.path() << ", object " << root.type_name() << '\n';
-    for (const std::string& service : types.services()) out << '\n' << types.outline(service);
+    out << "service " << rr::printable(root.path()) << ", object "
+        << rr::printable(root.type_name()) << '\n';
+    for (const std::string& service : types.services()) {
+      out << '\n'
+          << rr::printable(types.outline(service), rr::printable_whole, rr::LineBreaks::kept);
+    }
     return;
   }
   const ObjectPath steps = parse_object_path(path);

@@ -3,6 +3,7 @@
 #include <deque>
 #include <ostream>
 #include <rr/error.hpp>
+#include <rr/printable.hpp>
 #include <set>
 #include <string>
 #include <utility>
@@ -175,7 +176,7 @@ class Describer {
 
 void describe_json(const dynamic::Object& root, std::string_view path, std::ostream& out) {
   if (path.empty()) {
-    out << Describer(root.types()).service(root);
+    out << rr::printable_json(Describer(root.types()).service(root));
     return;
   }
   const ObjectPath steps = parse_object_path(path);
@@ -184,12 +185,12 @@ void describe_json(const dynamic::Object& root, std::string_view path, std::ostr
   for (const dynamic::MemberDescription& member : type.members()) {
     if (member.name != steps.back().name) continue;
     if (member.kind != rr::MemberKind::objref) {
-      out << Describer(type.types).member(member);
+      out << rr::printable_json(Describer(type.types).member(member));
     } else if (!member.object_type.empty()) {
-      out << Describer(type.types).object(member.object_type);
+      out << rr::printable_json(Describer(type.types).object(member.object_type));
     } else {
       const TypeAt behind = object_type_at(root, steps);
-      out << Describer(behind.types).object(behind.name);
+      out << rr::printable_json(Describer(behind.types).object(behind.name));
     }
     return;
   }

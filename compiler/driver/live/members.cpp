@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <ostream>
 #include <rr/error.hpp>
+#include <rr/options.hpp>
+#include <rr/printable.hpp>
+#include <string>
 #include <utility>
 
 #include "compiler/driver/live/object_path.hpp"
@@ -56,13 +59,31 @@ dynamic::Memory::Numbers position_in(const dynamic::Memory::Numbers& dims,
   return options.position.value_or(dynamic::Memory::Numbers(dims.size(), 0));
 }
 
-Value read(const dynamic::Memory& memory, const LiveOptions& options) {
+// How much is read of a memory when nobody has said how much: a service may claim any length.
+constexpr std::uint64_t most_bytes = 64ULL * 1024 * 1024;
+
+void check_counts(const dynamic::Memory& memory, const dynamic::Memory::Numbers& counts,
+                  const MemberDescription& member) {
+  std::uint64_t items = 1;
+  bool is_huge = false;
+  for (const std::uint64_t count : counts) {
+    is_huge = __builtin_mul_overflow(items, count, &items) || is_huge;
+  }
+  if (!is_huge && items <= most_bytes / memory.item_size()) return;
+  throw rr::Error(rr::ErrorCode::invalid_argument,
+                  subject_of(member) + ": " + (is_huge ? "its" : std::to_string(items)) +
+                      " items are more than 64 MiB; say with `--count` how many to read");
+}
+
+Value read(const dynamic::Memory& memory, const MemberDescription& member,
+           const LiveOptions& options) {
   dynamic::Memory::Numbers counts = memory.dims();
   const dynamic::Memory::Numbers position = position_in(counts, options);
   if (options.counts) return memory.read(position, *options.counts);
   for (std::size_t i = 0; i < std::min(counts.size(), position.size()); ++i) {
     counts[i] -= std::min(counts[i], position[i]);
   }
+  check_counts(memory, counts, member);
   return memory.read(position, counts);
 }
 
@@ -105,7 +126,7 @@ class Steps {
       const std::optional<Value> value = generator.next(given);
       if (!value) return;
       if (found_.member.generator == rr::GeneratorForm::takes) continue;
-      out << found_.member.type.to_json(*value) << std::endl;
+      out << rr::printable_json(found_.member.type.to_json(*value)) << std::endl;
     }
     generator.close();
   }
@@ -125,6 +146,33 @@ class Steps {
   std::span<const std::string> steps_;
 };
 
+// A service that has nothing to answer a peek with may still send a value to who connects.
+bool may_send_instead(const rr::Error& refused) {
+  switch (refused.code()) {
+    case rr::ErrorCode::value_not_set:
+    case rr::ErrorCode::invalid_operation:
+    case rr::ErrorCode::not_implemented_error:
+      return true;
+    default:
+      return false;
+  }
+}
+
+Value newest_of(const dynamic::Wire& wire, const LiveOptions& options) {
+  try {
+    return wire.peek_in().value;
+  } catch (const rr::Error& refused) {
+    if (!may_send_instead(refused)) throw;
+    const dynamic::WireConnection connection = wire.connect();
+    const auto wait = options.timeout.value_or(rr::NodeOptions().request_timeout);
+    if (!connection.wait_in(wait)) {
+      throw rr::Error(refused.code(), refused.message() + "; no value was sent within " +
+                                          std::to_string(wait.count()) + " ms either");
+    }
+    return connection.in();
+  }
+}
+
 }  // namespace
 
 std::string kind_of(const MemberDescription& member) {
@@ -137,13 +185,13 @@ void get(const Object& root, std::string_view path, const LiveOptions& options, 
   if (member.kind == MemberKind::property) {
     value = object.get(member.name);
   } else if (member.kind == MemberKind::wire) {
-    value = object.wire(member.name).peek_in().value;
+    value = newest_of(object.wire(member.name), options);
   } else if (member.kind == MemberKind::memory) {
-    value = read(object.memory(member.name), options);
+    value = read(object.memory(member.name), member, options);
   } else {
     refuse_member(member, "property, wire or memory");
   }
-  out << member.type.to_json(value) << '\n';
+  out << rr::printable_json(member.type.to_json(value)) << '\n';
 }
 
 void set(const Object& root, std::string_view path, const std::string& json,
@@ -175,7 +223,9 @@ void call(const Object& root, std::string_view path, std::span<const std::string
     return;
   }
   const Value result = found.object.call(member.name, read_arguments(member, arguments));
-  if (member.type.kind() != dynamic::Kind::null) out << member.type.to_json(result) << '\n';
+  if (member.type.kind() != dynamic::Kind::null) {
+    out << rr::printable_json(member.type.to_json(result)) << '\n';
+  }
 }
 
 }  // namespace robdef::live

@@ -18,7 +18,8 @@ namespace robdef::live {
 /// `property`, `pipe`, ... as its declaration says.
 std::string kind_of(const rr::dynamic::MemberDescription& member);
 
-/// A property's value, what a wire has sent last, or a part of a memory; one line.
+/// A property's value, what a wire has sent last, or a part of a memory; one line. Where the
+/// service answers no peek, the wire is connected and the first value waited for.
 void get(const rr::dynamic::Object& root, std::string_view path, const LiveOptions& options,
          std::ostream& out);
 /// Sets a property, pokes a value into a wire, or writes into a memory.

@@ -10,6 +10,7 @@
 #include "compiler/driver/program.hpp"
 #include "rr/node.hpp"
 #include "rr/users.hpp"
+#include "runtime/cpp/src/node/testing/pair.hpp"
 #include "runtime/cpp/src/node/testing/server.hpp"
 
 namespace robdef::testing {
@@ -107,6 +108,14 @@ TEST_F(Members, ErrorsNameTheMemberAndTheType) {
               HasSubstr("member add, parameter b: expected double, got bool"));
   EXPECT_THAT(err({"call", "fail", "\"no power\""}),
               HasSubstr("RobotRaconteur.OperationFailed: no power"));
+}
+
+TEST_F(Members, AWireThatAnswersNoPeekIsConnectedTo) {
+  EXPECT_THAT(err({"get", "level", "--timeout", "0.05"}),
+              AllOf(HasSubstr("ValueNotSet"), HasSubstr("no value was sent within 50 ms either")));
+  bench_->level().on_connect([](rr::ServedWire<double> end) { end.set_in(2.5); });
+  EXPECT_EQ(out({"get", "level"}), "2.5\n");
+  EXPECT_TRUE(rr::testing::eventually([&] { return bench_->level().connections().empty(); }));
 }
 
 TEST_F(Members, FunctionsAndGeneratorsAreCalled) {

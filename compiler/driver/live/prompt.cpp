@@ -8,6 +8,7 @@
 #include <ostream>
 #include <rr/error.hpp>
 #include <rr/locks.hpp>
+#include <rr/printable.hpp>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "compiler/diagnostics/spelling.hpp"
+#include "compiler/driver/live/commands.hpp"
 #include "compiler/driver/live/complete.hpp"
 #include "compiler/driver/live/connection.hpp"
 #include "compiler/driver/live/describe.hpp"
@@ -87,7 +89,7 @@ class Prompt {
       return true;
     } catch (const rr::Error& error) {
       out_.flush();
-      err_ << "robdef: " << error.what() << std::endl;
+      err_ << "robdef: " << rr::printable(error.what(), longest_message) << std::endl;
       return false;
     }
   }

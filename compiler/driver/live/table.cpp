@@ -21,6 +21,18 @@ std::string take_text(Options& options, const std::string& value) {
   return value.empty() ? "the value is empty" : "";
 }
 
+template <std::string TlsFiles::*member>
+std::string take_tls_text(Options& options, const std::string& value) {
+  options.live.tls.*member = value;
+  return value.empty() ? "the value is empty" : "";
+}
+
+template <std::vector<std::string> TlsFiles::*member>
+std::string take_file(Options& options, const std::string& value) {
+  (options.live.tls.*member).push_back(value);
+  return value.empty() ? "the value is empty" : "";
+}
+
 template <std::optional<std::chrono::milliseconds> LiveOptions::*member>
 std::string take_seconds(Options& options, const std::string& value) {
   constexpr double most = 1e9;
@@ -90,9 +102,13 @@ constexpr CommandRow completing_row = {Command::complete, "complete",
                                        "Prints what WORD may become as a member for a command, a\n"
                                        "line each. For the completion of shells.\n"};
 
-constexpr CommandSet connecting = {Command::describe, Command::get,   Command::set,
-                                   Command::call,     Command::watch, Command::connect,
-                                   Command::complete};
+constexpr CommandSet connecting = {Command::breaking, Command::describe, Command::get,
+                                   Command::set,      Command::call,     Command::watch,
+                                   Command::connect,  Command::complete};
+
+constexpr CommandSet using_tls = {
+    Command::breaking, Command::describe, Command::get,      Command::set,      Command::call,
+    Command::watch,    Command::connect,  Command::complete, Command::discover, Command::bridge};
 
 constexpr std::array option_rows = {
     OptionRow{
@@ -106,6 +122,23 @@ constexpr std::array option_rows = {
     OptionRow{"--timeout", "", "SECONDS", connecting,
               "how long to wait for an answer of the service;\ndefault: 15, and 5 to connect",
               take_seconds<&LiveOptions::timeout>},
+    OptionRow{"--tls-authority", "", "FILE", using_tls,
+              "trust nodes with certificates of this authority,\nPEM; may be repeated",
+              take_file<&TlsFiles::authorities>},
+    OptionRow{"--tls-revocation", "", "FILE", using_tls,
+              "refuse the certificates on this list, PEM; may be\nrepeated",
+              take_file<&TlsFiles::revocations>},
+    OptionRow{"--tls-certificate", "", "FILE", using_tls,
+              "be the node of this certificate, PEM or .p12",
+              take_tls_text<&TlsFiles::certificate>},
+    OptionRow{"--tls-key", "", "FILE", using_tls, "its key, if it is not in the same file",
+              take_tls_text<&TlsFiles::key>},
+    OptionRow{"--require-tls", "", "", using_tls,
+              "connect to nobody, and let nobody in, without\nTLS",
+              [](Options& taken, const std::string&) {
+                taken.live.tls.is_required = true;
+                return std::string();
+              }},
     OptionRow{"--at",
               "",
               "NUMBERS",
@@ -116,7 +149,7 @@ constexpr std::array option_rows = {
               "",
               "NUMBERS",
               {Command::get},
-              "how much of a memory, likewise; default: all\nfrom there on",
+              "how much of a memory, likewise; default: all\nfrom there on, 64 MiB at most",
               take_numbers<&LiveOptions::counts>},
     OptionRow{"--count",
               "",
@@ -145,6 +178,16 @@ std::span<const CommandRow> commands() { return command_rows; }
 std::span<const OptionRow> options() { return option_rows; }
 const CommandRow& completing_command() { return completing_row; }
 
+std::string missing_to_connect(const Options& options) {
+  if (!options.live.password_file.empty() && options.live.user.empty()) {
+    return "`--password-file` needs `--user`";
+  }
+  if (!options.live.tls.key.empty() && options.live.tls.certificate.empty()) {
+    return "`--tls-key` needs `--tls-certificate`";
+  }
+  return "";
+}
+
 std::string missing(const Options& options) {
   const std::size_t count = options.inputs.size();
   const bool completes = options.command == Command::complete;
@@ -152,9 +195,7 @@ std::string missing(const Options& options) {
   if (count <= at || !is_url(options.inputs[at])) {
     return count <= at ? "no URL given" : "`" + options.inputs[at] + "` is no URL";
   }
-  if (!options.live.password_file.empty() && options.live.user.empty()) {
-    return "`--password-file` needs `--user`";
-  }
+  if (std::string complaint = missing_to_connect(options); !complaint.empty()) return complaint;
   switch (options.command) {
     case Command::get:
     case Command::call:

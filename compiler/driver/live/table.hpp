@@ -16,6 +16,9 @@ const CommandRow& completing_command();
 /// What the help of these commands says about the environment.
 extern const std::string_view environment_help;
 
+/// What options of connecting are missing on a command line that has a URL; empty when none is.
+std::string missing_to_connect(const Options& options);
+
 /// What is missing on a command line of these commands, or too much; empty when nothing is.
 std::string missing(const Options& options);
 

@@ -9,9 +9,11 @@
 #include <ctime>
 #include <ostream>
 #include <rr/error.hpp>
+#include <rr/printable.hpp>
 #include <string_view>
 #include <utility>
 
+#include "compiler/driver/live/commands.hpp"
 #include "compiler/driver/live/connection.hpp"
 #include "compiler/driver/live/members.hpp"
 #include "compiler/driver/live/watch_queue.hpp"
@@ -140,7 +142,7 @@ void Watch::run(const EndSignals& signals, std::ostream& out) {
       item->work();
       continue;
     }
-    out << item->line << std::endl;
+    out << rr::printable_json(item->line) << std::endl;
     ++count;
   }
 }
@@ -171,7 +173,7 @@ ExitStatus watch_service(const std::string& url, std::span<const std::string> me
             was_connected = true;
           } catch (const rr::Error& error) {
             on_first_failure(error);
-            err << "robdef: " << error.what() << std::endl;
+            err << "robdef: " << rr::printable(error.what(), longest_message) << std::endl;
           }
         });
       })
@@ -179,7 +181,8 @@ ExitStatus watch_service(const std::string& url, std::span<const std::string> me
   service
       .on_disconnected([&](const rr::SubscriptionClientId&, const rr::Error& why) {
         watch.post([&, why] {
-          err << "robdef: connection lost, trying again: " << why.what() << std::endl;
+          err << "robdef: connection lost, trying again: "
+              << rr::printable(why.what(), longest_message) << std::endl;
         });
       })
       .detach();

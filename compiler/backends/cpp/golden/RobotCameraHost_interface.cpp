@@ -177,12 +177,14 @@ constinit const ::rr::ObjectType rr_object_CameraHost{
 
 const ::rr::ObjectType& CameraHostStub::rr_object_type() const { return rr_object_CameraHost; }
 
-::std::shared_ptr<RobotDeviceStub> CameraHostStub::get_robdevice(::std::int32_t index) {
-  return rr_find_as<RobotDeviceStub>(rr_members_CameraHost[0], index);
+::std::shared_ptr<RobotDeviceStub> CameraHostStub::get_robdevice(::std::int32_t index,
+                                                                 const ::rr::CallOptions& options) {
+  return rr_find_as<RobotDeviceStub>(rr_members_CameraHost[0], options, index);
 }
 
-::std::shared_ptr<RobotCameraStub> CameraHostStub::get_robcamera(::std::int32_t index) {
-  return rr_find_as<RobotCameraStub>(rr_members_CameraHost[1], index);
+::std::shared_ptr<RobotCameraStub> CameraHostStub::get_robcamera(::std::int32_t index,
+                                                                 const ::rr::CallOptions& options) {
+  return rr_find_as<RobotCameraStub>(rr_members_CameraHost[1], options, index);
 }
 
 const ::rr::ObjectType& CameraHostSkeleton::rr_object_type() const { return rr_object_CameraHost; }

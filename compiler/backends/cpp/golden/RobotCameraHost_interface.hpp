@@ -13,7 +13,7 @@
 #include <string>
 #include <utility>
 
-static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
+static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace RobotCameraHost_interface {
 
@@ -31,32 +31,57 @@ extern const ::rr::ObjectType rr_object_RobotDevice;
 /// A RobotDevice on another node.
 class RobotDeviceStub : public virtual ::rr::Stub {
  public:
-  ::std::string get_Name() { return rr_get<::std::string>(rr_members_RobotDevice[0]); }
+  ::std::string get_Name(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::string>(rr_members_RobotDevice[0], options);
+  }
+  template <class Token>
+  auto async_get_Name(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::string>(rr_members_RobotDevice[0], options,
+                                       ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_Name(Token&& token) {
-    return rr_async_get<::std::string>(rr_members_RobotDevice[0], ::std::forward<Token>(token));
+    return async_get_Name(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_Name(const ::std::string& value) { rr_set(rr_members_RobotDevice[0], &value); }
+  void set_Name(const ::std::string& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_RobotDevice[0], options, &value);
+  }
+  template <class Token>
+  auto async_set_Name(const ::std::string& value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::std::string>(rr_members_RobotDevice[0], options,
+                                       ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_Name(const ::std::string& value, Token&& token) {
-    return rr_async_set<::std::string>(rr_members_RobotDevice[0], ::std::forward<Token>(token),
-                                       value);
+    return async_set_Name(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::Array<double> GetProperty(const ::std::string& name) {
-    return rr_call<::rr::Array<double>>(rr_members_RobotDevice[1], name);
+  ::rr::Array<double> GetProperty(const ::std::string& name,
+                                  const ::rr::CallOptions& options = {}) {
+    return rr_call<::rr::Array<double>>(rr_members_RobotDevice[1], options, name);
+  }
+  template <class Token>
+  auto async_GetProperty(const ::std::string& name, const ::rr::CallOptions& options,
+                         Token&& token) {
+    return rr_async_call<::rr::Array<double>>(rr_members_RobotDevice[1], options,
+                                              ::std::forward<Token>(token), name);
   }
   template <class Token>
   auto async_GetProperty(const ::std::string& name, Token&& token) {
-    return rr_async_call<::rr::Array<double>>(rr_members_RobotDevice[1],
-                                              ::std::forward<Token>(token), name);
+    return async_GetProperty(name, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::int32_t SetProperty(const ::std::string& name, const ::rr::Array<double>& val) {
-    return rr_call<::std::int32_t>(rr_members_RobotDevice[2], name, val);
+  ::std::int32_t SetProperty(const ::std::string& name, const ::rr::Array<double>& val,
+                             const ::rr::CallOptions& options = {}) {
+    return rr_call<::std::int32_t>(rr_members_RobotDevice[2], options, name, val);
+  }
+  template <class Token>
+  auto async_SetProperty(const ::std::string& name, const ::rr::Array<double>& val,
+                         const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::int32_t>(rr_members_RobotDevice[2], options,
+                                         ::std::forward<Token>(token), name, val);
   }
   template <class Token>
   auto async_SetProperty(const ::std::string& name, const ::rr::Array<double>& val, Token&& token) {
-    return rr_async_call<::std::int32_t>(rr_members_RobotDevice[2], ::std::forward<Token>(token),
-                                         name, val);
+    return async_SetProperty(name, val, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
@@ -105,40 +130,71 @@ extern const ::rr::ObjectType rr_object_RobotCamera;
 /// A RobotCamera on another node.
 class RobotCameraStub : public virtual ::rr::Stub {
  public:
-  ::std::string get_Name() { return rr_get<::std::string>(rr_members_RobotCamera[0]); }
+  ::std::string get_Name(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::string>(rr_members_RobotCamera[0], options);
+  }
+  template <class Token>
+  auto async_get_Name(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::string>(rr_members_RobotCamera[0], options,
+                                       ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_Name(Token&& token) {
-    return rr_async_get<::std::string>(rr_members_RobotCamera[0], ::std::forward<Token>(token));
+    return async_get_Name(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_Name(const ::std::string& value) { rr_set(rr_members_RobotCamera[0], &value); }
+  void set_Name(const ::std::string& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_RobotCamera[0], options, &value);
+  }
+  template <class Token>
+  auto async_set_Name(const ::std::string& value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::std::string>(rr_members_RobotCamera[0], options,
+                                       ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_Name(const ::std::string& value, Token&& token) {
-    return rr_async_set<::std::string>(rr_members_RobotCamera[0], ::std::forward<Token>(token),
-                                       value);
+    return async_set_Name(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::Array<double> GetProperty(const ::std::string& name) {
-    return rr_call<::rr::Array<double>>(rr_members_RobotCamera[1], name);
+  ::rr::Array<double> GetProperty(const ::std::string& name,
+                                  const ::rr::CallOptions& options = {}) {
+    return rr_call<::rr::Array<double>>(rr_members_RobotCamera[1], options, name);
+  }
+  template <class Token>
+  auto async_GetProperty(const ::std::string& name, const ::rr::CallOptions& options,
+                         Token&& token) {
+    return rr_async_call<::rr::Array<double>>(rr_members_RobotCamera[1], options,
+                                              ::std::forward<Token>(token), name);
   }
   template <class Token>
   auto async_GetProperty(const ::std::string& name, Token&& token) {
-    return rr_async_call<::rr::Array<double>>(rr_members_RobotCamera[1],
-                                              ::std::forward<Token>(token), name);
+    return async_GetProperty(name, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::int32_t SetProperty(const ::std::string& name, const ::rr::Array<double>& val) {
-    return rr_call<::std::int32_t>(rr_members_RobotCamera[2], name, val);
+  ::std::int32_t SetProperty(const ::std::string& name, const ::rr::Array<double>& val,
+                             const ::rr::CallOptions& options = {}) {
+    return rr_call<::std::int32_t>(rr_members_RobotCamera[2], options, name, val);
+  }
+  template <class Token>
+  auto async_SetProperty(const ::std::string& name, const ::rr::Array<double>& val,
+                         const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::int32_t>(rr_members_RobotCamera[2], options,
+                                         ::std::forward<Token>(token), name, val);
   }
   template <class Token>
   auto async_SetProperty(const ::std::string& name, const ::rr::Array<double>& val, Token&& token) {
-    return rr_async_call<::std::int32_t>(rr_members_RobotCamera[2], ::std::forward<Token>(token),
-                                         name, val);
+    return async_SetProperty(name, val, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::optional<CameraBitmap> GetCurrentStreamFrameCameraBitmap() {
-    return rr_call<::std::optional<CameraBitmap>>(rr_members_RobotCamera[3]);
+  ::std::optional<CameraBitmap> GetCurrentStreamFrameCameraBitmap(
+      const ::rr::CallOptions& options = {}) {
+    return rr_call<::std::optional<CameraBitmap>>(rr_members_RobotCamera[3], options);
+  }
+  template <class Token>
+  auto async_GetCurrentStreamFrameCameraBitmap(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<CameraBitmap>>(rr_members_RobotCamera[3], options,
+                                                        ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_GetCurrentStreamFrameCameraBitmap(Token&& token) {
-    return rr_async_call<::std::optional<CameraBitmap>>(rr_members_RobotCamera[3],
-                                                        ::std::forward<Token>(token));
+    return async_GetCurrentStreamFrameCameraBitmap(::rr::CallOptions(),
+                                                   ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
@@ -195,39 +251,77 @@ extern const ::rr::ObjectType rr_object_CameraHost;
 /// A CameraHost on another node.
 class CameraHostStub : public virtual ::rr::Stub {
  public:
-  ::std::shared_ptr<RobotDeviceStub> get_robdevice(::std::int32_t index);
+  ::std::shared_ptr<RobotDeviceStub> get_robdevice(::std::int32_t index,
+                                                   const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_robdevice(::std::int32_t index, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<RobotDeviceStub>(rr_members_CameraHost[0], options,
+                                          ::std::forward<Token>(token), index);
+  }
   template <class Token>
   auto async_get_robdevice(::std::int32_t index, Token&& token) {
-    return rr_async_find<RobotDeviceStub>(rr_members_CameraHost[0], ::std::forward<Token>(token),
-                                          index);
+    return async_get_robdevice(index, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<RobotCameraStub> get_robcamera(::std::int32_t index);
+  ::std::shared_ptr<RobotCameraStub> get_robcamera(::std::int32_t index,
+                                                   const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_robcamera(::std::int32_t index, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<RobotCameraStub>(rr_members_CameraHost[1], options,
+                                          ::std::forward<Token>(token), index);
+  }
   template <class Token>
   auto async_get_robcamera(::std::int32_t index, Token&& token) {
-    return rr_async_find<RobotCameraStub>(rr_members_CameraHost[1], ::std::forward<Token>(token),
-                                          index);
+    return async_get_robcamera(index, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::int32_t get_RobotCameraCount() { return rr_get<::std::int32_t>(rr_members_CameraHost[2]); }
+  ::std::int32_t get_RobotCameraCount(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::int32_t>(rr_members_CameraHost[2], options);
+  }
+  template <class Token>
+  auto async_get_RobotCameraCount(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::int32_t>(rr_members_CameraHost[2], options,
+                                        ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_RobotCameraCount(Token&& token) {
-    return rr_async_get<::std::int32_t>(rr_members_CameraHost[2], ::std::forward<Token>(token));
+    return async_get_RobotCameraCount(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_RobotCameraCount(::std::int32_t value) { rr_set(rr_members_CameraHost[2], &value); }
+  void set_RobotCameraCount(::std::int32_t value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_CameraHost[2], options, &value);
+  }
+  template <class Token>
+  auto async_set_RobotCameraCount(::std::int32_t value, const ::rr::CallOptions& options,
+                                  Token&& token) {
+    return rr_async_set<::std::int32_t>(rr_members_CameraHost[2], options,
+                                        ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_RobotCameraCount(::std::int32_t value, Token&& token) {
-    return rr_async_set<::std::int32_t>(rr_members_CameraHost[2], ::std::forward<Token>(token),
-                                        value);
+    return async_set_RobotCameraCount(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::int32_t get_RobotDeviceCount() { return rr_get<::std::int32_t>(rr_members_CameraHost[3]); }
+  ::std::int32_t get_RobotDeviceCount(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::int32_t>(rr_members_CameraHost[3], options);
+  }
+  template <class Token>
+  auto async_get_RobotDeviceCount(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::int32_t>(rr_members_CameraHost[3], options,
+                                        ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_RobotDeviceCount(Token&& token) {
-    return rr_async_get<::std::int32_t>(rr_members_CameraHost[3], ::std::forward<Token>(token));
+    return async_get_RobotDeviceCount(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_RobotDeviceCount(::std::int32_t value) { rr_set(rr_members_CameraHost[3], &value); }
+  void set_RobotDeviceCount(::std::int32_t value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_CameraHost[3], options, &value);
+  }
+  template <class Token>
+  auto async_set_RobotDeviceCount(::std::int32_t value, const ::rr::CallOptions& options,
+                                  Token&& token) {
+    return rr_async_set<::std::int32_t>(rr_members_CameraHost[3], options,
+                                        ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_RobotDeviceCount(::std::int32_t value, Token&& token) {
-    return rr_async_set<::std::int32_t>(rr_members_CameraHost[3], ::std::forward<Token>(token),
-                                        value);
+    return async_set_RobotDeviceCount(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };

@@ -92,34 +92,34 @@ public abstract class RobotDeviceSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<string> GetNameAsync();
+    public abstract ValueTask<string> GetNameAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetNameAsync(string value);
+    public abstract ValueTask SetNameAsync(string value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double[]> GetPropertyAsync(string name);
+    public abstract ValueTask<double[]> GetPropertyAsync(string name, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> SetPropertyAsync(string name, double[] val);
+    public abstract ValueTask<int> SetPropertyAsync(string name, double[] val, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetNameAsync(), ValueCodec.String);
+                return rrRequest.AnswerAsync(GetNameAsync(rrRequest.Cancelled), ValueCodec.String);
             case 0 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetNameAsync(rrRequest.Argument(ValueCodec.String)));
+                return rrRequest.AnswerAsync(SetNameAsync(rrRequest.Argument(ValueCodec.String), rrRequest.Cancelled));
             case 1:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     string name = rrArguments.Read(ValueCodec.String, "name"u8);
-                    return rrRequest.AnswerAsync(GetPropertyAsync(name), ValueCodec.Double.Array);
+                    return rrRequest.AnswerAsync(GetPropertyAsync(name, rrRequest.Cancelled), ValueCodec.Double.Array);
                 }
             case 2:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     string name = rrArguments.Read(ValueCodec.String, "name"u8);
                     double[] val = rrArguments.Read(ValueCodec.Double.Array, "val"u8);
-                    return rrRequest.AnswerAsync(SetPropertyAsync(name, val), ValueCodec.Int32);
+                    return rrRequest.AnswerAsync(SetPropertyAsync(name, val, rrRequest.Cancelled), ValueCodec.Int32);
                 }
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -133,17 +133,17 @@ public class RobotDeviceDefault : RobotDeviceSkeleton
     protected Stored<string> RrStoredName { get; } = new("");
 
     /// <inheritdoc/>
-    public override ValueTask<string> GetNameAsync() => RrStoredName.GetAsync();
+    public override ValueTask<string> GetNameAsync(CancellationToken cancellationToken = default) => RrStoredName.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetNameAsync(string value) => RrStoredName.SetAsync(value);
+    public override ValueTask SetNameAsync(string value, CancellationToken cancellationToken = default) => RrStoredName.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double[]> GetPropertyAsync(string name) =>
+    public override ValueTask<double[]> GetPropertyAsync(string name, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("GetProperty");
 
     /// <inheritdoc/>
-    public override ValueTask<int> SetPropertyAsync(string name, double[] val) =>
+    public override ValueTask<int> SetPropertyAsync(string name, double[] val, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("SetProperty");
 }
 
@@ -231,40 +231,40 @@ public abstract class RobotCameraSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<string> GetNameAsync();
+    public abstract ValueTask<string> GetNameAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetNameAsync(string value);
+    public abstract ValueTask SetNameAsync(string value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double[]> GetPropertyAsync(string name);
+    public abstract ValueTask<double[]> GetPropertyAsync(string name, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> SetPropertyAsync(string name, double[] val);
+    public abstract ValueTask<int> SetPropertyAsync(string name, double[] val, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<CameraBitmap?> GetCurrentStreamFrameCameraBitmapAsync();
+    public abstract ValueTask<CameraBitmap?> GetCurrentStreamFrameCameraBitmapAsync(CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetNameAsync(), ValueCodec.String);
+                return rrRequest.AnswerAsync(GetNameAsync(rrRequest.Cancelled), ValueCodec.String);
             case 0 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetNameAsync(rrRequest.Argument(ValueCodec.String)));
+                return rrRequest.AnswerAsync(SetNameAsync(rrRequest.Argument(ValueCodec.String), rrRequest.Cancelled));
             case 1:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     string name = rrArguments.Read(ValueCodec.String, "name"u8);
-                    return rrRequest.AnswerAsync(GetPropertyAsync(name), ValueCodec.Double.Array);
+                    return rrRequest.AnswerAsync(GetPropertyAsync(name, rrRequest.Cancelled), ValueCodec.Double.Array);
                 }
             case 2:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     string name = rrArguments.Read(ValueCodec.String, "name"u8);
                     double[] val = rrArguments.Read(ValueCodec.Double.Array, "val"u8);
-                    return rrRequest.AnswerAsync(SetPropertyAsync(name, val), ValueCodec.Int32);
+                    return rrRequest.AnswerAsync(SetPropertyAsync(name, val, rrRequest.Cancelled), ValueCodec.Int32);
                 }
             case 3:
                 {
-                    return rrRequest.AnswerAsync(GetCurrentStreamFrameCameraBitmapAsync(), CameraBitmap.RrCodec);
+                    return rrRequest.AnswerAsync(GetCurrentStreamFrameCameraBitmapAsync(rrRequest.Cancelled), CameraBitmap.RrCodec);
                 }
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -278,21 +278,21 @@ public class RobotCameraDefault : RobotCameraSkeleton
     protected Stored<string> RrStoredName { get; } = new("");
 
     /// <inheritdoc/>
-    public override ValueTask<string> GetNameAsync() => RrStoredName.GetAsync();
+    public override ValueTask<string> GetNameAsync(CancellationToken cancellationToken = default) => RrStoredName.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetNameAsync(string value) => RrStoredName.SetAsync(value);
+    public override ValueTask SetNameAsync(string value, CancellationToken cancellationToken = default) => RrStoredName.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double[]> GetPropertyAsync(string name) =>
+    public override ValueTask<double[]> GetPropertyAsync(string name, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("GetProperty");
 
     /// <inheritdoc/>
-    public override ValueTask<int> SetPropertyAsync(string name, double[] val) =>
+    public override ValueTask<int> SetPropertyAsync(string name, double[] val, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("SetProperty");
 
     /// <inheritdoc/>
-    public override ValueTask<CameraBitmap?> GetCurrentStreamFrameCameraBitmapAsync() =>
+    public override ValueTask<CameraBitmap?> GetCurrentStreamFrameCameraBitmapAsync(CancellationToken cancellationToken = default) =>
         throw NotServed.Member("GetCurrentStreamFrameCameraBitmap");
 }
 
@@ -383,34 +383,34 @@ public abstract class CameraHostSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<Skeleton> GetRobdeviceAsync(int index);
+    public abstract ValueTask<Skeleton> GetRobdeviceAsync(int index, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetRobcameraAsync(int index);
+    public abstract ValueTask<Skeleton> GetRobcameraAsync(int index, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> GetRobotCameraCountAsync();
+    public abstract ValueTask<int> GetRobotCameraCountAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetRobotCameraCountAsync(int value);
+    public abstract ValueTask SetRobotCameraCountAsync(int value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> GetRobotDeviceCountAsync();
+    public abstract ValueTask<int> GetRobotDeviceCountAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetRobotDeviceCountAsync(int value);
+    public abstract ValueTask SetRobotDeviceCountAsync(int value, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0:
-                return rrRequest.AnswerObjectAsync(GetRobdeviceAsync(rrRequest.IndexNumber));
+                return rrRequest.AnswerObjectAsync(GetRobdeviceAsync(rrRequest.IndexNumber, rrRequest.Cancelled));
             case 1:
-                return rrRequest.AnswerObjectAsync(GetRobcameraAsync(rrRequest.IndexNumber));
+                return rrRequest.AnswerObjectAsync(GetRobcameraAsync(rrRequest.IndexNumber, rrRequest.Cancelled));
             case 2 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetRobotCameraCountAsync(), ValueCodec.Int32);
+                return rrRequest.AnswerAsync(GetRobotCameraCountAsync(rrRequest.Cancelled), ValueCodec.Int32);
             case 2 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetRobotCameraCountAsync(rrRequest.Argument(ValueCodec.Int32)));
+                return rrRequest.AnswerAsync(SetRobotCameraCountAsync(rrRequest.Argument(ValueCodec.Int32), rrRequest.Cancelled));
             case 3 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetRobotDeviceCountAsync(), ValueCodec.Int32);
+                return rrRequest.AnswerAsync(GetRobotDeviceCountAsync(rrRequest.Cancelled), ValueCodec.Int32);
             case 3 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetRobotDeviceCountAsync(rrRequest.Argument(ValueCodec.Int32)));
+                return rrRequest.AnswerAsync(SetRobotDeviceCountAsync(rrRequest.Argument(ValueCodec.Int32), rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
         }
@@ -424,30 +424,30 @@ public class CameraHostDefault : CameraHostSkeleton
     protected Stored<int> RrStoredRobotDeviceCount { get; } = new(default);
 
     /// <inheritdoc/>
-    public override ValueTask<Skeleton> GetRobdeviceAsync(int index) =>
+    public override ValueTask<Skeleton> GetRobdeviceAsync(int index, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("robdevice");
 
     /// <inheritdoc/>
-    public override ValueTask<Skeleton> GetRobcameraAsync(int index) =>
+    public override ValueTask<Skeleton> GetRobcameraAsync(int index, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("robcamera");
 
     /// <inheritdoc/>
-    public override ValueTask<int> GetRobotCameraCountAsync() => RrStoredRobotCameraCount.GetAsync();
+    public override ValueTask<int> GetRobotCameraCountAsync(CancellationToken cancellationToken = default) => RrStoredRobotCameraCount.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetRobotCameraCountAsync(int value) => RrStoredRobotCameraCount.SetAsync(value);
+    public override ValueTask SetRobotCameraCountAsync(int value, CancellationToken cancellationToken = default) => RrStoredRobotCameraCount.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<int> GetRobotDeviceCountAsync() => RrStoredRobotDeviceCount.GetAsync();
+    public override ValueTask<int> GetRobotDeviceCountAsync(CancellationToken cancellationToken = default) => RrStoredRobotDeviceCount.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetRobotDeviceCountAsync(int value) => RrStoredRobotDeviceCount.SetAsync(value);
+    public override ValueTask SetRobotDeviceCountAsync(int value, CancellationToken cancellationToken = default) => RrStoredRobotDeviceCount.SetAsync(value);
 }
 
 /// <summary>What the runtime knows of RobotCameraHost_interface.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "RobotCameraHost_interface", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "RobotCameraHost_interface", RrText)
     {
         Exceptions =
         [

@@ -120,41 +120,41 @@ public abstract class StoreSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<double[]> GetExactAsync();
+    public abstract ValueTask<double[]> GetExactAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetExactAsync(double[] value);
+    public abstract ValueTask SetExactAsync(double[] value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<byte[]> GetAtTheEdgeAsync();
+    public abstract ValueTask<byte[]> GetAtTheEdgeAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetAtTheEdgeAsync(byte[] value);
+    public abstract ValueTask SetAtTheEdgeAsync(byte[] value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<byte[]> GetBeyondItAsync();
+    public abstract ValueTask<byte[]> GetBeyondItAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetBeyondItAsync(byte[] value);
+    public abstract ValueTask SetBeyondItAsync(byte[] value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<MultiDimArray<float>> DepthAsync(ushort[] raw);
+    public abstract ValueTask<MultiDimArray<float>> DepthAsync(ushort[] raw, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetExactAsync(), RrCodecs.Double100000);
+                return rrRequest.AnswerAsync(GetExactAsync(rrRequest.Cancelled), RrCodecs.Double100000);
             case 0 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetExactAsync(rrRequest.Argument(RrCodecs.Double100000)));
+                return rrRequest.AnswerAsync(SetExactAsync(rrRequest.Argument(RrCodecs.Double100000), rrRequest.Cancelled));
             case 1 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetAtTheEdgeAsync(), RrCodecs.Uint816384);
+                return rrRequest.AnswerAsync(GetAtTheEdgeAsync(rrRequest.Cancelled), RrCodecs.Uint816384);
             case 1 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetAtTheEdgeAsync(rrRequest.Argument(RrCodecs.Uint816384)));
+                return rrRequest.AnswerAsync(SetAtTheEdgeAsync(rrRequest.Argument(RrCodecs.Uint816384), rrRequest.Cancelled));
             case 2 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetBeyondItAsync(), RrCodecs.Uint816385);
+                return rrRequest.AnswerAsync(GetBeyondItAsync(rrRequest.Cancelled), RrCodecs.Uint816385);
             case 2 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetBeyondItAsync(rrRequest.Argument(RrCodecs.Uint816385)));
+                return rrRequest.AnswerAsync(SetBeyondItAsync(rrRequest.Argument(RrCodecs.Uint816385), rrRequest.Cancelled));
             case 3:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     ushort[] raw = rrArguments.Read(RrCodecs.Uint1670000Max, "raw"u8);
-                    return rrRequest.AnswerAsync(DepthAsync(raw), RrCodecs.Single640x480);
+                    return rrRequest.AnswerAsync(DepthAsync(raw, rrRequest.Cancelled), RrCodecs.Single640x480);
                 }
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -170,32 +170,32 @@ public class StoreDefault : StoreSkeleton
     protected Stored<byte[]> RrStoredBeyondIt { get; } = new(new byte[16385]);
 
     /// <inheritdoc/>
-    public override ValueTask<double[]> GetExactAsync() => RrStoredExact.GetAsync();
+    public override ValueTask<double[]> GetExactAsync(CancellationToken cancellationToken = default) => RrStoredExact.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetExactAsync(double[] value) => RrStoredExact.SetAsync(value);
+    public override ValueTask SetExactAsync(double[] value, CancellationToken cancellationToken = default) => RrStoredExact.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<byte[]> GetAtTheEdgeAsync() => RrStoredAtTheEdge.GetAsync();
+    public override ValueTask<byte[]> GetAtTheEdgeAsync(CancellationToken cancellationToken = default) => RrStoredAtTheEdge.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetAtTheEdgeAsync(byte[] value) => RrStoredAtTheEdge.SetAsync(value);
+    public override ValueTask SetAtTheEdgeAsync(byte[] value, CancellationToken cancellationToken = default) => RrStoredAtTheEdge.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<byte[]> GetBeyondItAsync() => RrStoredBeyondIt.GetAsync();
+    public override ValueTask<byte[]> GetBeyondItAsync(CancellationToken cancellationToken = default) => RrStoredBeyondIt.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetBeyondItAsync(byte[] value) => RrStoredBeyondIt.SetAsync(value);
+    public override ValueTask SetBeyondItAsync(byte[] value, CancellationToken cancellationToken = default) => RrStoredBeyondIt.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<MultiDimArray<float>> DepthAsync(ushort[] raw) =>
+    public override ValueTask<MultiDimArray<float>> DepthAsync(ushort[] raw, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("depth");
 }
 
 /// <summary>What the runtime knows of experimental.big_arrays.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.big_arrays", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.big_arrays", RrText)
     {
         Exceptions =
         [

@@ -90,18 +90,18 @@ public abstract class MachineSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<Setting?> GetSettingAsync();
+    public abstract ValueTask<Setting?> GetSettingAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetSettingAsync(Setting? value);
+    public abstract ValueTask SetSettingAsync(Setting? value, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetSettingAsync(), global::Experimental.Constants.Setting.RrCodec);
+                return rrRequest.AnswerAsync(GetSettingAsync(rrRequest.Cancelled), global::Experimental.Constants.Setting.RrCodec);
             case 0 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetSettingAsync(rrRequest.Argument(global::Experimental.Constants.Setting.RrCodec)));
+                return rrRequest.AnswerAsync(SetSettingAsync(rrRequest.Argument(global::Experimental.Constants.Setting.RrCodec), rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
         }
@@ -114,16 +114,16 @@ public class MachineDefault : MachineSkeleton
     protected Stored<Setting?> RrStoredSetting { get; } = new(default);
 
     /// <inheritdoc/>
-    public override ValueTask<Setting?> GetSettingAsync() => RrStoredSetting.GetAsync();
+    public override ValueTask<Setting?> GetSettingAsync(CancellationToken cancellationToken = default) => RrStoredSetting.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetSettingAsync(Setting? value) => RrStoredSetting.SetAsync(value);
+    public override ValueTask SetSettingAsync(Setting? value, CancellationToken cancellationToken = default) => RrStoredSetting.SetAsync(value);
 }
 
 /// <summary>What the runtime knows of experimental.constants.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.constants", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.constants", RrText)
     {
         Exceptions =
         [

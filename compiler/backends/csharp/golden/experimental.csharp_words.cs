@@ -659,7 +659,7 @@ public class WordParametersStub(ObjectHandle rrHandle) : Stub(rrHandle), IWordPa
     /// <inheritdoc/>
     public event Action<int, int, int, int, int, int, int, int, int, int, int, int> Told
     {
-        add => RrSubscribe("told", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("told", value, static (Action<int, int, int, int, int, int, int, int, int, int, int, int> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Int32, "abstract"u8),
             rrArguments.Read(ValueCodec.Int32, "as"u8),
             rrArguments.Read(ValueCodec.Int32, "base"u8),
@@ -677,7 +677,7 @@ public class WordParametersStub(ObjectHandle rrHandle) : Stub(rrHandle), IWordPa
 
     /// <inheritdoc/>
     public void SetAsked(Func<int, global::System.Threading.Tasks.Task<int>>? function) =>
-        RrSetCallback("asked"u8, MemberAccess.None, function, static (rrFunction, ref rrArguments) => rrFunction(
+        RrSetCallback("asked"u8, MemberAccess.None, function, static (Func<int, global::System.Threading.Tasks.Task<int>> rrFunction, scoped ref FieldReader rrArguments) => rrFunction(
             rrArguments.Read(ValueCodec.Int32, "handler"u8)), ValueCodec.Int32);
 }
 
@@ -703,27 +703,27 @@ public abstract class WordParametersSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<int> Words0Async(int @abstract, int @as, int @base, int @break, int @byte, int @case, int @catch, int @char, int @checked, int @class, int @const, int @continue);
+    public abstract ValueTask<int> Words0Async(int @abstract, int @as, int @base, int @break, int @byte, int @case, int @catch, int @char, int @checked, int @class, int @const, int @continue, global::System.Threading.CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> Words1Async(int @decimal, int @default, int @delegate, int @do, int @else, int @explicit, int @extern, int @false, int @finally, int @fixed, int @float, int @for);
+    public abstract ValueTask<int> Words1Async(int @decimal, int @default, int @delegate, int @do, int @else, int @explicit, int @extern, int @false, int @finally, int @fixed, int @float, int @for, global::System.Threading.CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> Words2Async(int @foreach, int @goto, int @if, int @implicit, int @in, int @int, int @interface, int @internal, int @is, int @lock, int @long, int @namespace);
+    public abstract ValueTask<int> Words2Async(int @foreach, int @goto, int @if, int @implicit, int @in, int @int, int @interface, int @internal, int @is, int @lock, int @long, int @namespace, global::System.Threading.CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> Words3Async(int @new, int @null, int @operator, int @out, int @override, int @params, int @private, int @protected, int @public, int @readonly, int @ref, int @return);
+    public abstract ValueTask<int> Words3Async(int @new, int @null, int @operator, int @out, int @override, int @params, int @private, int @protected, int @public, int @readonly, int @ref, int @return, global::System.Threading.CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> Words4Async(int @sbyte, int @sealed, int @short, int @sizeof, int @stackalloc, int @static, int @switch, int @throw, int @true, int @try, int @typeof, int @uint);
+    public abstract ValueTask<int> Words4Async(int @sbyte, int @sealed, int @short, int @sizeof, int @stackalloc, int @static, int @switch, int @throw, int @true, int @try, int @typeof, int @uint, global::System.Threading.CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> Words5Async(int @ulong, int @unchecked, int @unsafe, int @ushort, int @virtual, int @volatile, int @while, int add, int alias, int allows, int and, int args);
+    public abstract ValueTask<int> Words5Async(int @ulong, int @unchecked, int @unsafe, int @ushort, int @virtual, int @volatile, int @while, int add, int alias, int allows, int and, int args, global::System.Threading.CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> Words6Async(int ascending, int async, int await, int by, int descending, int dynamic, int extension, int file, int from, int get, int global, int group);
+    public abstract ValueTask<int> Words6Async(int ascending, int async, int await, int by, int descending, int dynamic, int extension, int file, int from, int get, int global, int group, global::System.Threading.CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> Words7Async(int init, int into, int join, int let, int managed, int nameof, int nint, int not, int notnull, int nuint, int on, int or);
+    public abstract ValueTask<int> Words7Async(int init, int into, int join, int let, int managed, int nameof, int nint, int not, int notnull, int nuint, int on, int or, global::System.Threading.CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> Words8Async(int orderby, int partial, int record, int remove, int required, int scoped, int select, int set, int unmanaged, int value, int var, int when);
+    public abstract ValueTask<int> Words8Async(int orderby, int partial, int record, int remove, int required, int scoped, int select, int set, int unmanaged, int value, int var, int when, global::System.Threading.CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> Words9Async(int where, int with, int yield, int cancel, int cancellationToken, int arguments, int request, int member, int result, int task, int codec, int writer);
+    public abstract ValueTask<int> Words9Async(int where, int with, int yield, int cancel, int cancellationToken, int arguments, int request, int member, int result, int task, int codec, int writer, global::System.Threading.CancellationToken cancellationToken_ = default);
 
-    public abstract ValueTask<int> Words10Async(int handler);
+    public abstract ValueTask<int> Words10Async(int handler, global::System.Threading.CancellationToken cancellationToken = default);
 
     public void FireTold(int @abstract, int @as, int @base, int @break, int @byte, int @case, int @catch, int @char, int @checked, int @class, int @const, int @continue) => RrEvent(11)
         .With("continue"u8, ValueCodec.Int32, @continue)
@@ -769,7 +769,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int @class = rrArguments.Read(ValueCodec.Int32, "class"u8);
                     int @const = rrArguments.Read(ValueCodec.Int32, "const"u8);
                     int @continue = rrArguments.Read(ValueCodec.Int32, "continue"u8);
-                    return rrRequest.AnswerAsync(Words0Async(@abstract, @as, @base, @break, @byte, @case, @catch, @char, @checked, @class, @const, @continue), ValueCodec.Int32);
+                    return rrRequest.AnswerAsync(Words0Async(@abstract, @as, @base, @break, @byte, @case, @catch, @char, @checked, @class, @const, @continue, rrRequest.Cancelled), ValueCodec.Int32);
                 }
             case 1:
                 {
@@ -786,7 +786,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int @fixed = rrArguments.Read(ValueCodec.Int32, "fixed"u8);
                     int @float = rrArguments.Read(ValueCodec.Int32, "float"u8);
                     int @for = rrArguments.Read(ValueCodec.Int32, "for"u8);
-                    return rrRequest.AnswerAsync(Words1Async(@decimal, @default, @delegate, @do, @else, @explicit, @extern, @false, @finally, @fixed, @float, @for), ValueCodec.Int32);
+                    return rrRequest.AnswerAsync(Words1Async(@decimal, @default, @delegate, @do, @else, @explicit, @extern, @false, @finally, @fixed, @float, @for, rrRequest.Cancelled), ValueCodec.Int32);
                 }
             case 2:
                 {
@@ -803,7 +803,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int @lock = rrArguments.Read(ValueCodec.Int32, "lock"u8);
                     int @long = rrArguments.Read(ValueCodec.Int32, "long"u8);
                     int @namespace = rrArguments.Read(ValueCodec.Int32, "namespace"u8);
-                    return rrRequest.AnswerAsync(Words2Async(@foreach, @goto, @if, @implicit, @in, @int, @interface, @internal, @is, @lock, @long, @namespace), ValueCodec.Int32);
+                    return rrRequest.AnswerAsync(Words2Async(@foreach, @goto, @if, @implicit, @in, @int, @interface, @internal, @is, @lock, @long, @namespace, rrRequest.Cancelled), ValueCodec.Int32);
                 }
             case 3:
                 {
@@ -820,7 +820,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int @readonly = rrArguments.Read(ValueCodec.Int32, "readonly"u8);
                     int @ref = rrArguments.Read(ValueCodec.Int32, "ref"u8);
                     int @return = rrArguments.Read(ValueCodec.Int32, "return"u8);
-                    return rrRequest.AnswerAsync(Words3Async(@new, @null, @operator, @out, @override, @params, @private, @protected, @public, @readonly, @ref, @return), ValueCodec.Int32);
+                    return rrRequest.AnswerAsync(Words3Async(@new, @null, @operator, @out, @override, @params, @private, @protected, @public, @readonly, @ref, @return, rrRequest.Cancelled), ValueCodec.Int32);
                 }
             case 4:
                 {
@@ -837,7 +837,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int @try = rrArguments.Read(ValueCodec.Int32, "try"u8);
                     int @typeof = rrArguments.Read(ValueCodec.Int32, "typeof"u8);
                     int @uint = rrArguments.Read(ValueCodec.Int32, "uint"u8);
-                    return rrRequest.AnswerAsync(Words4Async(@sbyte, @sealed, @short, @sizeof, @stackalloc, @static, @switch, @throw, @true, @try, @typeof, @uint), ValueCodec.Int32);
+                    return rrRequest.AnswerAsync(Words4Async(@sbyte, @sealed, @short, @sizeof, @stackalloc, @static, @switch, @throw, @true, @try, @typeof, @uint, rrRequest.Cancelled), ValueCodec.Int32);
                 }
             case 5:
                 {
@@ -854,7 +854,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int allows = rrArguments.Read(ValueCodec.Int32, "allows"u8);
                     int and = rrArguments.Read(ValueCodec.Int32, "and"u8);
                     int args = rrArguments.Read(ValueCodec.Int32, "args"u8);
-                    return rrRequest.AnswerAsync(Words5Async(@ulong, @unchecked, @unsafe, @ushort, @virtual, @volatile, @while, add, alias, allows, and, args), ValueCodec.Int32);
+                    return rrRequest.AnswerAsync(Words5Async(@ulong, @unchecked, @unsafe, @ushort, @virtual, @volatile, @while, add, alias, allows, and, args, rrRequest.Cancelled), ValueCodec.Int32);
                 }
             case 6:
                 {
@@ -871,7 +871,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int get = rrArguments.Read(ValueCodec.Int32, "get"u8);
                     int global = rrArguments.Read(ValueCodec.Int32, "global"u8);
                     int group = rrArguments.Read(ValueCodec.Int32, "group"u8);
-                    return rrRequest.AnswerAsync(Words6Async(ascending, async, await, by, descending, dynamic, extension, file, from, get, global, group), ValueCodec.Int32);
+                    return rrRequest.AnswerAsync(Words6Async(ascending, async, await, by, descending, dynamic, extension, file, from, get, global, group, rrRequest.Cancelled), ValueCodec.Int32);
                 }
             case 7:
                 {
@@ -888,7 +888,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int nuint = rrArguments.Read(ValueCodec.Int32, "nuint"u8);
                     int on = rrArguments.Read(ValueCodec.Int32, "on"u8);
                     int or = rrArguments.Read(ValueCodec.Int32, "or"u8);
-                    return rrRequest.AnswerAsync(Words7Async(init, into, join, let, managed, nameof, nint, not, notnull, nuint, on, or), ValueCodec.Int32);
+                    return rrRequest.AnswerAsync(Words7Async(init, into, join, let, managed, nameof, nint, not, notnull, nuint, on, or, rrRequest.Cancelled), ValueCodec.Int32);
                 }
             case 8:
                 {
@@ -905,7 +905,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int value = rrArguments.Read(ValueCodec.Int32, "value"u8);
                     int var = rrArguments.Read(ValueCodec.Int32, "var"u8);
                     int when = rrArguments.Read(ValueCodec.Int32, "when"u8);
-                    return rrRequest.AnswerAsync(Words8Async(orderby, partial, record, remove, required, scoped, select, set, unmanaged, value, var, when), ValueCodec.Int32);
+                    return rrRequest.AnswerAsync(Words8Async(orderby, partial, record, remove, required, scoped, select, set, unmanaged, value, var, when, rrRequest.Cancelled), ValueCodec.Int32);
                 }
             case 9:
                 {
@@ -922,13 +922,13 @@ public abstract class WordParametersSkeleton : Skeleton
                     int task = rrArguments.Read(ValueCodec.Int32, "task"u8);
                     int codec = rrArguments.Read(ValueCodec.Int32, "codec"u8);
                     int writer = rrArguments.Read(ValueCodec.Int32, "writer"u8);
-                    return rrRequest.AnswerAsync(Words9Async(where, with, yield, cancel, cancellationToken, arguments, request, member, result, task, codec, writer), ValueCodec.Int32);
+                    return rrRequest.AnswerAsync(Words9Async(where, with, yield, cancel, cancellationToken, arguments, request, member, result, task, codec, writer, rrRequest.Cancelled), ValueCodec.Int32);
                 }
             case 10:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int handler = rrArguments.Read(ValueCodec.Int32, "handler"u8);
-                    return rrRequest.AnswerAsync(Words10Async(handler), ValueCodec.Int32);
+                    return rrRequest.AnswerAsync(Words10Async(handler, rrRequest.Cancelled), ValueCodec.Int32);
                 }
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -1005,7 +1005,7 @@ public class WordMembersStub(ObjectHandle rrHandle) : Stub(rrHandle), IWordMembe
     /// <inheritdoc/>
     public event Action<int> Record
     {
-        add => RrSubscribe("record", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("record", value, static (Action<int> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Int32, "value"u8)));
         remove => RrUnsubscribe("record", value);
     }
@@ -1017,7 +1017,7 @@ public class WordMembersStub(ObjectHandle rrHandle) : Stub(rrHandle), IWordMembe
 
     /// <inheritdoc/>
     public void SetNamespace(Func<int, global::System.Threading.Tasks.Task<int>>? function) =>
-        RrSetCallback("namespace"u8, MemberAccess.None, function, static (rrFunction, ref rrArguments) => rrFunction(
+        RrSetCallback("namespace"u8, MemberAccess.None, function, static (Func<int, global::System.Threading.Tasks.Task<int>> rrFunction, scoped ref FieldReader rrArguments) => rrFunction(
             rrArguments.Read(ValueCodec.Int32, "value"u8)), ValueCodec.Int32);
 
     /// <inheritdoc/>
@@ -1068,7 +1068,7 @@ public class WordMembersStub(ObjectHandle rrHandle) : Stub(rrHandle), IWordMembe
     /// <inheritdoc/>
     public event Action<int> Cancel
     {
-        add => RrSubscribe("cancel", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("cancel", value, static (Action<int> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Int32, "value"u8)));
         remove => RrUnsubscribe("cancel", value);
     }
@@ -1080,7 +1080,7 @@ public class WordMembersStub(ObjectHandle rrHandle) : Stub(rrHandle), IWordMembe
 
     /// <inheritdoc/>
     public void SetRemove(Func<int, global::System.Threading.Tasks.Task<int>>? function) =>
-        RrSetCallback("remove"u8, MemberAccess.None, function, static (rrFunction, ref rrArguments) => rrFunction(
+        RrSetCallback("remove"u8, MemberAccess.None, function, static (Func<int, global::System.Threading.Tasks.Task<int>> rrFunction, scoped ref FieldReader rrArguments) => rrFunction(
             rrArguments.Read(ValueCodec.Int32, "value"u8)), ValueCodec.Int32);
 
     /// <inheritdoc/>
@@ -1127,11 +1127,11 @@ public abstract class WordMembersSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<int> GetAbstractAsync();
+    public abstract ValueTask<int> GetAbstractAsync(global::System.Threading.CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetAbstractAsync(int value);
+    public abstract ValueTask SetAbstractAsync(int value, global::System.Threading.CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> ClassAsync(int value);
+    public abstract ValueTask<int> ClassAsync(int value, global::System.Threading.CancellationToken cancellationToken = default);
 
     public void FireRecord(int value) => RrEvent(2)
         .With("value"u8, ValueCodec.Int32, value)
@@ -1157,13 +1157,13 @@ public abstract class WordMembersSkeleton : Skeleton
 
     public abstract ArrayMemorySource<int> Get { get; }
 
-    public abstract ValueTask<Skeleton> GetOperatorAsync();
+    public abstract ValueTask<Skeleton> GetOperatorAsync(global::System.Threading.CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> GetParamsAsync();
+    public abstract ValueTask<int> GetParamsAsync(global::System.Threading.CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetParamsAsync(int value);
+    public abstract ValueTask SetParamsAsync(int value, global::System.Threading.CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> AddAsync(int value);
+    public abstract ValueTask<int> AddAsync(int value, global::System.Threading.CancellationToken cancellationToken = default);
 
     public void FireCancel(int value) => RrEvent(10)
         .With("value"u8, ValueCodec.Int32, value)
@@ -1189,36 +1189,36 @@ public abstract class WordMembersSkeleton : Skeleton
 
     public abstract ArrayMemorySource<int> Set { get; }
 
-    public abstract ValueTask<Skeleton> GetInitAsync();
+    public abstract ValueTask<Skeleton> GetInitAsync(global::System.Threading.CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetAbstractAsync(), ValueCodec.Int32);
+                return rrRequest.AnswerAsync(GetAbstractAsync(rrRequest.Cancelled), ValueCodec.Int32);
             case 0 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetAbstractAsync(rrRequest.Argument(ValueCodec.Int32)));
+                return rrRequest.AnswerAsync(SetAbstractAsync(rrRequest.Argument(ValueCodec.Int32), rrRequest.Cancelled));
             case 1:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int value = rrArguments.Read(ValueCodec.Int32, "value"u8);
-                    return rrRequest.AnswerAsync(ClassAsync(value), ValueCodec.Int32);
+                    return rrRequest.AnswerAsync(ClassAsync(value, rrRequest.Cancelled), ValueCodec.Int32);
                 }
             case 7:
-                return rrRequest.AnswerObjectAsync(GetOperatorAsync());
+                return rrRequest.AnswerObjectAsync(GetOperatorAsync(rrRequest.Cancelled));
             case 8 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetParamsAsync(), ValueCodec.Int32);
+                return rrRequest.AnswerAsync(GetParamsAsync(rrRequest.Cancelled), ValueCodec.Int32);
             case 8 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetParamsAsync(rrRequest.Argument(ValueCodec.Int32)));
+                return rrRequest.AnswerAsync(SetParamsAsync(rrRequest.Argument(ValueCodec.Int32), rrRequest.Cancelled));
             case 9:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int value = rrArguments.Read(ValueCodec.Int32, "value"u8);
-                    return rrRequest.AnswerAsync(AddAsync(value), ValueCodec.Int32);
+                    return rrRequest.AnswerAsync(AddAsync(value, rrRequest.Cancelled), ValueCodec.Int32);
                 }
             case 15:
-                return rrRequest.AnswerObjectAsync(GetInitAsync());
+                return rrRequest.AnswerObjectAsync(GetInitAsync(rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
         }
@@ -1239,44 +1239,44 @@ public class WordMembersDefault : WordMembersSkeleton
     protected Stored<int> RrStoredParams { get; } = new(default);
 
     /// <inheritdoc/>
-    public override ValueTask<int> GetAbstractAsync() => RrStoredAbstract.GetAsync();
+    public override ValueTask<int> GetAbstractAsync(global::System.Threading.CancellationToken cancellationToken = default) => RrStoredAbstract.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetAbstractAsync(int value) => RrStoredAbstract.SetAsync(value);
+    public override ValueTask SetAbstractAsync(int value, global::System.Threading.CancellationToken cancellationToken = default) => RrStoredAbstract.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<int> ClassAsync(int value) =>
+    public override ValueTask<int> ClassAsync(int value, global::System.Threading.CancellationToken cancellationToken = default) =>
         throw NotServed.Member("class");
 
     /// <inheritdoc/>
     public override ArrayMemorySource<int> Get { get; } = StoredMemory.Array<int>();
 
     /// <inheritdoc/>
-    public override ValueTask<Skeleton> GetOperatorAsync() =>
+    public override ValueTask<Skeleton> GetOperatorAsync(global::System.Threading.CancellationToken cancellationToken = default) =>
         throw NotServed.Member("operator");
 
     /// <inheritdoc/>
-    public override ValueTask<int> GetParamsAsync() => RrStoredParams.GetAsync();
+    public override ValueTask<int> GetParamsAsync(global::System.Threading.CancellationToken cancellationToken = default) => RrStoredParams.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetParamsAsync(int value) => RrStoredParams.SetAsync(value);
+    public override ValueTask SetParamsAsync(int value, global::System.Threading.CancellationToken cancellationToken = default) => RrStoredParams.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<int> AddAsync(int value) =>
+    public override ValueTask<int> AddAsync(int value, global::System.Threading.CancellationToken cancellationToken = default) =>
         throw NotServed.Member("add");
 
     /// <inheritdoc/>
     public override ArrayMemorySource<int> Set { get; } = StoredMemory.Array<int>();
 
     /// <inheritdoc/>
-    public override ValueTask<Skeleton> GetInitAsync() =>
+    public override ValueTask<Skeleton> GetInitAsync(global::System.Threading.CancellationToken cancellationToken = default) =>
         throw NotServed.Member("init");
 }
 
 /// <summary>What the runtime knows of experimental.csharp_words.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.csharp_words", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.csharp_words", RrText)
     {
         Exceptions =
         [

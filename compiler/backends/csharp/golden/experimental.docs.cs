@@ -91,7 +91,7 @@ public class ShuttersStub(ObjectHandle rrHandle) : Stub(rrHandle), IShutters, IS
     /// <inheritdoc/>
     public event Action<int> Moved
     {
-        add => RrSubscribe("moved", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("moved", value, static (Action<int> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Int32, "number"u8)));
         remove => RrUnsubscribe("moved", value);
     }
@@ -119,10 +119,10 @@ public abstract class ShuttersSkeleton : Skeleton
     public override ServedType RrType => s_rrType;
 
     /// <summary>How many there are.</summary>
-    public abstract ValueTask<int> GetCountAsync();
+    public abstract ValueTask<int> GetCountAsync(CancellationToken cancellationToken = default);
 
     /// <summary>Moves one shutter and answers when it is there. `*/` and /* are text.</summary>
-    public abstract ValueTask<Place?> MoveAsync(int number, double position);
+    public abstract ValueTask<Place?> MoveAsync(int number, double position, CancellationToken cancellationToken = default);
 
     /// <summary>Somebody moved one by hand.</summary>
     public void FireMoved(int number) => RrEvent(2)
@@ -130,23 +130,23 @@ public abstract class ShuttersSkeleton : Skeleton
         .Fire();
 
     /// <summary>One shutter.</summary>
-    public abstract ValueTask<Skeleton> GetPartAsync(int index);
+    public abstract ValueTask<Skeleton> GetPartAsync(int index, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetCountAsync(), ValueCodec.Int32);
+                return rrRequest.AnswerAsync(GetCountAsync(rrRequest.Cancelled), ValueCodec.Int32);
             case 1:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int number = rrArguments.Read(ValueCodec.Int32, "number"u8);
                     double position = rrArguments.Read(ValueCodec.Double, "position"u8);
-                    return rrRequest.AnswerAsync(MoveAsync(number, position), Place.RrCodec);
+                    return rrRequest.AnswerAsync(MoveAsync(number, position, rrRequest.Cancelled), Place.RrCodec);
                 }
             case 3:
-                return rrRequest.AnswerObjectAsync(GetPartAsync(rrRequest.IndexNumber));
+                return rrRequest.AnswerObjectAsync(GetPartAsync(rrRequest.IndexNumber, rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
         }
@@ -159,21 +159,21 @@ public class ShuttersDefault : ShuttersSkeleton
     protected Stored<int> RrStoredCount { get; } = new(default);
 
     /// <inheritdoc/>
-    public override ValueTask<int> GetCountAsync() => RrStoredCount.GetAsync();
+    public override ValueTask<int> GetCountAsync(CancellationToken cancellationToken = default) => RrStoredCount.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask<Place?> MoveAsync(int number, double position) =>
+    public override ValueTask<Place?> MoveAsync(int number, double position, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("move");
 
     /// <inheritdoc/>
-    public override ValueTask<Skeleton> GetPartAsync(int index) =>
+    public override ValueTask<Skeleton> GetPartAsync(int index, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("part");
 }
 
 /// <summary>What the runtime knows of experimental.docs.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.docs", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.docs", RrText)
     {
         Exceptions =
         [

@@ -128,41 +128,41 @@ public abstract class MachineSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<State> GetStateAsync();
+    public abstract ValueTask<State> GetStateAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetStateAsync(State value);
+    public abstract ValueTask SetStateAsync(State value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<List<State>?> GetHistoryAsync();
+    public abstract ValueTask<List<State>?> GetHistoryAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetHistoryAsync(List<State>? value);
+    public abstract ValueTask SetHistoryAsync(List<State>? value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Dictionary<string, State>?> GetPartsAsync();
+    public abstract ValueTask<Dictionary<string, State>?> GetPartsAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetPartsAsync(Dictionary<string, State>? value);
+    public abstract ValueTask SetPartsAsync(Dictionary<string, State>? value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Limits> LimitAsync(State state);
+    public abstract ValueTask<Limits> LimitAsync(State state, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetStateAsync(), ValueCodec.Enum<State>());
+                return rrRequest.AnswerAsync(GetStateAsync(rrRequest.Cancelled), ValueCodec.Enum<State>());
             case 0 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetStateAsync(rrRequest.Argument(ValueCodec.Enum<State>())));
+                return rrRequest.AnswerAsync(SetStateAsync(rrRequest.Argument(ValueCodec.Enum<State>()), rrRequest.Cancelled));
             case 1 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetHistoryAsync(), RrCodecs.ExperimentalEnumsStateList);
+                return rrRequest.AnswerAsync(GetHistoryAsync(rrRequest.Cancelled), RrCodecs.ExperimentalEnumsStateList);
             case 1 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetHistoryAsync(rrRequest.Argument(RrCodecs.ExperimentalEnumsStateList)));
+                return rrRequest.AnswerAsync(SetHistoryAsync(rrRequest.Argument(RrCodecs.ExperimentalEnumsStateList), rrRequest.Cancelled));
             case 2 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetPartsAsync(), RrCodecs.ExperimentalEnumsStateString);
+                return rrRequest.AnswerAsync(GetPartsAsync(rrRequest.Cancelled), RrCodecs.ExperimentalEnumsStateString);
             case 2 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetPartsAsync(rrRequest.Argument(RrCodecs.ExperimentalEnumsStateString)));
+                return rrRequest.AnswerAsync(SetPartsAsync(rrRequest.Argument(RrCodecs.ExperimentalEnumsStateString), rrRequest.Cancelled));
             case 3:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     State state = rrArguments.Read(ValueCodec.Enum<State>(), "state"u8);
-                    return rrRequest.AnswerAsync(LimitAsync(state), ValueCodec.Enum<Limits>());
+                    return rrRequest.AnswerAsync(LimitAsync(state, rrRequest.Cancelled), ValueCodec.Enum<Limits>());
                 }
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -178,32 +178,32 @@ public class MachineDefault : MachineSkeleton
     protected Stored<Dictionary<string, State>?> RrStoredParts { get; } = new(default);
 
     /// <inheritdoc/>
-    public override ValueTask<State> GetStateAsync() => RrStoredState.GetAsync();
+    public override ValueTask<State> GetStateAsync(CancellationToken cancellationToken = default) => RrStoredState.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetStateAsync(State value) => RrStoredState.SetAsync(value);
+    public override ValueTask SetStateAsync(State value, CancellationToken cancellationToken = default) => RrStoredState.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<List<State>?> GetHistoryAsync() => RrStoredHistory.GetAsync();
+    public override ValueTask<List<State>?> GetHistoryAsync(CancellationToken cancellationToken = default) => RrStoredHistory.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetHistoryAsync(List<State>? value) => RrStoredHistory.SetAsync(value);
+    public override ValueTask SetHistoryAsync(List<State>? value, CancellationToken cancellationToken = default) => RrStoredHistory.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<Dictionary<string, State>?> GetPartsAsync() => RrStoredParts.GetAsync();
+    public override ValueTask<Dictionary<string, State>?> GetPartsAsync(CancellationToken cancellationToken = default) => RrStoredParts.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetPartsAsync(Dictionary<string, State>? value) => RrStoredParts.SetAsync(value);
+    public override ValueTask SetPartsAsync(Dictionary<string, State>? value, CancellationToken cancellationToken = default) => RrStoredParts.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<Limits> LimitAsync(State state) =>
+    public override ValueTask<Limits> LimitAsync(State state, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("limit");
 }
 
 /// <summary>What the runtime knows of experimental.enums.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.enums", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.enums", RrText)
     {
         Exceptions =
         [

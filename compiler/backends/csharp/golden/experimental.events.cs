@@ -38,7 +38,7 @@ public class SirenStub(ObjectHandle rrHandle) : Stub(rrHandle), ISiren, IStub<Si
     /// <inheritdoc/>
     public event Action Tick
     {
-        add => RrSubscribe("tick", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("tick", value, static (Action rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             ));
         remove => RrUnsubscribe("tick", value);
     }
@@ -46,7 +46,7 @@ public class SirenStub(ObjectHandle rrHandle) : Stub(rrHandle), ISiren, IStub<Si
     /// <inheritdoc/>
     public event Action<int, Alarm?, double[], List<string>?> Raised
     {
-        add => RrSubscribe("raised", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("raised", value, static (Action<int, Alarm?, double[], List<string>?> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Int32, "level"u8),
             rrArguments.Read(Alarm.RrCodec, "alarm"u8),
             rrArguments.Read(ValueCodec.Double.Array, "readings"u8),
@@ -85,7 +85,7 @@ public abstract class SirenSkeleton : Skeleton
         .With("level"u8, ValueCodec.Int32, level)
         .Fire();
 
-    public abstract ValueTask TestAsync();
+    public abstract ValueTask TestAsync(CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
@@ -93,7 +93,7 @@ public abstract class SirenSkeleton : Skeleton
         {
             case 2:
                 {
-                    return rrRequest.AnswerAsync(TestAsync());
+                    return rrRequest.AnswerAsync(TestAsync(rrRequest.Cancelled));
                 }
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -104,7 +104,7 @@ public abstract class SirenSkeleton : Skeleton
 /// <summary>What the runtime knows of experimental.events.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.events", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.events", RrText)
     {
         Exceptions =
         [

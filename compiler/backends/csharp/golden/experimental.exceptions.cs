@@ -62,7 +62,7 @@ public abstract class PressSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask CloseAsync();
+    public abstract ValueTask CloseAsync(CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
@@ -70,7 +70,7 @@ public abstract class PressSkeleton : Skeleton
         {
             case 0:
                 {
-                    return rrRequest.AnswerAsync(CloseAsync());
+                    return rrRequest.AnswerAsync(CloseAsync(rrRequest.Cancelled));
                 }
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -81,7 +81,7 @@ public abstract class PressSkeleton : Skeleton
 /// <summary>What the runtime knows of experimental.exceptions.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.exceptions", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.exceptions", RrText)
     {
         Exceptions =
         [

@@ -140,19 +140,19 @@ public abstract class MachineSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask StopAsync();
+    public abstract ValueTask StopAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> SpeedAsync();
+    public abstract ValueTask<double> SpeedAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask MoveToAsync(double pan, double tilt);
+    public abstract ValueTask MoveToAsync(double pan, double tilt, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<string> JoinAsync(string first, string second, List<string>? others);
+    public abstract ValueTask<string> JoinAsync(string first, string second, List<string>? others, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Report?> InspectAsync(Report? previous, byte[] picture);
+    public abstract ValueTask<Report?> InspectAsync(Report? previous, byte[] picture, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double[]> FilterAsync(double[] samples, double[] weights, bool normalize);
+    public abstract ValueTask<double[]> FilterAsync(double[] samples, double[] weights, bool normalize, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Dictionary<string, VarValue?>?> AFunctionWhoseNameIsRatherLongAsync(VarValue? aFirstParameterWithALongName, List<VarValue?>? anotherParameterWithALongName);
+    public abstract ValueTask<Dictionary<string, VarValue?>?> AFunctionWhoseNameIsRatherLongAsync(VarValue? aFirstParameterWithALongName, List<VarValue?>? anotherParameterWithALongName, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
@@ -160,18 +160,18 @@ public abstract class MachineSkeleton : Skeleton
         {
             case 0:
                 {
-                    return rrRequest.AnswerAsync(StopAsync());
+                    return rrRequest.AnswerAsync(StopAsync(rrRequest.Cancelled));
                 }
             case 1:
                 {
-                    return rrRequest.AnswerAsync(SpeedAsync(), ValueCodec.Double);
+                    return rrRequest.AnswerAsync(SpeedAsync(rrRequest.Cancelled), ValueCodec.Double);
                 }
             case 2:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     double pan = rrArguments.Read(ValueCodec.Double, "pan"u8);
                     double tilt = rrArguments.Read(ValueCodec.Double, "tilt"u8);
-                    return rrRequest.AnswerAsync(MoveToAsync(pan, tilt));
+                    return rrRequest.AnswerAsync(MoveToAsync(pan, tilt, rrRequest.Cancelled));
                 }
             case 3:
                 {
@@ -179,14 +179,14 @@ public abstract class MachineSkeleton : Skeleton
                     string first = rrArguments.Read(ValueCodec.String, "first"u8);
                     string second = rrArguments.Read(ValueCodec.String, "second"u8);
                     List<string>? others = rrArguments.Read(RrCodecs.StringList, "others"u8);
-                    return rrRequest.AnswerAsync(JoinAsync(first, second, others), ValueCodec.String);
+                    return rrRequest.AnswerAsync(JoinAsync(first, second, others, rrRequest.Cancelled), ValueCodec.String);
                 }
             case 4:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Report? previous = rrArguments.Read(Report.RrCodec, "previous"u8);
                     byte[] picture = rrArguments.Read(ValueCodec.UInt8.Array, "picture"u8);
-                    return rrRequest.AnswerAsync(InspectAsync(previous, picture), Report.RrCodec);
+                    return rrRequest.AnswerAsync(InspectAsync(previous, picture, rrRequest.Cancelled), Report.RrCodec);
                 }
             case 5:
                 {
@@ -194,14 +194,14 @@ public abstract class MachineSkeleton : Skeleton
                     double[] samples = rrArguments.Read(ValueCodec.Double.Array, "samples"u8);
                     double[] weights = rrArguments.Read(RrCodecs.Double3, "weights"u8);
                     bool normalize = rrArguments.Read(ValueCodec.Bool, "normalize"u8);
-                    return rrRequest.AnswerAsync(FilterAsync(samples, weights, normalize), ValueCodec.Double.Array);
+                    return rrRequest.AnswerAsync(FilterAsync(samples, weights, normalize, rrRequest.Cancelled), ValueCodec.Double.Array);
                 }
             case 6:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     VarValue? aFirstParameterWithALongName = rrArguments.Read(ValueCodec.VarValue, "a_first_parameter_with_a_long_name"u8);
                     List<VarValue?>? anotherParameterWithALongName = rrArguments.Read(RrCodecs.VarvalueList, "another_parameter_with_a_long_name"u8);
-                    return rrRequest.AnswerAsync(AFunctionWhoseNameIsRatherLongAsync(aFirstParameterWithALongName, anotherParameterWithALongName), RrCodecs.VarvalueString);
+                    return rrRequest.AnswerAsync(AFunctionWhoseNameIsRatherLongAsync(aFirstParameterWithALongName, anotherParameterWithALongName, rrRequest.Cancelled), RrCodecs.VarvalueString);
                 }
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -212,7 +212,7 @@ public abstract class MachineSkeleton : Skeleton
 /// <summary>What the runtime knows of experimental.functions.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.functions", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.functions", RrText)
     {
         Exceptions =
         [

@@ -39,7 +39,7 @@ public class NamedStub(ObjectHandle rrHandle) : Stub(rrHandle), INamed, IStub<Na
     /// <inheritdoc/>
     public event Action<string> Renamed
     {
-        add => RrSubscribe("renamed", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("renamed", value, static (Action<string> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.String, "name"u8)));
         remove => RrUnsubscribe("renamed", value);
     }
@@ -56,7 +56,7 @@ public abstract class NamedSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<string> GetNameAsync();
+    public abstract ValueTask<string> GetNameAsync(CancellationToken cancellationToken = default);
 
     public void FireRenamed(string name) => RrEvent(1)
         .With("name"u8, ValueCodec.String, name)
@@ -67,7 +67,7 @@ public abstract class NamedSkeleton : Skeleton
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetNameAsync(), ValueCodec.String);
+                return rrRequest.AnswerAsync(GetNameAsync(rrRequest.Cancelled), ValueCodec.String);
             default:
                 return base.RrRequestAsync(rrRequest);
         }
@@ -80,7 +80,7 @@ public class NamedDefault : NamedSkeleton
     protected Stored<string> RrStoredName { get; } = new("");
 
     /// <inheritdoc/>
-    public override ValueTask<string> GetNameAsync() => RrStoredName.GetAsync();
+    public override ValueTask<string> GetNameAsync(CancellationToken cancellationToken = default) => RrStoredName.GetAsync();
 }
 
 public interface IDevice : INamed
@@ -109,7 +109,7 @@ public class DeviceStub(ObjectHandle rrHandle) : Stub(rrHandle), IDevice, IStub<
     /// <inheritdoc/>
     public event Action<string> Renamed
     {
-        add => RrSubscribe("renamed", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("renamed", value, static (Action<string> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.String, "name"u8)));
         remove => RrUnsubscribe("renamed", value);
     }
@@ -135,23 +135,23 @@ public abstract class DeviceSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<string> GetNameAsync();
+    public abstract ValueTask<string> GetNameAsync(CancellationToken cancellationToken = default);
 
     public void FireRenamed(string name) => RrEvent(1)
         .With("name"u8, ValueCodec.String, name)
         .Fire();
 
-    public abstract ValueTask ResetAsync();
+    public abstract ValueTask ResetAsync(CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetNameAsync(), ValueCodec.String);
+                return rrRequest.AnswerAsync(GetNameAsync(rrRequest.Cancelled), ValueCodec.String);
             case 2:
                 {
-                    return rrRequest.AnswerAsync(ResetAsync());
+                    return rrRequest.AnswerAsync(ResetAsync(rrRequest.Cancelled));
                 }
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -165,10 +165,10 @@ public class DeviceDefault : DeviceSkeleton
     protected Stored<string> RrStoredName { get; } = new("");
 
     /// <inheritdoc/>
-    public override ValueTask<string> GetNameAsync() => RrStoredName.GetAsync();
+    public override ValueTask<string> GetNameAsync(CancellationToken cancellationToken = default) => RrStoredName.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask ResetAsync() =>
+    public override ValueTask ResetAsync(CancellationToken cancellationToken = default) =>
         throw NotServed.Member("reset");
 }
 
@@ -200,7 +200,7 @@ public class PoweredStub(ObjectHandle rrHandle) : Stub(rrHandle), IPowered, IStu
     /// <inheritdoc/>
     public event Action<string> Renamed
     {
-        add => RrSubscribe("renamed", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("renamed", value, static (Action<string> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.String, "name"u8)));
         remove => RrUnsubscribe("renamed", value);
     }
@@ -234,26 +234,26 @@ public abstract class PoweredSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<string> GetNameAsync();
+    public abstract ValueTask<string> GetNameAsync(CancellationToken cancellationToken = default);
 
     public void FireRenamed(string name) => RrEvent(1)
         .With("name"u8, ValueCodec.String, name)
         .Fire();
 
-    public abstract ValueTask<bool> GetOnAsync();
+    public abstract ValueTask<bool> GetOnAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetOnAsync(bool value);
+    public abstract ValueTask SetOnAsync(bool value, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetNameAsync(), ValueCodec.String);
+                return rrRequest.AnswerAsync(GetNameAsync(rrRequest.Cancelled), ValueCodec.String);
             case 2 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetOnAsync(), ValueCodec.Bool);
+                return rrRequest.AnswerAsync(GetOnAsync(rrRequest.Cancelled), ValueCodec.Bool);
             case 2 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetOnAsync(rrRequest.Argument(ValueCodec.Bool)));
+                return rrRequest.AnswerAsync(SetOnAsync(rrRequest.Argument(ValueCodec.Bool), rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
         }
@@ -267,13 +267,13 @@ public class PoweredDefault : PoweredSkeleton
     protected Stored<bool> RrStoredOn { get; } = new(default);
 
     /// <inheritdoc/>
-    public override ValueTask<string> GetNameAsync() => RrStoredName.GetAsync();
+    public override ValueTask<string> GetNameAsync(CancellationToken cancellationToken = default) => RrStoredName.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask<bool> GetOnAsync() => RrStoredOn.GetAsync();
+    public override ValueTask<bool> GetOnAsync(CancellationToken cancellationToken = default) => RrStoredOn.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetOnAsync(bool value) => RrStoredOn.SetAsync(value);
+    public override ValueTask SetOnAsync(bool value, CancellationToken cancellationToken = default) => RrStoredOn.SetAsync(value);
 }
 
 /// <summary>Both of the above, and a joint of another definition.</summary>
@@ -307,7 +307,7 @@ public class DriveStub(ObjectHandle rrHandle) : Stub(rrHandle), IDrive, IStub<Dr
     /// <inheritdoc/>
     public event Action<string> Renamed
     {
-        add => RrSubscribe("renamed", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("renamed", value, static (Action<string> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.String, "name"u8)));
         remove => RrUnsubscribe("renamed", value);
     }
@@ -393,52 +393,52 @@ public abstract class DriveSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<string> GetNameAsync();
+    public abstract ValueTask<string> GetNameAsync(CancellationToken cancellationToken = default);
 
     public void FireRenamed(string name) => RrEvent(1)
         .With("name"u8, ValueCodec.String, name)
         .Fire();
 
-    public abstract ValueTask ResetAsync();
+    public abstract ValueTask ResetAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<bool> GetOnAsync();
+    public abstract ValueTask<bool> GetOnAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetOnAsync(bool value);
+    public abstract ValueTask SetOnAsync(bool value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetAngleAsync();
+    public abstract ValueTask<double> GetAngleAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetAngleAsync(double value);
+    public abstract ValueTask SetAngleAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetTorqueAsync();
+    public abstract ValueTask<double> GetTorqueAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetTorqueAsync(double value);
+    public abstract ValueTask SetTorqueAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetPartAsync(string index);
+    public abstract ValueTask<Skeleton> GetPartAsync(string index, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetNameAsync(), ValueCodec.String);
+                return rrRequest.AnswerAsync(GetNameAsync(rrRequest.Cancelled), ValueCodec.String);
             case 2:
                 {
-                    return rrRequest.AnswerAsync(ResetAsync());
+                    return rrRequest.AnswerAsync(ResetAsync(rrRequest.Cancelled));
                 }
             case 3 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetOnAsync(), ValueCodec.Bool);
+                return rrRequest.AnswerAsync(GetOnAsync(rrRequest.Cancelled), ValueCodec.Bool);
             case 3 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetOnAsync(rrRequest.Argument(ValueCodec.Bool)));
+                return rrRequest.AnswerAsync(SetOnAsync(rrRequest.Argument(ValueCodec.Bool), rrRequest.Cancelled));
             case 4 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetAngleAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetAngleAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 4 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetAngleAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetAngleAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 5 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetTorqueAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetTorqueAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 5 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetTorqueAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetTorqueAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 6:
-                return rrRequest.AnswerObjectAsync(GetPartAsync(rrRequest.IndexText));
+                return rrRequest.AnswerObjectAsync(GetPartAsync(rrRequest.IndexText, rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
         }
@@ -454,39 +454,39 @@ public class DriveDefault : DriveSkeleton
     protected Stored<double> RrStoredTorque { get; } = new(default);
 
     /// <inheritdoc/>
-    public override ValueTask<string> GetNameAsync() => RrStoredName.GetAsync();
+    public override ValueTask<string> GetNameAsync(CancellationToken cancellationToken = default) => RrStoredName.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask ResetAsync() =>
+    public override ValueTask ResetAsync(CancellationToken cancellationToken = default) =>
         throw NotServed.Member("reset");
 
     /// <inheritdoc/>
-    public override ValueTask<bool> GetOnAsync() => RrStoredOn.GetAsync();
+    public override ValueTask<bool> GetOnAsync(CancellationToken cancellationToken = default) => RrStoredOn.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetOnAsync(bool value) => RrStoredOn.SetAsync(value);
+    public override ValueTask SetOnAsync(bool value, CancellationToken cancellationToken = default) => RrStoredOn.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetAngleAsync() => RrStoredAngle.GetAsync();
+    public override ValueTask<double> GetAngleAsync(CancellationToken cancellationToken = default) => RrStoredAngle.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetAngleAsync(double value) => RrStoredAngle.SetAsync(value);
+    public override ValueTask SetAngleAsync(double value, CancellationToken cancellationToken = default) => RrStoredAngle.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetTorqueAsync() => RrStoredTorque.GetAsync();
+    public override ValueTask<double> GetTorqueAsync(CancellationToken cancellationToken = default) => RrStoredTorque.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetTorqueAsync(double value) => RrStoredTorque.SetAsync(value);
+    public override ValueTask SetTorqueAsync(double value, CancellationToken cancellationToken = default) => RrStoredTorque.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<Skeleton> GetPartAsync(string index) =>
+    public override ValueTask<Skeleton> GetPartAsync(string index, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("part");
 }
 
 /// <summary>What the runtime knows of experimental.implements.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.implements", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.implements", RrText)
     {
         Imports =
         [

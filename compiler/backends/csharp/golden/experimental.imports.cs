@@ -100,35 +100,35 @@ public abstract class PlannerSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<Plan?> GetPlanAsync();
+    public abstract ValueTask<Plan?> GetPlanAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetPlanAsync(Plan? value);
+    public abstract ValueTask SetPlanAsync(Plan? value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<global::Experimental.Namedarrays.Pixel[]> GetPictureAsync();
+    public abstract ValueTask<global::Experimental.Namedarrays.Pixel[]> GetPictureAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetPictureAsync(global::Experimental.Namedarrays.Pixel[] value);
+    public abstract ValueTask SetPictureAsync(global::Experimental.Namedarrays.Pixel[] value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<global::Experimental.Namedarrays.Pose[]> SolveAsync(global::Experimental.Namedarrays.Pose start, global::Experimental.Namedarrays.Vector3 approach, global::Experimental.Enums.State state);
+    public abstract ValueTask<global::Experimental.Namedarrays.Pose[]> SolveAsync(global::Experimental.Namedarrays.Pose start, global::Experimental.Namedarrays.Vector3 approach, global::Experimental.Enums.State state, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetPlanAsync(), global::Experimental.Imports.Plan.RrCodec);
+                return rrRequest.AnswerAsync(GetPlanAsync(rrRequest.Cancelled), global::Experimental.Imports.Plan.RrCodec);
             case 0 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetPlanAsync(rrRequest.Argument(global::Experimental.Imports.Plan.RrCodec)));
+                return rrRequest.AnswerAsync(SetPlanAsync(rrRequest.Argument(global::Experimental.Imports.Plan.RrCodec), rrRequest.Cancelled));
             case 1 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetPictureAsync(), global::Experimental.Namedarrays.Pixel.RrCodec.Array);
+                return rrRequest.AnswerAsync(GetPictureAsync(rrRequest.Cancelled), global::Experimental.Namedarrays.Pixel.RrCodec.Array);
             case 1 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetPictureAsync(rrRequest.Argument(global::Experimental.Namedarrays.Pixel.RrCodec.Array)));
+                return rrRequest.AnswerAsync(SetPictureAsync(rrRequest.Argument(global::Experimental.Namedarrays.Pixel.RrCodec.Array), rrRequest.Cancelled));
             case 2:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     global::Experimental.Namedarrays.Pose start = rrArguments.Read(global::Experimental.Namedarrays.Pose.RrCodec, "start"u8);
                     global::Experimental.Namedarrays.Vector3 approach = rrArguments.Read(global::Experimental.Namedarrays.Vector3.RrCodec, "approach"u8);
                     global::Experimental.Enums.State state = rrArguments.Read(ValueCodec.Enum<global::Experimental.Enums.State>(), "state"u8);
-                    return rrRequest.AnswerAsync(SolveAsync(start, approach, state), global::Experimental.Namedarrays.Pose.RrCodec.Array);
+                    return rrRequest.AnswerAsync(SolveAsync(start, approach, state, rrRequest.Cancelled), global::Experimental.Namedarrays.Pose.RrCodec.Array);
                 }
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -143,26 +143,26 @@ public class PlannerDefault : PlannerSkeleton
     protected Stored<global::Experimental.Namedarrays.Pixel[]> RrStoredPicture { get; } = new([]);
 
     /// <inheritdoc/>
-    public override ValueTask<Plan?> GetPlanAsync() => RrStoredPlan.GetAsync();
+    public override ValueTask<Plan?> GetPlanAsync(CancellationToken cancellationToken = default) => RrStoredPlan.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetPlanAsync(Plan? value) => RrStoredPlan.SetAsync(value);
+    public override ValueTask SetPlanAsync(Plan? value, CancellationToken cancellationToken = default) => RrStoredPlan.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<global::Experimental.Namedarrays.Pixel[]> GetPictureAsync() => RrStoredPicture.GetAsync();
+    public override ValueTask<global::Experimental.Namedarrays.Pixel[]> GetPictureAsync(CancellationToken cancellationToken = default) => RrStoredPicture.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetPictureAsync(global::Experimental.Namedarrays.Pixel[] value) => RrStoredPicture.SetAsync(value);
+    public override ValueTask SetPictureAsync(global::Experimental.Namedarrays.Pixel[] value, CancellationToken cancellationToken = default) => RrStoredPicture.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<global::Experimental.Namedarrays.Pose[]> SolveAsync(global::Experimental.Namedarrays.Pose start, global::Experimental.Namedarrays.Vector3 approach, global::Experimental.Enums.State state) =>
+    public override ValueTask<global::Experimental.Namedarrays.Pose[]> SolveAsync(global::Experimental.Namedarrays.Pose start, global::Experimental.Namedarrays.Vector3 approach, global::Experimental.Enums.State state, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("solve");
 }
 
 /// <summary>What the runtime knows of experimental.imports.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.imports", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.imports", RrText)
     {
         Imports =
         [

@@ -18,7 +18,7 @@ public sealed record Mark
 /// <summary>What the runtime knows of experimental.line_ends.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.line_ends", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.line_ends", RrText)
     {
         Exceptions =
         [

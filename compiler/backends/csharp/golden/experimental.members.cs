@@ -52,7 +52,7 @@ public class SensorStub(ObjectHandle rrHandle) : Stub(rrHandle), ISensor, IStub<
 
     /// <inheritdoc/>
     public void SetAsk(Func<int, Task<int>>? function) =>
-        RrSetCallback("ask"u8, MemberAccess.None, function, static (rrFunction, ref rrArguments) => rrFunction(
+        RrSetCallback("ask"u8, MemberAccess.None, function, static (Func<int, Task<int>> rrFunction, scoped ref FieldReader rrArguments) => rrFunction(
             rrArguments.Read(ValueCodec.Int32, "question"u8)), ValueCodec.Int32);
 
     /// <inheritdoc/>
@@ -112,7 +112,7 @@ public abstract class SensorSkeleton : Skeleton
 
     public abstract ArrayMemorySource<double> Buffer { get; }
 
-    public abstract IAsyncEnumerable<double> CountAsync(double limit);
+    public abstract IAsyncEnumerable<double> CountAsync(double limit, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
@@ -122,7 +122,7 @@ public abstract class SensorSkeleton : Skeleton
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     double limit = rrArguments.Read(ValueCodec.Double, "limit"u8);
-                    return rrRequest.AnswerSource(CountAsync(limit), ValueCodec.Double);
+                    return rrRequest.AnswerSource(rrCancelled => CountAsync(limit, rrCancelled), ValueCodec.Double);
                 }
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -144,7 +144,7 @@ public class SensorDefault : SensorSkeleton
     public override ArrayMemorySource<double> Buffer { get; } = StoredMemory.Array<double>();
 
     /// <inheritdoc/>
-    public override IAsyncEnumerable<double> CountAsync(double limit) =>
+    public override IAsyncEnumerable<double> CountAsync(double limit, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("count");
 }
 
@@ -278,21 +278,21 @@ public abstract class GeneratorsSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract IAsyncEnumerable<double> CountAsync(double limit);
+    public abstract IAsyncEnumerable<double> CountAsync(double limit, CancellationToken cancellationToken = default);
 
-    public abstract IAsyncEnumerable<Frame?> AllFramesAsync();
+    public abstract IAsyncEnumerable<Frame?> AllFramesAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask CollectAsync(string label, IAsyncEnumerable<Frame?> frames);
+    public abstract ValueTask CollectAsync(string label, IAsyncEnumerable<Frame?> frames, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask AcceptAsync(IAsyncEnumerable<byte[]> parts);
+    public abstract ValueTask AcceptAsync(IAsyncEnumerable<byte[]> parts, CancellationToken cancellationToken = default);
 
-    public abstract IAsyncEnumerable<double> RunningSumAsync(double start, string unit, IAsyncEnumerable<double> value);
+    public abstract IAsyncEnumerable<double> RunningSumAsync(double start, string unit, IAsyncEnumerable<double> value, CancellationToken cancellationToken = default);
 
-    public abstract IAsyncEnumerable<string> RelabelAsync(IAsyncEnumerable<global::Experimental.Pods.Sample[]> value);
+    public abstract IAsyncEnumerable<string> RelabelAsync(IAsyncEnumerable<global::Experimental.Pods.Sample[]> value, CancellationToken cancellationToken = default);
 
-    public abstract IAsyncEnumerable<global::Experimental.Namedarrays.Vector3> TraceAPathBetweenPointsAsync(global::Experimental.Namedarrays.Vector3 aFirstPointWithALongName, global::Experimental.Namedarrays.Vector3[] otherPoints, List<Mode>? modes);
+    public abstract IAsyncEnumerable<global::Experimental.Namedarrays.Vector3> TraceAPathBetweenPointsAsync(global::Experimental.Namedarrays.Vector3 aFirstPointWithALongName, global::Experimental.Namedarrays.Vector3[] otherPoints, List<Mode>? modes, CancellationToken cancellationToken = default);
 
-    public abstract IAsyncEnumerable<VarValue?> TokenAsync(VarValue? token, int limit);
+    public abstract IAsyncEnumerable<VarValue?> TokenAsync(VarValue? token, int limit, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
@@ -302,32 +302,32 @@ public abstract class GeneratorsSkeleton : Skeleton
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     double limit = rrArguments.Read(ValueCodec.Double, "limit"u8);
-                    return rrRequest.AnswerSource(CountAsync(limit), ValueCodec.Double);
+                    return rrRequest.AnswerSource(rrCancelled => CountAsync(limit, rrCancelled), ValueCodec.Double);
                 }
             case 1:
                 {
-                    return rrRequest.AnswerSource(AllFramesAsync(), global::Experimental.Members.Frame.RrCodec);
+                    return rrRequest.AnswerSource(rrCancelled => AllFramesAsync(rrCancelled), global::Experimental.Members.Frame.RrCodec);
                 }
             case 2:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     string label = rrArguments.Read(ValueCodec.String, "label"u8);
-                    return rrRequest.AnswerSink(rrItems => CollectAsync(label, rrItems), global::Experimental.Members.Frame.RrCodec);
+                    return rrRequest.AnswerSink((rrItems, rrCancelled) => CollectAsync(label, rrItems, rrCancelled), global::Experimental.Members.Frame.RrCodec);
                 }
             case 3:
                 {
-                    return rrRequest.AnswerSink(rrItems => AcceptAsync(rrItems), ValueCodec.UInt8.Array);
+                    return rrRequest.AnswerSink((rrItems, rrCancelled) => AcceptAsync(rrItems, rrCancelled), ValueCodec.UInt8.Array);
                 }
             case 4:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     double start = rrArguments.Read(ValueCodec.Double, "start"u8);
                     string unit = rrArguments.Read(ValueCodec.String, "unit"u8);
-                    return rrRequest.AnswerFilter(rrItems => RunningSumAsync(start, unit, rrItems), ValueCodec.Double, ValueCodec.Double);
+                    return rrRequest.AnswerFilter((rrItems, rrCancelled) => RunningSumAsync(start, unit, rrItems, rrCancelled), ValueCodec.Double, ValueCodec.Double);
                 }
             case 5:
                 {
-                    return rrRequest.AnswerFilter(rrItems => RelabelAsync(rrItems), global::Experimental.Pods.Sample.RrCodec.Array, ValueCodec.String);
+                    return rrRequest.AnswerFilter((rrItems, rrCancelled) => RelabelAsync(rrItems, rrCancelled), global::Experimental.Pods.Sample.RrCodec.Array, ValueCodec.String);
                 }
             case 6:
                 {
@@ -335,14 +335,14 @@ public abstract class GeneratorsSkeleton : Skeleton
                     global::Experimental.Namedarrays.Vector3 aFirstPointWithALongName = rrArguments.Read(global::Experimental.Namedarrays.Vector3.RrCodec, "a_first_point_with_a_long_name"u8);
                     global::Experimental.Namedarrays.Vector3[] otherPoints = rrArguments.Read(global::Experimental.Namedarrays.Vector3.RrCodec.Array, "other_points"u8);
                     List<Mode>? modes = rrArguments.Read(RrCodecs.ExperimentalMembersModeList, "modes"u8);
-                    return rrRequest.AnswerSource(TraceAPathBetweenPointsAsync(aFirstPointWithALongName, otherPoints, modes), global::Experimental.Namedarrays.Vector3.RrCodec);
+                    return rrRequest.AnswerSource(rrCancelled => TraceAPathBetweenPointsAsync(aFirstPointWithALongName, otherPoints, modes, rrCancelled), global::Experimental.Namedarrays.Vector3.RrCodec);
                 }
             case 7:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     VarValue? token = rrArguments.Read(ValueCodec.VarValue, "Token"u8);
                     int limit = rrArguments.Read(ValueCodec.Int32, "limit"u8);
-                    return rrRequest.AnswerSource(TokenAsync(token, limit), ValueCodec.VarValue);
+                    return rrRequest.AnswerSource(rrCancelled => TokenAsync(token, limit, rrCancelled), ValueCodec.VarValue);
                 }
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -515,30 +515,30 @@ public class CallbacksStub(ObjectHandle rrHandle) : Stub(rrHandle), ICallbacks, 
 
     /// <inheritdoc/>
     public void SetPing(Func<Task>? function) =>
-        RrSetCallback("ping"u8, MemberAccess.None, function, static (rrFunction, ref rrArguments) => rrFunction(
+        RrSetCallback("ping"u8, MemberAccess.None, function, static (Func<Task> rrFunction, scoped ref FieldReader rrArguments) => rrFunction(
             ));
 
     /// <inheritdoc/>
     public void SetAdd(Func<int, int, Task<int>>? function) =>
-        RrSetCallback("add"u8, MemberAccess.None, function, static (rrFunction, ref rrArguments) => rrFunction(
+        RrSetCallback("add"u8, MemberAccess.None, function, static (Func<int, int, Task<int>> rrFunction, scoped ref FieldReader rrArguments) => rrFunction(
             rrArguments.Read(ValueCodec.Int32, "a"u8),
             rrArguments.Read(ValueCodec.Int32, "b"u8)), ValueCodec.Int32);
 
     /// <inheritdoc/>
     public void SetMeasure(Func<string, global::Experimental.Namedarrays.Vector3, Task<Frame?>>? function) =>
-        RrSetCallback("measure"u8, MemberAccess.None, function, static (rrFunction, ref rrArguments) => rrFunction(
+        RrSetCallback("measure"u8, MemberAccess.None, function, static (Func<string, global::Experimental.Namedarrays.Vector3, Task<Frame?>> rrFunction, scoped ref FieldReader rrArguments) => rrFunction(
             rrArguments.Read(ValueCodec.String, "label"u8),
             rrArguments.Read(global::Experimental.Namedarrays.Vector3.RrCodec, "at"u8)), global::Experimental.Members.Frame.RrCodec);
 
     /// <inheritdoc/>
     public void SetHurry(Func<global::Experimental.Pods.Sample[], List<int>?, Task<double>>? function) =>
-        RrSetCallback("hurry"u8, MemberAccess.Urgent, function, static (rrFunction, ref rrArguments) => rrFunction(
+        RrSetCallback("hurry"u8, MemberAccess.Urgent, function, static (Func<global::Experimental.Pods.Sample[], List<int>?, Task<double>> rrFunction, scoped ref FieldReader rrArguments) => rrFunction(
             rrArguments.Read(global::Experimental.Pods.Sample.RrCodec.Array, "client"u8),
             rrArguments.Read(RrCodecs.Int32List, "token"u8)), ValueCodec.Double);
 
     /// <inheritdoc/>
     public void SetACallbackWhoseNameIsRatherLong(Func<VarValue?, List<VarValue?>?, Task<Dictionary<string, VarValue?>?>>? function) =>
-        RrSetCallback("a_callback_whose_name_is_rather_long"u8, MemberAccess.None, function, static (rrFunction, ref rrArguments) => rrFunction(
+        RrSetCallback("a_callback_whose_name_is_rather_long"u8, MemberAccess.None, function, static (Func<VarValue?, List<VarValue?>?, Task<Dictionary<string, VarValue?>?>> rrFunction, scoped ref FieldReader rrArguments) => rrFunction(
             rrArguments.Read(ValueCodec.VarValue, "a_first_parameter_with_a_long_name"u8),
             rrArguments.Read(RrCodecs.VarvalueList, "another_parameter_with_a_long_name"u8)), RrCodecs.VarvalueString);
 }
@@ -830,9 +830,9 @@ public abstract class MemoriesSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<string> GetLabelAsync();
+    public abstract ValueTask<string> GetLabelAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetLabelAsync(string value);
+    public abstract ValueTask SetLabelAsync(string value, CancellationToken cancellationToken = default);
 
     public abstract ArrayMemorySource<double> MDouble { get; }
 
@@ -853,9 +853,9 @@ public abstract class MemoriesSkeleton : Skeleton
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetLabelAsync(), ValueCodec.String);
+                return rrRequest.AnswerAsync(GetLabelAsync(rrRequest.Cancelled), ValueCodec.String);
             case 0 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetLabelAsync(rrRequest.Argument(ValueCodec.String)));
+                return rrRequest.AnswerAsync(SetLabelAsync(rrRequest.Argument(ValueCodec.String), rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
         }
@@ -880,10 +880,10 @@ public class MemoriesDefault : MemoriesSkeleton
     protected Stored<string> RrStoredLabel { get; } = new("");
 
     /// <inheritdoc/>
-    public override ValueTask<string> GetLabelAsync() => RrStoredLabel.GetAsync();
+    public override ValueTask<string> GetLabelAsync(CancellationToken cancellationToken = default) => RrStoredLabel.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetLabelAsync(string value) => RrStoredLabel.SetAsync(value);
+    public override ValueTask SetLabelAsync(string value, CancellationToken cancellationToken = default) => RrStoredLabel.SetAsync(value);
 
     /// <inheritdoc/>
     public override ArrayMemorySource<double> MDouble { get; } = StoredMemory.Array<double>();
@@ -932,7 +932,7 @@ public class StationStub(ObjectHandle rrHandle) : Stub(rrHandle), IStation, IStu
 
     /// <inheritdoc/>
     public void SetAsk(Func<int, Task<int>>? function) =>
-        RrSetCallback("ask"u8, MemberAccess.None, function, static (rrFunction, ref rrArguments) => rrFunction(
+        RrSetCallback("ask"u8, MemberAccess.None, function, static (Func<int, Task<int>> rrFunction, scoped ref FieldReader rrArguments) => rrFunction(
             rrArguments.Read(ValueCodec.Int32, "question"u8)), ValueCodec.Int32);
 
     /// <inheritdoc/>
@@ -1015,7 +1015,7 @@ public class StationStub(ObjectHandle rrHandle) : Stub(rrHandle), IStation, IStu
     /// <inheritdoc/>
     public event Action<Mode> Changed
     {
-        add => RrSubscribe("changed", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("changed", value, static (Action<Mode> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Enum<Mode>(), "mode"u8)));
         remove => RrUnsubscribe("changed", value);
     }
@@ -1074,11 +1074,11 @@ public abstract class StationSkeleton : Skeleton
 
     public abstract ArrayMemorySource<double> Buffer { get; }
 
-    public abstract IAsyncEnumerable<double> CountAsync(double limit);
+    public abstract IAsyncEnumerable<double> CountAsync(double limit, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<string> GetLabelAsync();
+    public abstract ValueTask<string> GetLabelAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetLabelAsync(string value);
+    public abstract ValueTask SetLabelAsync(string value, CancellationToken cancellationToken = default);
 
     public abstract ArrayMemorySource<double> MDouble { get; }
 
@@ -1102,7 +1102,7 @@ public abstract class StationSkeleton : Skeleton
         .With("mode"u8, ValueCodec.Enum<Mode>(), mode)
         .Fire();
 
-    public abstract ValueTask<Skeleton> GetGeneratorsAsync();
+    public abstract ValueTask<Skeleton> GetGeneratorsAsync(CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
@@ -1112,14 +1112,14 @@ public abstract class StationSkeleton : Skeleton
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     double limit = rrArguments.Read(ValueCodec.Double, "limit"u8);
-                    return rrRequest.AnswerSource(CountAsync(limit), ValueCodec.Double);
+                    return rrRequest.AnswerSource(rrCancelled => CountAsync(limit, rrCancelled), ValueCodec.Double);
                 }
             case 5 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetLabelAsync(), ValueCodec.String);
+                return rrRequest.AnswerAsync(GetLabelAsync(rrRequest.Cancelled), ValueCodec.String);
             case 5 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetLabelAsync(rrRequest.Argument(ValueCodec.String)));
+                return rrRequest.AnswerAsync(SetLabelAsync(rrRequest.Argument(ValueCodec.String), rrRequest.Cancelled));
             case 15:
-                return rrRequest.AnswerObjectAsync(GetGeneratorsAsync());
+                return rrRequest.AnswerObjectAsync(GetGeneratorsAsync(rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
         }
@@ -1148,14 +1148,14 @@ public class StationDefault : StationSkeleton
     public override ArrayMemorySource<double> Buffer { get; } = StoredMemory.Array<double>();
 
     /// <inheritdoc/>
-    public override IAsyncEnumerable<double> CountAsync(double limit) =>
+    public override IAsyncEnumerable<double> CountAsync(double limit, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("count");
 
     /// <inheritdoc/>
-    public override ValueTask<string> GetLabelAsync() => RrStoredLabel.GetAsync();
+    public override ValueTask<string> GetLabelAsync(CancellationToken cancellationToken = default) => RrStoredLabel.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetLabelAsync(string value) => RrStoredLabel.SetAsync(value);
+    public override ValueTask SetLabelAsync(string value, CancellationToken cancellationToken = default) => RrStoredLabel.SetAsync(value);
 
     /// <inheritdoc/>
     public override ArrayMemorySource<double> MDouble { get; } = StoredMemory.Array<double>();
@@ -1179,7 +1179,7 @@ public class StationDefault : StationSkeleton
     public override MultiDimMemorySource<global::Experimental.Namedarrays.Vector3> PointGrid { get; } = StoredMemory.MultiDim<global::Experimental.Namedarrays.Vector3>();
 
     /// <inheritdoc/>
-    public override ValueTask<Skeleton> GetGeneratorsAsync() =>
+    public override ValueTask<Skeleton> GetGeneratorsAsync(CancellationToken cancellationToken = default) =>
         throw NotServed.Member("generators");
 }
 
@@ -1209,7 +1209,7 @@ public class ReservedStub(ObjectHandle rrHandle) : Stub(rrHandle), IReserved, IS
 
     /// <inheritdoc/>
     public void SetDelete(Func<int, Task<int>>? function) =>
-        RrSetCallback("delete"u8, MemberAccess.None, function, static (rrFunction, ref rrArguments) => rrFunction(
+        RrSetCallback("delete"u8, MemberAccess.None, function, static (Func<int, Task<int>> rrFunction, scoped ref FieldReader rrArguments) => rrFunction(
             rrArguments.Read(ValueCodec.Int32, "class"u8)), ValueCodec.Int32);
 
     /// <inheritdoc/>
@@ -1268,7 +1268,7 @@ public abstract class ReservedSkeleton : Skeleton
 
     public abstract ArrayMemorySource<int> Register { get; }
 
-    public abstract IAsyncEnumerable<int> ForAsync(int thisOne, IAsyncEnumerable<int> @while);
+    public abstract IAsyncEnumerable<int> ForAsync(int thisOne, IAsyncEnumerable<int> @while, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
@@ -1278,7 +1278,7 @@ public abstract class ReservedSkeleton : Skeleton
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int thisOne = rrArguments.Read(ValueCodec.Int32, "this_one"u8);
-                    return rrRequest.AnswerFilter(rrItems => ForAsync(thisOne, rrItems), ValueCodec.Int32, ValueCodec.Int32);
+                    return rrRequest.AnswerFilter((rrItems, rrCancelled) => ForAsync(thisOne, rrItems, rrCancelled), ValueCodec.Int32, ValueCodec.Int32);
                 }
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -1300,14 +1300,14 @@ public class ReservedDefault : ReservedSkeleton
     public override ArrayMemorySource<int> Register { get; } = StoredMemory.Array<int>();
 
     /// <inheritdoc/>
-    public override IAsyncEnumerable<int> ForAsync(int thisOne, IAsyncEnumerable<int> @while) =>
+    public override IAsyncEnumerable<int> ForAsync(int thisOne, IAsyncEnumerable<int> @while, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("for");
 }
 
 /// <summary>What the runtime knows of experimental.members.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.members", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.members", RrText)
     {
         Imports =
         [

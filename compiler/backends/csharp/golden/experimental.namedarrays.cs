@@ -235,74 +235,74 @@ public abstract class ArmSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<Pose> GetPoseAsync();
+    public abstract ValueTask<Pose> GetPoseAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetPoseAsync(Pose value);
+    public abstract ValueTask SetPoseAsync(Pose value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Pose[]> GetPathAsync();
+    public abstract ValueTask<Pose[]> GetPathAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetPathAsync(Pose[] value);
+    public abstract ValueTask SetPathAsync(Pose[] value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Vector3[]> GetCornersAsync();
+    public abstract ValueTask<Vector3[]> GetCornersAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetCornersAsync(Vector3[] value);
+    public abstract ValueTask SetCornersAsync(Vector3[] value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Vector3[]> GetContactsAsync();
+    public abstract ValueTask<Vector3[]> GetContactsAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetContactsAsync(Vector3[] value);
+    public abstract ValueTask SetContactsAsync(Vector3[] value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<MultiDimArray<Pixel>> GetPictureAsync();
+    public abstract ValueTask<MultiDimArray<Pixel>> GetPictureAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetPictureAsync(MultiDimArray<Pixel> value);
+    public abstract ValueTask SetPictureAsync(MultiDimArray<Pixel> value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<MultiDimArray<Pixel>> GetThumbnailAsync();
+    public abstract ValueTask<MultiDimArray<Pixel>> GetThumbnailAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetThumbnailAsync(MultiDimArray<Pixel> value);
+    public abstract ValueTask SetThumbnailAsync(MultiDimArray<Pixel> value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Dictionary<string, Pose>?> GetPlacesAsync();
+    public abstract ValueTask<Dictionary<string, Pose>?> GetPlacesAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetPlacesAsync(Dictionary<string, Pose>? value);
+    public abstract ValueTask SetPlacesAsync(Dictionary<string, Pose>? value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Vector3> CrossAsync(Vector3 a, Vector3 b);
+    public abstract ValueTask<Vector3> CrossAsync(Vector3 a, Vector3 b, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetPoseAsync(), global::Experimental.Namedarrays.Pose.RrCodec);
+                return rrRequest.AnswerAsync(GetPoseAsync(rrRequest.Cancelled), global::Experimental.Namedarrays.Pose.RrCodec);
             case 0 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetPoseAsync(rrRequest.Argument(global::Experimental.Namedarrays.Pose.RrCodec)));
+                return rrRequest.AnswerAsync(SetPoseAsync(rrRequest.Argument(global::Experimental.Namedarrays.Pose.RrCodec), rrRequest.Cancelled));
             case 1 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetPathAsync(), global::Experimental.Namedarrays.Pose.RrCodec.Array);
+                return rrRequest.AnswerAsync(GetPathAsync(rrRequest.Cancelled), global::Experimental.Namedarrays.Pose.RrCodec.Array);
             case 1 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetPathAsync(rrRequest.Argument(global::Experimental.Namedarrays.Pose.RrCodec.Array)));
+                return rrRequest.AnswerAsync(SetPathAsync(rrRequest.Argument(global::Experimental.Namedarrays.Pose.RrCodec.Array), rrRequest.Cancelled));
             case 2 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetCornersAsync(), RrCodecs.ExperimentalNamedarraysVector32);
+                return rrRequest.AnswerAsync(GetCornersAsync(rrRequest.Cancelled), RrCodecs.ExperimentalNamedarraysVector32);
             case 2 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetCornersAsync(rrRequest.Argument(RrCodecs.ExperimentalNamedarraysVector32)));
+                return rrRequest.AnswerAsync(SetCornersAsync(rrRequest.Argument(RrCodecs.ExperimentalNamedarraysVector32), rrRequest.Cancelled));
             case 3 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetContactsAsync(), RrCodecs.ExperimentalNamedarraysVector34Max);
+                return rrRequest.AnswerAsync(GetContactsAsync(rrRequest.Cancelled), RrCodecs.ExperimentalNamedarraysVector34Max);
             case 3 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetContactsAsync(rrRequest.Argument(RrCodecs.ExperimentalNamedarraysVector34Max)));
+                return rrRequest.AnswerAsync(SetContactsAsync(rrRequest.Argument(RrCodecs.ExperimentalNamedarraysVector34Max), rrRequest.Cancelled));
             case 4 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetPictureAsync(), Pixel.RrCodec.MultiDim);
+                return rrRequest.AnswerAsync(GetPictureAsync(rrRequest.Cancelled), Pixel.RrCodec.MultiDim);
             case 4 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetPictureAsync(rrRequest.Argument(Pixel.RrCodec.MultiDim)));
+                return rrRequest.AnswerAsync(SetPictureAsync(rrRequest.Argument(Pixel.RrCodec.MultiDim), rrRequest.Cancelled));
             case 5 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetThumbnailAsync(), RrCodecs.ExperimentalNamedarraysPixel2x2);
+                return rrRequest.AnswerAsync(GetThumbnailAsync(rrRequest.Cancelled), RrCodecs.ExperimentalNamedarraysPixel2x2);
             case 5 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetThumbnailAsync(rrRequest.Argument(RrCodecs.ExperimentalNamedarraysPixel2x2)));
+                return rrRequest.AnswerAsync(SetThumbnailAsync(rrRequest.Argument(RrCodecs.ExperimentalNamedarraysPixel2x2), rrRequest.Cancelled));
             case 6 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetPlacesAsync(), RrCodecs.ExperimentalNamedarraysPoseString);
+                return rrRequest.AnswerAsync(GetPlacesAsync(rrRequest.Cancelled), RrCodecs.ExperimentalNamedarraysPoseString);
             case 6 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetPlacesAsync(rrRequest.Argument(RrCodecs.ExperimentalNamedarraysPoseString)));
+                return rrRequest.AnswerAsync(SetPlacesAsync(rrRequest.Argument(RrCodecs.ExperimentalNamedarraysPoseString), rrRequest.Cancelled));
             case 7:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Vector3 a = rrArguments.Read(Vector3.RrCodec, "a"u8);
                     Vector3 b = rrArguments.Read(Vector3.RrCodec, "b"u8);
-                    return rrRequest.AnswerAsync(CrossAsync(a, b), Vector3.RrCodec);
+                    return rrRequest.AnswerAsync(CrossAsync(a, b, rrRequest.Cancelled), Vector3.RrCodec);
                 }
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -322,56 +322,56 @@ public class ArmDefault : ArmSkeleton
     protected Stored<Dictionary<string, Pose>?> RrStoredPlaces { get; } = new(default);
 
     /// <inheritdoc/>
-    public override ValueTask<Pose> GetPoseAsync() => RrStoredPose.GetAsync();
+    public override ValueTask<Pose> GetPoseAsync(CancellationToken cancellationToken = default) => RrStoredPose.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetPoseAsync(Pose value) => RrStoredPose.SetAsync(value);
+    public override ValueTask SetPoseAsync(Pose value, CancellationToken cancellationToken = default) => RrStoredPose.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<Pose[]> GetPathAsync() => RrStoredPath.GetAsync();
+    public override ValueTask<Pose[]> GetPathAsync(CancellationToken cancellationToken = default) => RrStoredPath.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetPathAsync(Pose[] value) => RrStoredPath.SetAsync(value);
+    public override ValueTask SetPathAsync(Pose[] value, CancellationToken cancellationToken = default) => RrStoredPath.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<Vector3[]> GetCornersAsync() => RrStoredCorners.GetAsync();
+    public override ValueTask<Vector3[]> GetCornersAsync(CancellationToken cancellationToken = default) => RrStoredCorners.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetCornersAsync(Vector3[] value) => RrStoredCorners.SetAsync(value);
+    public override ValueTask SetCornersAsync(Vector3[] value, CancellationToken cancellationToken = default) => RrStoredCorners.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<Vector3[]> GetContactsAsync() => RrStoredContacts.GetAsync();
+    public override ValueTask<Vector3[]> GetContactsAsync(CancellationToken cancellationToken = default) => RrStoredContacts.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetContactsAsync(Vector3[] value) => RrStoredContacts.SetAsync(value);
+    public override ValueTask SetContactsAsync(Vector3[] value, CancellationToken cancellationToken = default) => RrStoredContacts.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<MultiDimArray<Pixel>> GetPictureAsync() => RrStoredPicture.GetAsync();
+    public override ValueTask<MultiDimArray<Pixel>> GetPictureAsync(CancellationToken cancellationToken = default) => RrStoredPicture.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetPictureAsync(MultiDimArray<Pixel> value) => RrStoredPicture.SetAsync(value);
+    public override ValueTask SetPictureAsync(MultiDimArray<Pixel> value, CancellationToken cancellationToken = default) => RrStoredPicture.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<MultiDimArray<Pixel>> GetThumbnailAsync() => RrStoredThumbnail.GetAsync();
+    public override ValueTask<MultiDimArray<Pixel>> GetThumbnailAsync(CancellationToken cancellationToken = default) => RrStoredThumbnail.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetThumbnailAsync(MultiDimArray<Pixel> value) => RrStoredThumbnail.SetAsync(value);
+    public override ValueTask SetThumbnailAsync(MultiDimArray<Pixel> value, CancellationToken cancellationToken = default) => RrStoredThumbnail.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<Dictionary<string, Pose>?> GetPlacesAsync() => RrStoredPlaces.GetAsync();
+    public override ValueTask<Dictionary<string, Pose>?> GetPlacesAsync(CancellationToken cancellationToken = default) => RrStoredPlaces.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetPlacesAsync(Dictionary<string, Pose>? value) => RrStoredPlaces.SetAsync(value);
+    public override ValueTask SetPlacesAsync(Dictionary<string, Pose>? value, CancellationToken cancellationToken = default) => RrStoredPlaces.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<Vector3> CrossAsync(Vector3 a, Vector3 b) =>
+    public override ValueTask<Vector3> CrossAsync(Vector3 a, Vector3 b, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("cross");
 }
 
 /// <summary>What the runtime knows of experimental.namedarrays.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.namedarrays", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.namedarrays", RrText)
     {
         Exceptions =
         [

@@ -55,18 +55,18 @@ public abstract class JointSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<double> GetAngleAsync();
+    public abstract ValueTask<double> GetAngleAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetAngleAsync(double value);
+    public abstract ValueTask SetAngleAsync(double value, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetAngleAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetAngleAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 0 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetAngleAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetAngleAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
         }
@@ -79,10 +79,10 @@ public class JointDefault : JointSkeleton
     protected Stored<double> RrStoredAngle { get; } = new(default);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetAngleAsync() => RrStoredAngle.GetAsync();
+    public override ValueTask<double> GetAngleAsync(CancellationToken cancellationToken = default) => RrStoredAngle.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetAngleAsync(double value) => RrStoredAngle.SetAsync(value);
+    public override ValueTask SetAngleAsync(double value, CancellationToken cancellationToken = default) => RrStoredAngle.SetAsync(value);
 }
 
 public interface IRobot
@@ -174,34 +174,34 @@ public abstract class RobotSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<Skeleton> GetBaseAsync();
+    public abstract ValueTask<Skeleton> GetBaseAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetJointAsync(int index);
+    public abstract ValueTask<Skeleton> GetJointAsync(int index, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetJointByNumberAsync(int index);
+    public abstract ValueTask<Skeleton> GetJointByNumberAsync(int index, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetJointByNameAsync(string index);
+    public abstract ValueTask<Skeleton> GetJointByNameAsync(string index, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetToolAsync();
+    public abstract ValueTask<Skeleton> GetToolAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetToolsAsync(string index);
+    public abstract ValueTask<Skeleton> GetToolsAsync(string index, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0:
-                return rrRequest.AnswerObjectAsync(GetBaseAsync());
+                return rrRequest.AnswerObjectAsync(GetBaseAsync(rrRequest.Cancelled));
             case 1:
-                return rrRequest.AnswerObjectAsync(GetJointAsync(rrRequest.IndexNumber));
+                return rrRequest.AnswerObjectAsync(GetJointAsync(rrRequest.IndexNumber, rrRequest.Cancelled));
             case 2:
-                return rrRequest.AnswerObjectAsync(GetJointByNumberAsync(rrRequest.IndexNumber));
+                return rrRequest.AnswerObjectAsync(GetJointByNumberAsync(rrRequest.IndexNumber, rrRequest.Cancelled));
             case 3:
-                return rrRequest.AnswerObjectAsync(GetJointByNameAsync(rrRequest.IndexText));
+                return rrRequest.AnswerObjectAsync(GetJointByNameAsync(rrRequest.IndexText, rrRequest.Cancelled));
             case 4:
-                return rrRequest.AnswerObjectAsync(GetToolAsync());
+                return rrRequest.AnswerObjectAsync(GetToolAsync(rrRequest.Cancelled));
             case 5:
-                return rrRequest.AnswerObjectAsync(GetToolsAsync(rrRequest.IndexText));
+                return rrRequest.AnswerObjectAsync(GetToolsAsync(rrRequest.IndexText, rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
         }
@@ -211,7 +211,7 @@ public abstract class RobotSkeleton : Skeleton
 /// <summary>What the runtime knows of experimental.objrefs.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.objrefs", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.objrefs", RrText)
     {
         Exceptions =
         [

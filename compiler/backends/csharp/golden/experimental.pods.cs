@@ -183,58 +183,58 @@ public abstract class RecorderSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<Sample> GetLastAsync();
+    public abstract ValueTask<Sample> GetLastAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetLastAsync(Sample value);
+    public abstract ValueTask SetLastAsync(Sample value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Sample[]> GetHistoryAsync();
+    public abstract ValueTask<Sample[]> GetHistoryAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetHistoryAsync(Sample[] value);
+    public abstract ValueTask SetHistoryAsync(Sample[] value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Burst[]> GetBurstsAsync();
+    public abstract ValueTask<Burst[]> GetBurstsAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetBurstsAsync(Burst[] value);
+    public abstract ValueTask SetBurstsAsync(Burst[] value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<MultiDimArray<Sample>> GetMatrixAsync();
+    public abstract ValueTask<MultiDimArray<Sample>> GetMatrixAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetMatrixAsync(MultiDimArray<Sample> value);
+    public abstract ValueTask SetMatrixAsync(MultiDimArray<Sample> value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<List<Sample>?> GetMarkedAsync();
+    public abstract ValueTask<List<Sample>?> GetMarkedAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetMarkedAsync(List<Sample>? value);
+    public abstract ValueTask SetMarkedAsync(List<Sample>? value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Burst> RecordAsync(Sample from, Sample[] until);
+    public abstract ValueTask<Burst> RecordAsync(Sample from, Sample[] until, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetLastAsync(), Sample.RrCodec);
+                return rrRequest.AnswerAsync(GetLastAsync(rrRequest.Cancelled), Sample.RrCodec);
             case 0 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetLastAsync(rrRequest.Argument(Sample.RrCodec)));
+                return rrRequest.AnswerAsync(SetLastAsync(rrRequest.Argument(Sample.RrCodec), rrRequest.Cancelled));
             case 1 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetHistoryAsync(), Sample.RrCodec.Array);
+                return rrRequest.AnswerAsync(GetHistoryAsync(rrRequest.Cancelled), Sample.RrCodec.Array);
             case 1 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetHistoryAsync(rrRequest.Argument(Sample.RrCodec.Array)));
+                return rrRequest.AnswerAsync(SetHistoryAsync(rrRequest.Argument(Sample.RrCodec.Array), rrRequest.Cancelled));
             case 2 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetBurstsAsync(), RrCodecs.ExperimentalPodsBurst2);
+                return rrRequest.AnswerAsync(GetBurstsAsync(rrRequest.Cancelled), RrCodecs.ExperimentalPodsBurst2);
             case 2 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetBurstsAsync(rrRequest.Argument(RrCodecs.ExperimentalPodsBurst2)));
+                return rrRequest.AnswerAsync(SetBurstsAsync(rrRequest.Argument(RrCodecs.ExperimentalPodsBurst2), rrRequest.Cancelled));
             case 3 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetMatrixAsync(), Sample.RrCodec.MultiDim);
+                return rrRequest.AnswerAsync(GetMatrixAsync(rrRequest.Cancelled), Sample.RrCodec.MultiDim);
             case 3 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetMatrixAsync(rrRequest.Argument(Sample.RrCodec.MultiDim)));
+                return rrRequest.AnswerAsync(SetMatrixAsync(rrRequest.Argument(Sample.RrCodec.MultiDim), rrRequest.Cancelled));
             case 4 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetMarkedAsync(), RrCodecs.ExperimentalPodsSampleList);
+                return rrRequest.AnswerAsync(GetMarkedAsync(rrRequest.Cancelled), RrCodecs.ExperimentalPodsSampleList);
             case 4 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetMarkedAsync(rrRequest.Argument(RrCodecs.ExperimentalPodsSampleList)));
+                return rrRequest.AnswerAsync(SetMarkedAsync(rrRequest.Argument(RrCodecs.ExperimentalPodsSampleList), rrRequest.Cancelled));
             case 5:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Sample from = rrArguments.Read(Sample.RrCodec, "from"u8);
                     Sample[] until = rrArguments.Read(Sample.RrCodec.Array, "until"u8);
-                    return rrRequest.AnswerAsync(RecordAsync(from, until), Burst.RrCodec);
+                    return rrRequest.AnswerAsync(RecordAsync(from, until, rrRequest.Cancelled), Burst.RrCodec);
                 }
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -252,44 +252,44 @@ public class RecorderDefault : RecorderSkeleton
     protected Stored<List<Sample>?> RrStoredMarked { get; } = new(default);
 
     /// <inheritdoc/>
-    public override ValueTask<Sample> GetLastAsync() => RrStoredLast.GetAsync();
+    public override ValueTask<Sample> GetLastAsync(CancellationToken cancellationToken = default) => RrStoredLast.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetLastAsync(Sample value) => RrStoredLast.SetAsync(value);
+    public override ValueTask SetLastAsync(Sample value, CancellationToken cancellationToken = default) => RrStoredLast.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<Sample[]> GetHistoryAsync() => RrStoredHistory.GetAsync();
+    public override ValueTask<Sample[]> GetHistoryAsync(CancellationToken cancellationToken = default) => RrStoredHistory.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetHistoryAsync(Sample[] value) => RrStoredHistory.SetAsync(value);
+    public override ValueTask SetHistoryAsync(Sample[] value, CancellationToken cancellationToken = default) => RrStoredHistory.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<Burst[]> GetBurstsAsync() => RrStoredBursts.GetAsync();
+    public override ValueTask<Burst[]> GetBurstsAsync(CancellationToken cancellationToken = default) => RrStoredBursts.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetBurstsAsync(Burst[] value) => RrStoredBursts.SetAsync(value);
+    public override ValueTask SetBurstsAsync(Burst[] value, CancellationToken cancellationToken = default) => RrStoredBursts.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<MultiDimArray<Sample>> GetMatrixAsync() => RrStoredMatrix.GetAsync();
+    public override ValueTask<MultiDimArray<Sample>> GetMatrixAsync(CancellationToken cancellationToken = default) => RrStoredMatrix.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetMatrixAsync(MultiDimArray<Sample> value) => RrStoredMatrix.SetAsync(value);
+    public override ValueTask SetMatrixAsync(MultiDimArray<Sample> value, CancellationToken cancellationToken = default) => RrStoredMatrix.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<List<Sample>?> GetMarkedAsync() => RrStoredMarked.GetAsync();
+    public override ValueTask<List<Sample>?> GetMarkedAsync(CancellationToken cancellationToken = default) => RrStoredMarked.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetMarkedAsync(List<Sample>? value) => RrStoredMarked.SetAsync(value);
+    public override ValueTask SetMarkedAsync(List<Sample>? value, CancellationToken cancellationToken = default) => RrStoredMarked.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<Burst> RecordAsync(Sample from, Sample[] until) =>
+    public override ValueTask<Burst> RecordAsync(Sample from, Sample[] until, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("record");
 }
 
 /// <summary>What the runtime knows of experimental.pods.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.pods", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.pods", RrText)
     {
         Exceptions =
         [

@@ -452,166 +452,166 @@ public abstract class BoardSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<double> GetGainAsync();
+    public abstract ValueTask<double> GetGainAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetGainAsync(double value);
+    public abstract ValueTask SetGainAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<bool> GetEnabledAsync();
+    public abstract ValueTask<bool> GetEnabledAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetEnabledAsync(bool value);
+    public abstract ValueTask SetEnabledAsync(bool value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<string> GetLabelAsync();
+    public abstract ValueTask<string> GetLabelAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetLabelAsync(string value);
+    public abstract ValueTask SetLabelAsync(string value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Complex> GetResponseAsync();
+    public abstract ValueTask<Complex> GetResponseAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetResponseAsync(Complex value);
+    public abstract ValueTask SetResponseAsync(Complex value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Mode> GetModeAsync();
+    public abstract ValueTask<Mode> GetModeAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetModeAsync(Mode value);
+    public abstract ValueTask SetModeAsync(Mode value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double[]> GetSamplesAsync();
+    public abstract ValueTask<double[]> GetSamplesAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetSamplesAsync(double[] value);
+    public abstract ValueTask SetSamplesAsync(double[] value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<byte[]> GetAddressAsync();
+    public abstract ValueTask<byte[]> GetAddressAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetAddressAsync(byte[] value);
+    public abstract ValueTask SetAddressAsync(byte[] value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<short[]> GetStepsAsync();
+    public abstract ValueTask<short[]> GetStepsAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetStepsAsync(short[] value);
+    public abstract ValueTask SetStepsAsync(short[] value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<MultiDimArray<float>> GetImageAsync();
+    public abstract ValueTask<MultiDimArray<float>> GetImageAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetImageAsync(MultiDimArray<float> value);
+    public abstract ValueTask SetImageAsync(MultiDimArray<float> value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<MultiDimArray<double>> GetRotationAsync();
+    public abstract ValueTask<MultiDimArray<double>> GetRotationAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetRotationAsync(MultiDimArray<double> value);
+    public abstract ValueTask SetRotationAsync(MultiDimArray<double> value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<List<string>?> GetNamesAsync();
+    public abstract ValueTask<List<string>?> GetNamesAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetNamesAsync(List<string>? value);
+    public abstract ValueTask SetNamesAsync(List<string>? value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Dictionary<int, double>?> GetByNumberAsync();
+    public abstract ValueTask<Dictionary<int, double>?> GetByNumberAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetByNumberAsync(Dictionary<int, double>? value);
+    public abstract ValueTask SetByNumberAsync(Dictionary<int, double>? value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Dictionary<string, int[]>?> GetByNameAsync();
+    public abstract ValueTask<Dictionary<string, int[]>?> GetByNameAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetByNameAsync(Dictionary<string, int[]>? value);
+    public abstract ValueTask SetByNameAsync(Dictionary<string, int[]>? value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<VarValue?> GetAnythingAsync();
+    public abstract ValueTask<VarValue?> GetAnythingAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetAnythingAsync(VarValue? value);
+    public abstract ValueTask SetAnythingAsync(VarValue? value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Dictionary<string, VarValue?>?> GetSettingsAsync();
+    public abstract ValueTask<Dictionary<string, VarValue?>?> GetSettingsAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetSettingsAsync(Dictionary<string, VarValue?>? value);
+    public abstract ValueTask SetSettingsAsync(Dictionary<string, VarValue?>? value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> GetSerialNumberAsync();
+    public abstract ValueTask<int> GetSerialNumberAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetPasswordAsync(string value);
+    public abstract ValueTask SetPasswordAsync(string value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetSharedAsync();
+    public abstract ValueTask<double> GetSharedAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetSharedAsync(double value);
+    public abstract ValueTask SetSharedAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> GetPageAsync();
+    public abstract ValueTask<int> GetPageAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetPageAsync(int value);
+    public abstract ValueTask SetPageAsync(int value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<List<string>?> GetNotesAsync();
+    public abstract ValueTask<List<string>?> GetNotesAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetNotesAsync(List<string>? value);
+    public abstract ValueTask SetNotesAsync(List<string>? value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Mode> GetViewAsync();
+    public abstract ValueTask<Mode> GetViewAsync(CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetGainAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetGainAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 0 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetGainAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetGainAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 1 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetEnabledAsync(), ValueCodec.Bool);
+                return rrRequest.AnswerAsync(GetEnabledAsync(rrRequest.Cancelled), ValueCodec.Bool);
             case 1 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetEnabledAsync(rrRequest.Argument(ValueCodec.Bool)));
+                return rrRequest.AnswerAsync(SetEnabledAsync(rrRequest.Argument(ValueCodec.Bool), rrRequest.Cancelled));
             case 2 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetLabelAsync(), ValueCodec.String);
+                return rrRequest.AnswerAsync(GetLabelAsync(rrRequest.Cancelled), ValueCodec.String);
             case 2 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetLabelAsync(rrRequest.Argument(ValueCodec.String)));
+                return rrRequest.AnswerAsync(SetLabelAsync(rrRequest.Argument(ValueCodec.String), rrRequest.Cancelled));
             case 3 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetResponseAsync(), ValueCodec.ComplexDouble);
+                return rrRequest.AnswerAsync(GetResponseAsync(rrRequest.Cancelled), ValueCodec.ComplexDouble);
             case 3 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetResponseAsync(rrRequest.Argument(ValueCodec.ComplexDouble)));
+                return rrRequest.AnswerAsync(SetResponseAsync(rrRequest.Argument(ValueCodec.ComplexDouble), rrRequest.Cancelled));
             case 4 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetModeAsync(), ValueCodec.Enum<Mode>());
+                return rrRequest.AnswerAsync(GetModeAsync(rrRequest.Cancelled), ValueCodec.Enum<Mode>());
             case 4 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetModeAsync(rrRequest.Argument(ValueCodec.Enum<Mode>())));
+                return rrRequest.AnswerAsync(SetModeAsync(rrRequest.Argument(ValueCodec.Enum<Mode>()), rrRequest.Cancelled));
             case 5 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetSamplesAsync(), ValueCodec.Double.Array);
+                return rrRequest.AnswerAsync(GetSamplesAsync(rrRequest.Cancelled), ValueCodec.Double.Array);
             case 5 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetSamplesAsync(rrRequest.Argument(ValueCodec.Double.Array)));
+                return rrRequest.AnswerAsync(SetSamplesAsync(rrRequest.Argument(ValueCodec.Double.Array), rrRequest.Cancelled));
             case 6 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetAddressAsync(), RrCodecs.Uint84);
+                return rrRequest.AnswerAsync(GetAddressAsync(rrRequest.Cancelled), RrCodecs.Uint84);
             case 6 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetAddressAsync(rrRequest.Argument(RrCodecs.Uint84)));
+                return rrRequest.AnswerAsync(SetAddressAsync(rrRequest.Argument(RrCodecs.Uint84), rrRequest.Cancelled));
             case 7 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetStepsAsync(), RrCodecs.Int168Max);
+                return rrRequest.AnswerAsync(GetStepsAsync(rrRequest.Cancelled), RrCodecs.Int168Max);
             case 7 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetStepsAsync(rrRequest.Argument(RrCodecs.Int168Max)));
+                return rrRequest.AnswerAsync(SetStepsAsync(rrRequest.Argument(RrCodecs.Int168Max), rrRequest.Cancelled));
             case 8 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetImageAsync(), ValueCodec.Single.MultiDim);
+                return rrRequest.AnswerAsync(GetImageAsync(rrRequest.Cancelled), ValueCodec.Single.MultiDim);
             case 8 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetImageAsync(rrRequest.Argument(ValueCodec.Single.MultiDim)));
+                return rrRequest.AnswerAsync(SetImageAsync(rrRequest.Argument(ValueCodec.Single.MultiDim), rrRequest.Cancelled));
             case 9 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetRotationAsync(), RrCodecs.Double3x3);
+                return rrRequest.AnswerAsync(GetRotationAsync(rrRequest.Cancelled), RrCodecs.Double3x3);
             case 9 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetRotationAsync(rrRequest.Argument(RrCodecs.Double3x3)));
+                return rrRequest.AnswerAsync(SetRotationAsync(rrRequest.Argument(RrCodecs.Double3x3), rrRequest.Cancelled));
             case 10 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetNamesAsync(), RrCodecs.StringList);
+                return rrRequest.AnswerAsync(GetNamesAsync(rrRequest.Cancelled), RrCodecs.StringList);
             case 10 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetNamesAsync(rrRequest.Argument(RrCodecs.StringList)));
+                return rrRequest.AnswerAsync(SetNamesAsync(rrRequest.Argument(RrCodecs.StringList), rrRequest.Cancelled));
             case 11 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetByNumberAsync(), RrCodecs.DoubleInt32);
+                return rrRequest.AnswerAsync(GetByNumberAsync(rrRequest.Cancelled), RrCodecs.DoubleInt32);
             case 11 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetByNumberAsync(rrRequest.Argument(RrCodecs.DoubleInt32)));
+                return rrRequest.AnswerAsync(SetByNumberAsync(rrRequest.Argument(RrCodecs.DoubleInt32), rrRequest.Cancelled));
             case 12 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetByNameAsync(), RrCodecs.Int32ArrayString);
+                return rrRequest.AnswerAsync(GetByNameAsync(rrRequest.Cancelled), RrCodecs.Int32ArrayString);
             case 12 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetByNameAsync(rrRequest.Argument(RrCodecs.Int32ArrayString)));
+                return rrRequest.AnswerAsync(SetByNameAsync(rrRequest.Argument(RrCodecs.Int32ArrayString), rrRequest.Cancelled));
             case 13 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetAnythingAsync(), ValueCodec.VarValue);
+                return rrRequest.AnswerAsync(GetAnythingAsync(rrRequest.Cancelled), ValueCodec.VarValue);
             case 13 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetAnythingAsync(rrRequest.Argument(ValueCodec.VarValue)));
+                return rrRequest.AnswerAsync(SetAnythingAsync(rrRequest.Argument(ValueCodec.VarValue), rrRequest.Cancelled));
             case 14 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetSettingsAsync(), RrCodecs.VarvalueString);
+                return rrRequest.AnswerAsync(GetSettingsAsync(rrRequest.Cancelled), RrCodecs.VarvalueString);
             case 14 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetSettingsAsync(rrRequest.Argument(RrCodecs.VarvalueString)));
+                return rrRequest.AnswerAsync(SetSettingsAsync(rrRequest.Argument(RrCodecs.VarvalueString), rrRequest.Cancelled));
             case 15 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetSerialNumberAsync(), ValueCodec.Int32);
+                return rrRequest.AnswerAsync(GetSerialNumberAsync(rrRequest.Cancelled), ValueCodec.Int32);
             case 16 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetPasswordAsync(rrRequest.Argument(ValueCodec.String)));
+                return rrRequest.AnswerAsync(SetPasswordAsync(rrRequest.Argument(ValueCodec.String), rrRequest.Cancelled));
             case 17 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetSharedAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetSharedAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 17 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetSharedAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetSharedAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 18 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetPageAsync(), ValueCodec.Int32);
+                return rrRequest.AnswerAsync(GetPageAsync(rrRequest.Cancelled), ValueCodec.Int32);
             case 18 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetPageAsync(rrRequest.Argument(ValueCodec.Int32)));
+                return rrRequest.AnswerAsync(SetPageAsync(rrRequest.Argument(ValueCodec.Int32), rrRequest.Cancelled));
             case 19 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetNotesAsync(), RrCodecs.StringList);
+                return rrRequest.AnswerAsync(GetNotesAsync(rrRequest.Cancelled), RrCodecs.StringList);
             case 19 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetNotesAsync(rrRequest.Argument(RrCodecs.StringList)));
+                return rrRequest.AnswerAsync(SetNotesAsync(rrRequest.Argument(RrCodecs.StringList), rrRequest.Cancelled));
             case 20 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetViewAsync(), ValueCodec.Enum<Mode>());
+                return rrRequest.AnswerAsync(GetViewAsync(rrRequest.Cancelled), ValueCodec.Enum<Mode>());
             default:
                 return base.RrRequestAsync(rrRequest);
         }
@@ -644,127 +644,127 @@ public class BoardDefault : BoardSkeleton
     protected StoredPerClient<Mode> RrStoredView { get; } = new(default);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetGainAsync() => RrStoredGain.GetAsync();
+    public override ValueTask<double> GetGainAsync(CancellationToken cancellationToken = default) => RrStoredGain.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetGainAsync(double value) => RrStoredGain.SetAsync(value);
+    public override ValueTask SetGainAsync(double value, CancellationToken cancellationToken = default) => RrStoredGain.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<bool> GetEnabledAsync() => RrStoredEnabled.GetAsync();
+    public override ValueTask<bool> GetEnabledAsync(CancellationToken cancellationToken = default) => RrStoredEnabled.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetEnabledAsync(bool value) => RrStoredEnabled.SetAsync(value);
+    public override ValueTask SetEnabledAsync(bool value, CancellationToken cancellationToken = default) => RrStoredEnabled.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<string> GetLabelAsync() => RrStoredLabel.GetAsync();
+    public override ValueTask<string> GetLabelAsync(CancellationToken cancellationToken = default) => RrStoredLabel.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetLabelAsync(string value) => RrStoredLabel.SetAsync(value);
+    public override ValueTask SetLabelAsync(string value, CancellationToken cancellationToken = default) => RrStoredLabel.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<Complex> GetResponseAsync() => RrStoredResponse.GetAsync();
+    public override ValueTask<Complex> GetResponseAsync(CancellationToken cancellationToken = default) => RrStoredResponse.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetResponseAsync(Complex value) => RrStoredResponse.SetAsync(value);
+    public override ValueTask SetResponseAsync(Complex value, CancellationToken cancellationToken = default) => RrStoredResponse.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<Mode> GetModeAsync() => RrStoredMode.GetAsync();
+    public override ValueTask<Mode> GetModeAsync(CancellationToken cancellationToken = default) => RrStoredMode.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetModeAsync(Mode value) => RrStoredMode.SetAsync(value);
+    public override ValueTask SetModeAsync(Mode value, CancellationToken cancellationToken = default) => RrStoredMode.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double[]> GetSamplesAsync() => RrStoredSamples.GetAsync();
+    public override ValueTask<double[]> GetSamplesAsync(CancellationToken cancellationToken = default) => RrStoredSamples.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetSamplesAsync(double[] value) => RrStoredSamples.SetAsync(value);
+    public override ValueTask SetSamplesAsync(double[] value, CancellationToken cancellationToken = default) => RrStoredSamples.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<byte[]> GetAddressAsync() => RrStoredAddress.GetAsync();
+    public override ValueTask<byte[]> GetAddressAsync(CancellationToken cancellationToken = default) => RrStoredAddress.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetAddressAsync(byte[] value) => RrStoredAddress.SetAsync(value);
+    public override ValueTask SetAddressAsync(byte[] value, CancellationToken cancellationToken = default) => RrStoredAddress.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<short[]> GetStepsAsync() => RrStoredSteps.GetAsync();
+    public override ValueTask<short[]> GetStepsAsync(CancellationToken cancellationToken = default) => RrStoredSteps.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetStepsAsync(short[] value) => RrStoredSteps.SetAsync(value);
+    public override ValueTask SetStepsAsync(short[] value, CancellationToken cancellationToken = default) => RrStoredSteps.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<MultiDimArray<float>> GetImageAsync() => RrStoredImage.GetAsync();
+    public override ValueTask<MultiDimArray<float>> GetImageAsync(CancellationToken cancellationToken = default) => RrStoredImage.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetImageAsync(MultiDimArray<float> value) => RrStoredImage.SetAsync(value);
+    public override ValueTask SetImageAsync(MultiDimArray<float> value, CancellationToken cancellationToken = default) => RrStoredImage.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<MultiDimArray<double>> GetRotationAsync() => RrStoredRotation.GetAsync();
+    public override ValueTask<MultiDimArray<double>> GetRotationAsync(CancellationToken cancellationToken = default) => RrStoredRotation.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetRotationAsync(MultiDimArray<double> value) => RrStoredRotation.SetAsync(value);
+    public override ValueTask SetRotationAsync(MultiDimArray<double> value, CancellationToken cancellationToken = default) => RrStoredRotation.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<List<string>?> GetNamesAsync() => RrStoredNames.GetAsync();
+    public override ValueTask<List<string>?> GetNamesAsync(CancellationToken cancellationToken = default) => RrStoredNames.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetNamesAsync(List<string>? value) => RrStoredNames.SetAsync(value);
+    public override ValueTask SetNamesAsync(List<string>? value, CancellationToken cancellationToken = default) => RrStoredNames.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<Dictionary<int, double>?> GetByNumberAsync() => RrStoredByNumber.GetAsync();
+    public override ValueTask<Dictionary<int, double>?> GetByNumberAsync(CancellationToken cancellationToken = default) => RrStoredByNumber.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetByNumberAsync(Dictionary<int, double>? value) => RrStoredByNumber.SetAsync(value);
+    public override ValueTask SetByNumberAsync(Dictionary<int, double>? value, CancellationToken cancellationToken = default) => RrStoredByNumber.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<Dictionary<string, int[]>?> GetByNameAsync() => RrStoredByName.GetAsync();
+    public override ValueTask<Dictionary<string, int[]>?> GetByNameAsync(CancellationToken cancellationToken = default) => RrStoredByName.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetByNameAsync(Dictionary<string, int[]>? value) => RrStoredByName.SetAsync(value);
+    public override ValueTask SetByNameAsync(Dictionary<string, int[]>? value, CancellationToken cancellationToken = default) => RrStoredByName.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<VarValue?> GetAnythingAsync() => RrStoredAnything.GetAsync();
+    public override ValueTask<VarValue?> GetAnythingAsync(CancellationToken cancellationToken = default) => RrStoredAnything.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetAnythingAsync(VarValue? value) => RrStoredAnything.SetAsync(value);
+    public override ValueTask SetAnythingAsync(VarValue? value, CancellationToken cancellationToken = default) => RrStoredAnything.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<Dictionary<string, VarValue?>?> GetSettingsAsync() => RrStoredSettings.GetAsync();
+    public override ValueTask<Dictionary<string, VarValue?>?> GetSettingsAsync(CancellationToken cancellationToken = default) => RrStoredSettings.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetSettingsAsync(Dictionary<string, VarValue?>? value) => RrStoredSettings.SetAsync(value);
+    public override ValueTask SetSettingsAsync(Dictionary<string, VarValue?>? value, CancellationToken cancellationToken = default) => RrStoredSettings.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<int> GetSerialNumberAsync() => RrStoredSerialNumber.GetAsync();
+    public override ValueTask<int> GetSerialNumberAsync(CancellationToken cancellationToken = default) => RrStoredSerialNumber.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetPasswordAsync(string value) => RrStoredPassword.SetAsync(value);
+    public override ValueTask SetPasswordAsync(string value, CancellationToken cancellationToken = default) => RrStoredPassword.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetSharedAsync() => RrStoredShared.GetAsync();
+    public override ValueTask<double> GetSharedAsync(CancellationToken cancellationToken = default) => RrStoredShared.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetSharedAsync(double value) => RrStoredShared.SetAsync(value);
+    public override ValueTask SetSharedAsync(double value, CancellationToken cancellationToken = default) => RrStoredShared.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<int> GetPageAsync() => RrStoredPage.GetAsync();
+    public override ValueTask<int> GetPageAsync(CancellationToken cancellationToken = default) => RrStoredPage.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetPageAsync(int value) => RrStoredPage.SetAsync(value);
+    public override ValueTask SetPageAsync(int value, CancellationToken cancellationToken = default) => RrStoredPage.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<List<string>?> GetNotesAsync() => RrStoredNotes.GetAsync();
+    public override ValueTask<List<string>?> GetNotesAsync(CancellationToken cancellationToken = default) => RrStoredNotes.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetNotesAsync(List<string>? value) => RrStoredNotes.SetAsync(value);
+    public override ValueTask SetNotesAsync(List<string>? value, CancellationToken cancellationToken = default) => RrStoredNotes.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<Mode> GetViewAsync() => RrStoredView.GetAsync();
+    public override ValueTask<Mode> GetViewAsync(CancellationToken cancellationToken = default) => RrStoredView.GetAsync();
 }
 
 /// <summary>What the runtime knows of experimental.properties.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.properties", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.properties", RrText)
     {
         Exceptions =
         [

@@ -41,7 +41,7 @@ public sealed record Forest
 /// <summary>What the runtime knows of experimental.recursion.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.recursion", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.recursion", RrText)
     {
         Exceptions =
         [

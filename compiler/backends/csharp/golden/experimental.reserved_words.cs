@@ -2516,818 +2516,818 @@ public abstract class DeleteSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<double> GetAlignasAsync();
+    public abstract ValueTask<double> GetAlignasAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetAlignasAsync(double value);
+    public abstract ValueTask SetAlignasAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetAlignofAsync();
+    public abstract ValueTask<double> GetAlignofAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetAlignofAsync(double value);
+    public abstract ValueTask SetAlignofAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetAndAsync();
+    public abstract ValueTask<double> GetAndAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetAndAsync(double value);
+    public abstract ValueTask SetAndAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetAndEqAsync();
+    public abstract ValueTask<double> GetAndEqAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetAndEqAsync(double value);
+    public abstract ValueTask SetAndEqAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetAsmAsync();
+    public abstract ValueTask<double> GetAsmAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetAsmAsync(double value);
+    public abstract ValueTask SetAsmAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetAutoAsync();
+    public abstract ValueTask<double> GetAutoAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetAutoAsync(double value);
+    public abstract ValueTask SetAutoAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetBitandAsync();
+    public abstract ValueTask<double> GetBitandAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetBitandAsync(double value);
+    public abstract ValueTask SetBitandAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetBitorAsync();
+    public abstract ValueTask<double> GetBitorAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetBitorAsync(double value);
+    public abstract ValueTask SetBitorAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetBreakAsync();
+    public abstract ValueTask<double> GetBreakAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetBreakAsync(double value);
+    public abstract ValueTask SetBreakAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetCaseAsync();
+    public abstract ValueTask<double> GetCaseAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetCaseAsync(double value);
+    public abstract ValueTask SetCaseAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetCatchAsync();
+    public abstract ValueTask<double> GetCatchAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetCatchAsync(double value);
+    public abstract ValueTask SetCatchAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetCharAsync();
+    public abstract ValueTask<double> GetCharAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetCharAsync(double value);
+    public abstract ValueTask SetCharAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetChar16TAsync();
+    public abstract ValueTask<double> GetChar16TAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetChar16TAsync(double value);
+    public abstract ValueTask SetChar16TAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetChar32TAsync();
+    public abstract ValueTask<double> GetChar32TAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetChar32TAsync(double value);
+    public abstract ValueTask SetChar32TAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetChar8TAsync();
+    public abstract ValueTask<double> GetChar8TAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetChar8TAsync(double value);
+    public abstract ValueTask SetChar8TAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetClassAsync();
+    public abstract ValueTask<double> GetClassAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetClassAsync(double value);
+    public abstract ValueTask SetClassAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetCoAwaitAsync();
+    public abstract ValueTask<double> GetCoAwaitAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetCoAwaitAsync(double value);
+    public abstract ValueTask SetCoAwaitAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetCoReturnAsync();
+    public abstract ValueTask<double> GetCoReturnAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetCoReturnAsync(double value);
+    public abstract ValueTask SetCoReturnAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetCoYieldAsync();
+    public abstract ValueTask<double> GetCoYieldAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetCoYieldAsync(double value);
+    public abstract ValueTask SetCoYieldAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetComplAsync();
+    public abstract ValueTask<double> GetComplAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetComplAsync(double value);
+    public abstract ValueTask SetComplAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetConceptAsync();
+    public abstract ValueTask<double> GetConceptAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetConceptAsync(double value);
+    public abstract ValueTask SetConceptAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetConstAsync();
+    public abstract ValueTask<double> GetConstAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetConstAsync(double value);
+    public abstract ValueTask SetConstAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetConstCastAsync();
+    public abstract ValueTask<double> GetConstCastAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetConstCastAsync(double value);
+    public abstract ValueTask SetConstCastAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetConstevalAsync();
+    public abstract ValueTask<double> GetConstevalAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetConstevalAsync(double value);
+    public abstract ValueTask SetConstevalAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetConstexprAsync();
+    public abstract ValueTask<double> GetConstexprAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetConstexprAsync(double value);
+    public abstract ValueTask SetConstexprAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetConstinitAsync();
+    public abstract ValueTask<double> GetConstinitAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetConstinitAsync(double value);
+    public abstract ValueTask SetConstinitAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetContinueAsync();
+    public abstract ValueTask<double> GetContinueAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetContinueAsync(double value);
+    public abstract ValueTask SetContinueAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetDecltypeAsync();
+    public abstract ValueTask<double> GetDecltypeAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetDecltypeAsync(double value);
+    public abstract ValueTask SetDecltypeAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetDefaultAsync();
+    public abstract ValueTask<double> GetDefaultAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetDefaultAsync(double value);
+    public abstract ValueTask SetDefaultAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetDeleteAsync();
+    public abstract ValueTask<double> GetDeleteAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetDeleteAsync(double value);
+    public abstract ValueTask SetDeleteAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetDoAsync();
+    public abstract ValueTask<double> GetDoAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetDoAsync(double value);
+    public abstract ValueTask SetDoAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetDynamicCastAsync();
+    public abstract ValueTask<double> GetDynamicCastAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetDynamicCastAsync(double value);
+    public abstract ValueTask SetDynamicCastAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetElseAsync();
+    public abstract ValueTask<double> GetElseAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetElseAsync(double value);
+    public abstract ValueTask SetElseAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetExplicitAsync();
+    public abstract ValueTask<double> GetExplicitAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetExplicitAsync(double value);
+    public abstract ValueTask SetExplicitAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetExportAsync();
+    public abstract ValueTask<double> GetExportAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetExportAsync(double value);
+    public abstract ValueTask SetExportAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetExternAsync();
+    public abstract ValueTask<double> GetExternAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetExternAsync(double value);
+    public abstract ValueTask SetExternAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetFalseAsync();
+    public abstract ValueTask<double> GetFalseAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetFalseAsync(double value);
+    public abstract ValueTask SetFalseAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetFloatAsync();
+    public abstract ValueTask<double> GetFloatAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetFloatAsync(double value);
+    public abstract ValueTask SetFloatAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetForAsync();
+    public abstract ValueTask<double> GetForAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetForAsync(double value);
+    public abstract ValueTask SetForAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetFriendAsync();
+    public abstract ValueTask<double> GetFriendAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetFriendAsync(double value);
+    public abstract ValueTask SetFriendAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetGotoAsync();
+    public abstract ValueTask<double> GetGotoAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetGotoAsync(double value);
+    public abstract ValueTask SetGotoAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetIfAsync();
+    public abstract ValueTask<double> GetIfAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetIfAsync(double value);
+    public abstract ValueTask SetIfAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetInlineAsync();
+    public abstract ValueTask<double> GetInlineAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetInlineAsync(double value);
+    public abstract ValueTask SetInlineAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetIntAsync();
+    public abstract ValueTask<double> GetIntAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetIntAsync(double value);
+    public abstract ValueTask SetIntAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetLongAsync();
+    public abstract ValueTask<double> GetLongAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetLongAsync(double value);
+    public abstract ValueTask SetLongAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetMutableAsync();
+    public abstract ValueTask<double> GetMutableAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetMutableAsync(double value);
+    public abstract ValueTask SetMutableAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetNamespaceAsync();
+    public abstract ValueTask<double> GetNamespaceAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetNamespaceAsync(double value);
+    public abstract ValueTask SetNamespaceAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetNewAsync();
+    public abstract ValueTask<double> GetNewAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetNewAsync(double value);
+    public abstract ValueTask SetNewAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetNoexceptAsync();
+    public abstract ValueTask<double> GetNoexceptAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetNoexceptAsync(double value);
+    public abstract ValueTask SetNoexceptAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetNotAsync();
+    public abstract ValueTask<double> GetNotAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetNotAsync(double value);
+    public abstract ValueTask SetNotAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetNotEqAsync();
+    public abstract ValueTask<double> GetNotEqAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetNotEqAsync(double value);
+    public abstract ValueTask SetNotEqAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetNullptrAsync();
+    public abstract ValueTask<double> GetNullptrAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetNullptrAsync(double value);
+    public abstract ValueTask SetNullptrAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetOperatorAsync();
+    public abstract ValueTask<double> GetOperatorAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetOperatorAsync(double value);
+    public abstract ValueTask SetOperatorAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetOrAsync();
+    public abstract ValueTask<double> GetOrAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetOrAsync(double value);
+    public abstract ValueTask SetOrAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetOrEqAsync();
+    public abstract ValueTask<double> GetOrEqAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetOrEqAsync(double value);
+    public abstract ValueTask SetOrEqAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetPrivateAsync();
+    public abstract ValueTask<double> GetPrivateAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetPrivateAsync(double value);
+    public abstract ValueTask SetPrivateAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetProtectedAsync();
+    public abstract ValueTask<double> GetProtectedAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetProtectedAsync(double value);
+    public abstract ValueTask SetProtectedAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetPublicAsync();
+    public abstract ValueTask<double> GetPublicAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetPublicAsync(double value);
+    public abstract ValueTask SetPublicAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetRegisterAsync();
+    public abstract ValueTask<double> GetRegisterAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetRegisterAsync(double value);
+    public abstract ValueTask SetRegisterAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetReinterpretCastAsync();
+    public abstract ValueTask<double> GetReinterpretCastAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetReinterpretCastAsync(double value);
+    public abstract ValueTask SetReinterpretCastAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetRequiresAsync();
+    public abstract ValueTask<double> GetRequiresAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetRequiresAsync(double value);
+    public abstract ValueTask SetRequiresAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetReturnAsync();
+    public abstract ValueTask<double> GetReturnAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetReturnAsync(double value);
+    public abstract ValueTask SetReturnAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetShortAsync();
+    public abstract ValueTask<double> GetShortAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetShortAsync(double value);
+    public abstract ValueTask SetShortAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetSignedAsync();
+    public abstract ValueTask<double> GetSignedAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetSignedAsync(double value);
+    public abstract ValueTask SetSignedAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetSizeofAsync();
+    public abstract ValueTask<double> GetSizeofAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetSizeofAsync(double value);
+    public abstract ValueTask SetSizeofAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetStaticAsync();
+    public abstract ValueTask<double> GetStaticAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetStaticAsync(double value);
+    public abstract ValueTask SetStaticAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetStaticAssertAsync();
+    public abstract ValueTask<double> GetStaticAssertAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetStaticAssertAsync(double value);
+    public abstract ValueTask SetStaticAssertAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetStaticCastAsync();
+    public abstract ValueTask<double> GetStaticCastAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetStaticCastAsync(double value);
+    public abstract ValueTask SetStaticCastAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetSwitchAsync();
+    public abstract ValueTask<double> GetSwitchAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetSwitchAsync(double value);
+    public abstract ValueTask SetSwitchAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetTemplateAsync();
+    public abstract ValueTask<double> GetTemplateAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetTemplateAsync(double value);
+    public abstract ValueTask SetTemplateAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetThreadLocalAsync();
+    public abstract ValueTask<double> GetThreadLocalAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetThreadLocalAsync(double value);
+    public abstract ValueTask SetThreadLocalAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetThrowAsync();
+    public abstract ValueTask<double> GetThrowAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetThrowAsync(double value);
+    public abstract ValueTask SetThrowAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetTrueAsync();
+    public abstract ValueTask<double> GetTrueAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetTrueAsync(double value);
+    public abstract ValueTask SetTrueAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetTryAsync();
+    public abstract ValueTask<double> GetTryAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetTryAsync(double value);
+    public abstract ValueTask SetTryAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetTypedefAsync();
+    public abstract ValueTask<double> GetTypedefAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetTypedefAsync(double value);
+    public abstract ValueTask SetTypedefAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetTypeidAsync();
+    public abstract ValueTask<double> GetTypeidAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetTypeidAsync(double value);
+    public abstract ValueTask SetTypeidAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetTypenameAsync();
+    public abstract ValueTask<double> GetTypenameAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetTypenameAsync(double value);
+    public abstract ValueTask SetTypenameAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetUnionAsync();
+    public abstract ValueTask<double> GetUnionAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetUnionAsync(double value);
+    public abstract ValueTask SetUnionAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetUnsignedAsync();
+    public abstract ValueTask<double> GetUnsignedAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetUnsignedAsync(double value);
+    public abstract ValueTask SetUnsignedAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetVirtualAsync();
+    public abstract ValueTask<double> GetVirtualAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetVirtualAsync(double value);
+    public abstract ValueTask SetVirtualAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetVolatileAsync();
+    public abstract ValueTask<double> GetVolatileAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetVolatileAsync(double value);
+    public abstract ValueTask SetVolatileAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetWcharTAsync();
+    public abstract ValueTask<double> GetWcharTAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetWcharTAsync(double value);
+    public abstract ValueTask SetWcharTAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetWhileAsync();
+    public abstract ValueTask<double> GetWhileAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetWhileAsync(double value);
+    public abstract ValueTask SetWhileAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetXorAsync();
+    public abstract ValueTask<double> GetXorAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetXorAsync(double value);
+    public abstract ValueTask SetXorAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetXorEqAsync();
+    public abstract ValueTask<double> GetXorEqAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetXorEqAsync(double value);
+    public abstract ValueTask SetXorEqAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetAssertAsync();
+    public abstract ValueTask<double> GetAssertAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetAssertAsync(double value);
+    public abstract ValueTask SetAssertAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetErrnoAsync();
+    public abstract ValueTask<double> GetErrnoAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetErrnoAsync(double value);
+    public abstract ValueTask SetErrnoAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetLinuxAsync();
+    public abstract ValueTask<double> GetLinuxAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetLinuxAsync(double value);
+    public abstract ValueTask SetLinuxAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetUnixAsync();
+    public abstract ValueTask<double> GetUnixAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetUnixAsync(double value);
+    public abstract ValueTask SetUnixAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetMajorAsync();
+    public abstract ValueTask<double> GetMajorAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetMajorAsync(double value);
+    public abstract ValueTask SetMajorAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetMinorAsync();
+    public abstract ValueTask<double> GetMinorAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetMinorAsync(double value);
+    public abstract ValueTask SetMinorAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetEofAsync();
+    public abstract ValueTask<double> GetEofAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetEofAsync(double value);
+    public abstract ValueTask SetEofAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetNullAsync();
+    public abstract ValueTask<double> GetNullAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetNullAsync(double value);
+    public abstract ValueTask SetNullAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetInfinityAsync();
+    public abstract ValueTask<double> GetInfinityAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetInfinityAsync(double value);
+    public abstract ValueTask SetInfinityAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetNanAsync();
+    public abstract ValueTask<double> GetNanAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetNanAsync(double value);
+    public abstract ValueTask SetNanAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetRandMaxAsync();
+    public abstract ValueTask<double> GetRandMaxAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetRandMaxAsync(double value);
+    public abstract ValueTask SetRandMaxAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetBufsizAsync();
+    public abstract ValueTask<double> GetBufsizAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetBufsizAsync(double value);
+    public abstract ValueTask SetBufsizAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetSigintAsync();
+    public abstract ValueTask<double> GetSigintAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetSigintAsync(double value);
+    public abstract ValueTask SetSigintAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetFinalAsync();
+    public abstract ValueTask<double> GetFinalAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetFinalAsync(double value);
+    public abstract ValueTask SetFinalAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetOverrideAsync();
+    public abstract ValueTask<double> GetOverrideAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetOverrideAsync(double value);
+    public abstract ValueTask SetOverrideAsync(double value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<double> GetModuleAsync();
+    public abstract ValueTask<double> GetModuleAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetModuleAsync(double value);
+    public abstract ValueTask SetModuleAsync(double value, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetAlignasAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetAlignasAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 0 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetAlignasAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetAlignasAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 1 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetAlignofAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetAlignofAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 1 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetAlignofAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetAlignofAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 2 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetAndAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetAndAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 2 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetAndAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetAndAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 3 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetAndEqAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetAndEqAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 3 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetAndEqAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetAndEqAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 4 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetAsmAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetAsmAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 4 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetAsmAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetAsmAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 5 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetAutoAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetAutoAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 5 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetAutoAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetAutoAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 6 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetBitandAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetBitandAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 6 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetBitandAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetBitandAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 7 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetBitorAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetBitorAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 7 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetBitorAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetBitorAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 8 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetBreakAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetBreakAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 8 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetBreakAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetBreakAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 9 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetCaseAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetCaseAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 9 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetCaseAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetCaseAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 10 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetCatchAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetCatchAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 10 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetCatchAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetCatchAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 11 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetCharAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetCharAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 11 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetCharAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetCharAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 12 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetChar16TAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetChar16TAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 12 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetChar16TAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetChar16TAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 13 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetChar32TAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetChar32TAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 13 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetChar32TAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetChar32TAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 14 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetChar8TAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetChar8TAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 14 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetChar8TAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetChar8TAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 15 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetClassAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetClassAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 15 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetClassAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetClassAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 16 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetCoAwaitAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetCoAwaitAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 16 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetCoAwaitAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetCoAwaitAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 17 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetCoReturnAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetCoReturnAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 17 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetCoReturnAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetCoReturnAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 18 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetCoYieldAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetCoYieldAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 18 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetCoYieldAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetCoYieldAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 19 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetComplAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetComplAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 19 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetComplAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetComplAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 20 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetConceptAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetConceptAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 20 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetConceptAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetConceptAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 21 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetConstAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetConstAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 21 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetConstAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetConstAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 22 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetConstCastAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetConstCastAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 22 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetConstCastAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetConstCastAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 23 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetConstevalAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetConstevalAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 23 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetConstevalAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetConstevalAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 24 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetConstexprAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetConstexprAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 24 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetConstexprAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetConstexprAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 25 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetConstinitAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetConstinitAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 25 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetConstinitAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetConstinitAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 26 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetContinueAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetContinueAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 26 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetContinueAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetContinueAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 27 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetDecltypeAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetDecltypeAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 27 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetDecltypeAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetDecltypeAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 28 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetDefaultAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetDefaultAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 28 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetDefaultAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetDefaultAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 29 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetDeleteAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetDeleteAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 29 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetDeleteAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetDeleteAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 30 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetDoAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetDoAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 30 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetDoAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetDoAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 31 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetDynamicCastAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetDynamicCastAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 31 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetDynamicCastAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetDynamicCastAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 32 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetElseAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetElseAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 32 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetElseAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetElseAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 33 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetExplicitAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetExplicitAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 33 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetExplicitAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetExplicitAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 34 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetExportAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetExportAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 34 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetExportAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetExportAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 35 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetExternAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetExternAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 35 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetExternAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetExternAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 36 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetFalseAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetFalseAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 36 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetFalseAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetFalseAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 37 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetFloatAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetFloatAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 37 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetFloatAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetFloatAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 38 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetForAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetForAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 38 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetForAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetForAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 39 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetFriendAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetFriendAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 39 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetFriendAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetFriendAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 40 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetGotoAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetGotoAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 40 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetGotoAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetGotoAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 41 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetIfAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetIfAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 41 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetIfAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetIfAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 42 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetInlineAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetInlineAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 42 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetInlineAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetInlineAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 43 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetIntAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetIntAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 43 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetIntAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetIntAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 44 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetLongAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetLongAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 44 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetLongAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetLongAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 45 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetMutableAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetMutableAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 45 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetMutableAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetMutableAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 46 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetNamespaceAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetNamespaceAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 46 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetNamespaceAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetNamespaceAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 47 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetNewAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetNewAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 47 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetNewAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetNewAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 48 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetNoexceptAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetNoexceptAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 48 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetNoexceptAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetNoexceptAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 49 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetNotAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetNotAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 49 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetNotAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetNotAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 50 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetNotEqAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetNotEqAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 50 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetNotEqAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetNotEqAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 51 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetNullptrAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetNullptrAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 51 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetNullptrAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetNullptrAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 52 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetOperatorAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetOperatorAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 52 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetOperatorAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetOperatorAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 53 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetOrAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetOrAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 53 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetOrAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetOrAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 54 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetOrEqAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetOrEqAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 54 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetOrEqAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetOrEqAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 55 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetPrivateAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetPrivateAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 55 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetPrivateAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetPrivateAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 56 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetProtectedAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetProtectedAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 56 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetProtectedAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetProtectedAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 57 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetPublicAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetPublicAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 57 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetPublicAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetPublicAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 58 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetRegisterAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetRegisterAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 58 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetRegisterAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetRegisterAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 59 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetReinterpretCastAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetReinterpretCastAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 59 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetReinterpretCastAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetReinterpretCastAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 60 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetRequiresAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetRequiresAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 60 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetRequiresAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetRequiresAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 61 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetReturnAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetReturnAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 61 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetReturnAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetReturnAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 62 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetShortAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetShortAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 62 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetShortAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetShortAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 63 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetSignedAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetSignedAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 63 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetSignedAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetSignedAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 64 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetSizeofAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetSizeofAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 64 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetSizeofAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetSizeofAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 65 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetStaticAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetStaticAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 65 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetStaticAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetStaticAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 66 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetStaticAssertAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetStaticAssertAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 66 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetStaticAssertAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetStaticAssertAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 67 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetStaticCastAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetStaticCastAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 67 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetStaticCastAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetStaticCastAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 68 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetSwitchAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetSwitchAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 68 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetSwitchAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetSwitchAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 69 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetTemplateAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetTemplateAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 69 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetTemplateAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetTemplateAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 70 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetThreadLocalAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetThreadLocalAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 70 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetThreadLocalAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetThreadLocalAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 71 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetThrowAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetThrowAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 71 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetThrowAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetThrowAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 72 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetTrueAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetTrueAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 72 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetTrueAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetTrueAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 73 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetTryAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetTryAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 73 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetTryAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetTryAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 74 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetTypedefAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetTypedefAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 74 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetTypedefAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetTypedefAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 75 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetTypeidAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetTypeidAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 75 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetTypeidAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetTypeidAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 76 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetTypenameAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetTypenameAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 76 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetTypenameAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetTypenameAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 77 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetUnionAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetUnionAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 77 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetUnionAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetUnionAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 78 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetUnsignedAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetUnsignedAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 78 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetUnsignedAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetUnsignedAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 79 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetVirtualAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetVirtualAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 79 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetVirtualAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetVirtualAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 80 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetVolatileAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetVolatileAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 80 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetVolatileAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetVolatileAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 81 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetWcharTAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetWcharTAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 81 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetWcharTAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetWcharTAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 82 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetWhileAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetWhileAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 82 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetWhileAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetWhileAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 83 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetXorAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetXorAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 83 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetXorAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetXorAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 84 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetXorEqAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetXorEqAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 84 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetXorEqAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetXorEqAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 85 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetAssertAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetAssertAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 85 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetAssertAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetAssertAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 86 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetErrnoAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetErrnoAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 86 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetErrnoAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetErrnoAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 87 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetLinuxAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetLinuxAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 87 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetLinuxAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetLinuxAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 88 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetUnixAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetUnixAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 88 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetUnixAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetUnixAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 89 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetMajorAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetMajorAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 89 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetMajorAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetMajorAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 90 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetMinorAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetMinorAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 90 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetMinorAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetMinorAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 91 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetEofAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetEofAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 91 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetEofAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetEofAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 92 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetNullAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetNullAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 92 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetNullAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetNullAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 93 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetInfinityAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetInfinityAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 93 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetInfinityAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetInfinityAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 94 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetNanAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetNanAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 94 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetNanAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetNanAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 95 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetRandMaxAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetRandMaxAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 95 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetRandMaxAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetRandMaxAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 96 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetBufsizAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetBufsizAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 96 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetBufsizAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetBufsizAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 97 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetSigintAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetSigintAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 97 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetSigintAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetSigintAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 98 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetFinalAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetFinalAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 98 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetFinalAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetFinalAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 99 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetOverrideAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetOverrideAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 99 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetOverrideAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetOverrideAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             case 100 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetModuleAsync(), ValueCodec.Double);
+                return rrRequest.AnswerAsync(GetModuleAsync(rrRequest.Cancelled), ValueCodec.Double);
             case 100 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetModuleAsync(rrRequest.Argument(ValueCodec.Double)));
+                return rrRequest.AnswerAsync(SetModuleAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
         }
@@ -3440,610 +3440,610 @@ public class DeleteDefault : DeleteSkeleton
     protected Stored<double> RrStoredModule { get; } = new(default);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetAlignasAsync() => RrStoredAlignas.GetAsync();
+    public override ValueTask<double> GetAlignasAsync(CancellationToken cancellationToken = default) => RrStoredAlignas.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetAlignasAsync(double value) => RrStoredAlignas.SetAsync(value);
+    public override ValueTask SetAlignasAsync(double value, CancellationToken cancellationToken = default) => RrStoredAlignas.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetAlignofAsync() => RrStoredAlignof.GetAsync();
+    public override ValueTask<double> GetAlignofAsync(CancellationToken cancellationToken = default) => RrStoredAlignof.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetAlignofAsync(double value) => RrStoredAlignof.SetAsync(value);
+    public override ValueTask SetAlignofAsync(double value, CancellationToken cancellationToken = default) => RrStoredAlignof.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetAndAsync() => RrStoredAnd.GetAsync();
+    public override ValueTask<double> GetAndAsync(CancellationToken cancellationToken = default) => RrStoredAnd.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetAndAsync(double value) => RrStoredAnd.SetAsync(value);
+    public override ValueTask SetAndAsync(double value, CancellationToken cancellationToken = default) => RrStoredAnd.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetAndEqAsync() => RrStoredAndEq.GetAsync();
+    public override ValueTask<double> GetAndEqAsync(CancellationToken cancellationToken = default) => RrStoredAndEq.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetAndEqAsync(double value) => RrStoredAndEq.SetAsync(value);
+    public override ValueTask SetAndEqAsync(double value, CancellationToken cancellationToken = default) => RrStoredAndEq.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetAsmAsync() => RrStoredAsm.GetAsync();
+    public override ValueTask<double> GetAsmAsync(CancellationToken cancellationToken = default) => RrStoredAsm.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetAsmAsync(double value) => RrStoredAsm.SetAsync(value);
+    public override ValueTask SetAsmAsync(double value, CancellationToken cancellationToken = default) => RrStoredAsm.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetAutoAsync() => RrStoredAuto.GetAsync();
+    public override ValueTask<double> GetAutoAsync(CancellationToken cancellationToken = default) => RrStoredAuto.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetAutoAsync(double value) => RrStoredAuto.SetAsync(value);
+    public override ValueTask SetAutoAsync(double value, CancellationToken cancellationToken = default) => RrStoredAuto.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetBitandAsync() => RrStoredBitand.GetAsync();
+    public override ValueTask<double> GetBitandAsync(CancellationToken cancellationToken = default) => RrStoredBitand.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetBitandAsync(double value) => RrStoredBitand.SetAsync(value);
+    public override ValueTask SetBitandAsync(double value, CancellationToken cancellationToken = default) => RrStoredBitand.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetBitorAsync() => RrStoredBitor.GetAsync();
+    public override ValueTask<double> GetBitorAsync(CancellationToken cancellationToken = default) => RrStoredBitor.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetBitorAsync(double value) => RrStoredBitor.SetAsync(value);
+    public override ValueTask SetBitorAsync(double value, CancellationToken cancellationToken = default) => RrStoredBitor.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetBreakAsync() => RrStoredBreak.GetAsync();
+    public override ValueTask<double> GetBreakAsync(CancellationToken cancellationToken = default) => RrStoredBreak.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetBreakAsync(double value) => RrStoredBreak.SetAsync(value);
+    public override ValueTask SetBreakAsync(double value, CancellationToken cancellationToken = default) => RrStoredBreak.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetCaseAsync() => RrStoredCase.GetAsync();
+    public override ValueTask<double> GetCaseAsync(CancellationToken cancellationToken = default) => RrStoredCase.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetCaseAsync(double value) => RrStoredCase.SetAsync(value);
+    public override ValueTask SetCaseAsync(double value, CancellationToken cancellationToken = default) => RrStoredCase.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetCatchAsync() => RrStoredCatch.GetAsync();
+    public override ValueTask<double> GetCatchAsync(CancellationToken cancellationToken = default) => RrStoredCatch.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetCatchAsync(double value) => RrStoredCatch.SetAsync(value);
+    public override ValueTask SetCatchAsync(double value, CancellationToken cancellationToken = default) => RrStoredCatch.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetCharAsync() => RrStoredChar.GetAsync();
+    public override ValueTask<double> GetCharAsync(CancellationToken cancellationToken = default) => RrStoredChar.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetCharAsync(double value) => RrStoredChar.SetAsync(value);
+    public override ValueTask SetCharAsync(double value, CancellationToken cancellationToken = default) => RrStoredChar.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetChar16TAsync() => RrStoredChar16T.GetAsync();
+    public override ValueTask<double> GetChar16TAsync(CancellationToken cancellationToken = default) => RrStoredChar16T.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetChar16TAsync(double value) => RrStoredChar16T.SetAsync(value);
+    public override ValueTask SetChar16TAsync(double value, CancellationToken cancellationToken = default) => RrStoredChar16T.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetChar32TAsync() => RrStoredChar32T.GetAsync();
+    public override ValueTask<double> GetChar32TAsync(CancellationToken cancellationToken = default) => RrStoredChar32T.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetChar32TAsync(double value) => RrStoredChar32T.SetAsync(value);
+    public override ValueTask SetChar32TAsync(double value, CancellationToken cancellationToken = default) => RrStoredChar32T.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetChar8TAsync() => RrStoredChar8T.GetAsync();
+    public override ValueTask<double> GetChar8TAsync(CancellationToken cancellationToken = default) => RrStoredChar8T.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetChar8TAsync(double value) => RrStoredChar8T.SetAsync(value);
+    public override ValueTask SetChar8TAsync(double value, CancellationToken cancellationToken = default) => RrStoredChar8T.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetClassAsync() => RrStoredClass.GetAsync();
+    public override ValueTask<double> GetClassAsync(CancellationToken cancellationToken = default) => RrStoredClass.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetClassAsync(double value) => RrStoredClass.SetAsync(value);
+    public override ValueTask SetClassAsync(double value, CancellationToken cancellationToken = default) => RrStoredClass.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetCoAwaitAsync() => RrStoredCoAwait.GetAsync();
+    public override ValueTask<double> GetCoAwaitAsync(CancellationToken cancellationToken = default) => RrStoredCoAwait.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetCoAwaitAsync(double value) => RrStoredCoAwait.SetAsync(value);
+    public override ValueTask SetCoAwaitAsync(double value, CancellationToken cancellationToken = default) => RrStoredCoAwait.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetCoReturnAsync() => RrStoredCoReturn.GetAsync();
+    public override ValueTask<double> GetCoReturnAsync(CancellationToken cancellationToken = default) => RrStoredCoReturn.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetCoReturnAsync(double value) => RrStoredCoReturn.SetAsync(value);
+    public override ValueTask SetCoReturnAsync(double value, CancellationToken cancellationToken = default) => RrStoredCoReturn.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetCoYieldAsync() => RrStoredCoYield.GetAsync();
+    public override ValueTask<double> GetCoYieldAsync(CancellationToken cancellationToken = default) => RrStoredCoYield.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetCoYieldAsync(double value) => RrStoredCoYield.SetAsync(value);
+    public override ValueTask SetCoYieldAsync(double value, CancellationToken cancellationToken = default) => RrStoredCoYield.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetComplAsync() => RrStoredCompl.GetAsync();
+    public override ValueTask<double> GetComplAsync(CancellationToken cancellationToken = default) => RrStoredCompl.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetComplAsync(double value) => RrStoredCompl.SetAsync(value);
+    public override ValueTask SetComplAsync(double value, CancellationToken cancellationToken = default) => RrStoredCompl.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetConceptAsync() => RrStoredConcept.GetAsync();
+    public override ValueTask<double> GetConceptAsync(CancellationToken cancellationToken = default) => RrStoredConcept.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetConceptAsync(double value) => RrStoredConcept.SetAsync(value);
+    public override ValueTask SetConceptAsync(double value, CancellationToken cancellationToken = default) => RrStoredConcept.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetConstAsync() => RrStoredConst.GetAsync();
+    public override ValueTask<double> GetConstAsync(CancellationToken cancellationToken = default) => RrStoredConst.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetConstAsync(double value) => RrStoredConst.SetAsync(value);
+    public override ValueTask SetConstAsync(double value, CancellationToken cancellationToken = default) => RrStoredConst.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetConstCastAsync() => RrStoredConstCast.GetAsync();
+    public override ValueTask<double> GetConstCastAsync(CancellationToken cancellationToken = default) => RrStoredConstCast.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetConstCastAsync(double value) => RrStoredConstCast.SetAsync(value);
+    public override ValueTask SetConstCastAsync(double value, CancellationToken cancellationToken = default) => RrStoredConstCast.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetConstevalAsync() => RrStoredConsteval.GetAsync();
+    public override ValueTask<double> GetConstevalAsync(CancellationToken cancellationToken = default) => RrStoredConsteval.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetConstevalAsync(double value) => RrStoredConsteval.SetAsync(value);
+    public override ValueTask SetConstevalAsync(double value, CancellationToken cancellationToken = default) => RrStoredConsteval.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetConstexprAsync() => RrStoredConstexpr.GetAsync();
+    public override ValueTask<double> GetConstexprAsync(CancellationToken cancellationToken = default) => RrStoredConstexpr.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetConstexprAsync(double value) => RrStoredConstexpr.SetAsync(value);
+    public override ValueTask SetConstexprAsync(double value, CancellationToken cancellationToken = default) => RrStoredConstexpr.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetConstinitAsync() => RrStoredConstinit.GetAsync();
+    public override ValueTask<double> GetConstinitAsync(CancellationToken cancellationToken = default) => RrStoredConstinit.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetConstinitAsync(double value) => RrStoredConstinit.SetAsync(value);
+    public override ValueTask SetConstinitAsync(double value, CancellationToken cancellationToken = default) => RrStoredConstinit.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetContinueAsync() => RrStoredContinue.GetAsync();
+    public override ValueTask<double> GetContinueAsync(CancellationToken cancellationToken = default) => RrStoredContinue.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetContinueAsync(double value) => RrStoredContinue.SetAsync(value);
+    public override ValueTask SetContinueAsync(double value, CancellationToken cancellationToken = default) => RrStoredContinue.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetDecltypeAsync() => RrStoredDecltype.GetAsync();
+    public override ValueTask<double> GetDecltypeAsync(CancellationToken cancellationToken = default) => RrStoredDecltype.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetDecltypeAsync(double value) => RrStoredDecltype.SetAsync(value);
+    public override ValueTask SetDecltypeAsync(double value, CancellationToken cancellationToken = default) => RrStoredDecltype.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetDefaultAsync() => RrStoredDefault.GetAsync();
+    public override ValueTask<double> GetDefaultAsync(CancellationToken cancellationToken = default) => RrStoredDefault.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetDefaultAsync(double value) => RrStoredDefault.SetAsync(value);
+    public override ValueTask SetDefaultAsync(double value, CancellationToken cancellationToken = default) => RrStoredDefault.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetDeleteAsync() => RrStoredDelete.GetAsync();
+    public override ValueTask<double> GetDeleteAsync(CancellationToken cancellationToken = default) => RrStoredDelete.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetDeleteAsync(double value) => RrStoredDelete.SetAsync(value);
+    public override ValueTask SetDeleteAsync(double value, CancellationToken cancellationToken = default) => RrStoredDelete.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetDoAsync() => RrStoredDo.GetAsync();
+    public override ValueTask<double> GetDoAsync(CancellationToken cancellationToken = default) => RrStoredDo.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetDoAsync(double value) => RrStoredDo.SetAsync(value);
+    public override ValueTask SetDoAsync(double value, CancellationToken cancellationToken = default) => RrStoredDo.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetDynamicCastAsync() => RrStoredDynamicCast.GetAsync();
+    public override ValueTask<double> GetDynamicCastAsync(CancellationToken cancellationToken = default) => RrStoredDynamicCast.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetDynamicCastAsync(double value) => RrStoredDynamicCast.SetAsync(value);
+    public override ValueTask SetDynamicCastAsync(double value, CancellationToken cancellationToken = default) => RrStoredDynamicCast.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetElseAsync() => RrStoredElse.GetAsync();
+    public override ValueTask<double> GetElseAsync(CancellationToken cancellationToken = default) => RrStoredElse.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetElseAsync(double value) => RrStoredElse.SetAsync(value);
+    public override ValueTask SetElseAsync(double value, CancellationToken cancellationToken = default) => RrStoredElse.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetExplicitAsync() => RrStoredExplicit.GetAsync();
+    public override ValueTask<double> GetExplicitAsync(CancellationToken cancellationToken = default) => RrStoredExplicit.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetExplicitAsync(double value) => RrStoredExplicit.SetAsync(value);
+    public override ValueTask SetExplicitAsync(double value, CancellationToken cancellationToken = default) => RrStoredExplicit.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetExportAsync() => RrStoredExport.GetAsync();
+    public override ValueTask<double> GetExportAsync(CancellationToken cancellationToken = default) => RrStoredExport.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetExportAsync(double value) => RrStoredExport.SetAsync(value);
+    public override ValueTask SetExportAsync(double value, CancellationToken cancellationToken = default) => RrStoredExport.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetExternAsync() => RrStoredExtern.GetAsync();
+    public override ValueTask<double> GetExternAsync(CancellationToken cancellationToken = default) => RrStoredExtern.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetExternAsync(double value) => RrStoredExtern.SetAsync(value);
+    public override ValueTask SetExternAsync(double value, CancellationToken cancellationToken = default) => RrStoredExtern.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetFalseAsync() => RrStoredFalse.GetAsync();
+    public override ValueTask<double> GetFalseAsync(CancellationToken cancellationToken = default) => RrStoredFalse.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetFalseAsync(double value) => RrStoredFalse.SetAsync(value);
+    public override ValueTask SetFalseAsync(double value, CancellationToken cancellationToken = default) => RrStoredFalse.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetFloatAsync() => RrStoredFloat.GetAsync();
+    public override ValueTask<double> GetFloatAsync(CancellationToken cancellationToken = default) => RrStoredFloat.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetFloatAsync(double value) => RrStoredFloat.SetAsync(value);
+    public override ValueTask SetFloatAsync(double value, CancellationToken cancellationToken = default) => RrStoredFloat.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetForAsync() => RrStoredFor.GetAsync();
+    public override ValueTask<double> GetForAsync(CancellationToken cancellationToken = default) => RrStoredFor.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetForAsync(double value) => RrStoredFor.SetAsync(value);
+    public override ValueTask SetForAsync(double value, CancellationToken cancellationToken = default) => RrStoredFor.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetFriendAsync() => RrStoredFriend.GetAsync();
+    public override ValueTask<double> GetFriendAsync(CancellationToken cancellationToken = default) => RrStoredFriend.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetFriendAsync(double value) => RrStoredFriend.SetAsync(value);
+    public override ValueTask SetFriendAsync(double value, CancellationToken cancellationToken = default) => RrStoredFriend.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetGotoAsync() => RrStoredGoto.GetAsync();
+    public override ValueTask<double> GetGotoAsync(CancellationToken cancellationToken = default) => RrStoredGoto.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetGotoAsync(double value) => RrStoredGoto.SetAsync(value);
+    public override ValueTask SetGotoAsync(double value, CancellationToken cancellationToken = default) => RrStoredGoto.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetIfAsync() => RrStoredIf.GetAsync();
+    public override ValueTask<double> GetIfAsync(CancellationToken cancellationToken = default) => RrStoredIf.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetIfAsync(double value) => RrStoredIf.SetAsync(value);
+    public override ValueTask SetIfAsync(double value, CancellationToken cancellationToken = default) => RrStoredIf.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetInlineAsync() => RrStoredInline.GetAsync();
+    public override ValueTask<double> GetInlineAsync(CancellationToken cancellationToken = default) => RrStoredInline.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetInlineAsync(double value) => RrStoredInline.SetAsync(value);
+    public override ValueTask SetInlineAsync(double value, CancellationToken cancellationToken = default) => RrStoredInline.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetIntAsync() => RrStoredInt.GetAsync();
+    public override ValueTask<double> GetIntAsync(CancellationToken cancellationToken = default) => RrStoredInt.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetIntAsync(double value) => RrStoredInt.SetAsync(value);
+    public override ValueTask SetIntAsync(double value, CancellationToken cancellationToken = default) => RrStoredInt.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetLongAsync() => RrStoredLong.GetAsync();
+    public override ValueTask<double> GetLongAsync(CancellationToken cancellationToken = default) => RrStoredLong.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetLongAsync(double value) => RrStoredLong.SetAsync(value);
+    public override ValueTask SetLongAsync(double value, CancellationToken cancellationToken = default) => RrStoredLong.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetMutableAsync() => RrStoredMutable.GetAsync();
+    public override ValueTask<double> GetMutableAsync(CancellationToken cancellationToken = default) => RrStoredMutable.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetMutableAsync(double value) => RrStoredMutable.SetAsync(value);
+    public override ValueTask SetMutableAsync(double value, CancellationToken cancellationToken = default) => RrStoredMutable.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetNamespaceAsync() => RrStoredNamespace.GetAsync();
+    public override ValueTask<double> GetNamespaceAsync(CancellationToken cancellationToken = default) => RrStoredNamespace.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetNamespaceAsync(double value) => RrStoredNamespace.SetAsync(value);
+    public override ValueTask SetNamespaceAsync(double value, CancellationToken cancellationToken = default) => RrStoredNamespace.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetNewAsync() => RrStoredNew.GetAsync();
+    public override ValueTask<double> GetNewAsync(CancellationToken cancellationToken = default) => RrStoredNew.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetNewAsync(double value) => RrStoredNew.SetAsync(value);
+    public override ValueTask SetNewAsync(double value, CancellationToken cancellationToken = default) => RrStoredNew.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetNoexceptAsync() => RrStoredNoexcept.GetAsync();
+    public override ValueTask<double> GetNoexceptAsync(CancellationToken cancellationToken = default) => RrStoredNoexcept.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetNoexceptAsync(double value) => RrStoredNoexcept.SetAsync(value);
+    public override ValueTask SetNoexceptAsync(double value, CancellationToken cancellationToken = default) => RrStoredNoexcept.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetNotAsync() => RrStoredNot.GetAsync();
+    public override ValueTask<double> GetNotAsync(CancellationToken cancellationToken = default) => RrStoredNot.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetNotAsync(double value) => RrStoredNot.SetAsync(value);
+    public override ValueTask SetNotAsync(double value, CancellationToken cancellationToken = default) => RrStoredNot.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetNotEqAsync() => RrStoredNotEq.GetAsync();
+    public override ValueTask<double> GetNotEqAsync(CancellationToken cancellationToken = default) => RrStoredNotEq.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetNotEqAsync(double value) => RrStoredNotEq.SetAsync(value);
+    public override ValueTask SetNotEqAsync(double value, CancellationToken cancellationToken = default) => RrStoredNotEq.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetNullptrAsync() => RrStoredNullptr.GetAsync();
+    public override ValueTask<double> GetNullptrAsync(CancellationToken cancellationToken = default) => RrStoredNullptr.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetNullptrAsync(double value) => RrStoredNullptr.SetAsync(value);
+    public override ValueTask SetNullptrAsync(double value, CancellationToken cancellationToken = default) => RrStoredNullptr.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetOperatorAsync() => RrStoredOperator.GetAsync();
+    public override ValueTask<double> GetOperatorAsync(CancellationToken cancellationToken = default) => RrStoredOperator.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetOperatorAsync(double value) => RrStoredOperator.SetAsync(value);
+    public override ValueTask SetOperatorAsync(double value, CancellationToken cancellationToken = default) => RrStoredOperator.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetOrAsync() => RrStoredOr.GetAsync();
+    public override ValueTask<double> GetOrAsync(CancellationToken cancellationToken = default) => RrStoredOr.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetOrAsync(double value) => RrStoredOr.SetAsync(value);
+    public override ValueTask SetOrAsync(double value, CancellationToken cancellationToken = default) => RrStoredOr.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetOrEqAsync() => RrStoredOrEq.GetAsync();
+    public override ValueTask<double> GetOrEqAsync(CancellationToken cancellationToken = default) => RrStoredOrEq.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetOrEqAsync(double value) => RrStoredOrEq.SetAsync(value);
+    public override ValueTask SetOrEqAsync(double value, CancellationToken cancellationToken = default) => RrStoredOrEq.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetPrivateAsync() => RrStoredPrivate.GetAsync();
+    public override ValueTask<double> GetPrivateAsync(CancellationToken cancellationToken = default) => RrStoredPrivate.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetPrivateAsync(double value) => RrStoredPrivate.SetAsync(value);
+    public override ValueTask SetPrivateAsync(double value, CancellationToken cancellationToken = default) => RrStoredPrivate.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetProtectedAsync() => RrStoredProtected.GetAsync();
+    public override ValueTask<double> GetProtectedAsync(CancellationToken cancellationToken = default) => RrStoredProtected.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetProtectedAsync(double value) => RrStoredProtected.SetAsync(value);
+    public override ValueTask SetProtectedAsync(double value, CancellationToken cancellationToken = default) => RrStoredProtected.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetPublicAsync() => RrStoredPublic.GetAsync();
+    public override ValueTask<double> GetPublicAsync(CancellationToken cancellationToken = default) => RrStoredPublic.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetPublicAsync(double value) => RrStoredPublic.SetAsync(value);
+    public override ValueTask SetPublicAsync(double value, CancellationToken cancellationToken = default) => RrStoredPublic.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetRegisterAsync() => RrStoredRegister.GetAsync();
+    public override ValueTask<double> GetRegisterAsync(CancellationToken cancellationToken = default) => RrStoredRegister.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetRegisterAsync(double value) => RrStoredRegister.SetAsync(value);
+    public override ValueTask SetRegisterAsync(double value, CancellationToken cancellationToken = default) => RrStoredRegister.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetReinterpretCastAsync() => RrStoredReinterpretCast.GetAsync();
+    public override ValueTask<double> GetReinterpretCastAsync(CancellationToken cancellationToken = default) => RrStoredReinterpretCast.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetReinterpretCastAsync(double value) => RrStoredReinterpretCast.SetAsync(value);
+    public override ValueTask SetReinterpretCastAsync(double value, CancellationToken cancellationToken = default) => RrStoredReinterpretCast.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetRequiresAsync() => RrStoredRequires.GetAsync();
+    public override ValueTask<double> GetRequiresAsync(CancellationToken cancellationToken = default) => RrStoredRequires.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetRequiresAsync(double value) => RrStoredRequires.SetAsync(value);
+    public override ValueTask SetRequiresAsync(double value, CancellationToken cancellationToken = default) => RrStoredRequires.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetReturnAsync() => RrStoredReturn.GetAsync();
+    public override ValueTask<double> GetReturnAsync(CancellationToken cancellationToken = default) => RrStoredReturn.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetReturnAsync(double value) => RrStoredReturn.SetAsync(value);
+    public override ValueTask SetReturnAsync(double value, CancellationToken cancellationToken = default) => RrStoredReturn.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetShortAsync() => RrStoredShort.GetAsync();
+    public override ValueTask<double> GetShortAsync(CancellationToken cancellationToken = default) => RrStoredShort.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetShortAsync(double value) => RrStoredShort.SetAsync(value);
+    public override ValueTask SetShortAsync(double value, CancellationToken cancellationToken = default) => RrStoredShort.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetSignedAsync() => RrStoredSigned.GetAsync();
+    public override ValueTask<double> GetSignedAsync(CancellationToken cancellationToken = default) => RrStoredSigned.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetSignedAsync(double value) => RrStoredSigned.SetAsync(value);
+    public override ValueTask SetSignedAsync(double value, CancellationToken cancellationToken = default) => RrStoredSigned.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetSizeofAsync() => RrStoredSizeof.GetAsync();
+    public override ValueTask<double> GetSizeofAsync(CancellationToken cancellationToken = default) => RrStoredSizeof.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetSizeofAsync(double value) => RrStoredSizeof.SetAsync(value);
+    public override ValueTask SetSizeofAsync(double value, CancellationToken cancellationToken = default) => RrStoredSizeof.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetStaticAsync() => RrStoredStatic.GetAsync();
+    public override ValueTask<double> GetStaticAsync(CancellationToken cancellationToken = default) => RrStoredStatic.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetStaticAsync(double value) => RrStoredStatic.SetAsync(value);
+    public override ValueTask SetStaticAsync(double value, CancellationToken cancellationToken = default) => RrStoredStatic.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetStaticAssertAsync() => RrStoredStaticAssert.GetAsync();
+    public override ValueTask<double> GetStaticAssertAsync(CancellationToken cancellationToken = default) => RrStoredStaticAssert.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetStaticAssertAsync(double value) => RrStoredStaticAssert.SetAsync(value);
+    public override ValueTask SetStaticAssertAsync(double value, CancellationToken cancellationToken = default) => RrStoredStaticAssert.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetStaticCastAsync() => RrStoredStaticCast.GetAsync();
+    public override ValueTask<double> GetStaticCastAsync(CancellationToken cancellationToken = default) => RrStoredStaticCast.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetStaticCastAsync(double value) => RrStoredStaticCast.SetAsync(value);
+    public override ValueTask SetStaticCastAsync(double value, CancellationToken cancellationToken = default) => RrStoredStaticCast.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetSwitchAsync() => RrStoredSwitch.GetAsync();
+    public override ValueTask<double> GetSwitchAsync(CancellationToken cancellationToken = default) => RrStoredSwitch.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetSwitchAsync(double value) => RrStoredSwitch.SetAsync(value);
+    public override ValueTask SetSwitchAsync(double value, CancellationToken cancellationToken = default) => RrStoredSwitch.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetTemplateAsync() => RrStoredTemplate.GetAsync();
+    public override ValueTask<double> GetTemplateAsync(CancellationToken cancellationToken = default) => RrStoredTemplate.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetTemplateAsync(double value) => RrStoredTemplate.SetAsync(value);
+    public override ValueTask SetTemplateAsync(double value, CancellationToken cancellationToken = default) => RrStoredTemplate.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetThreadLocalAsync() => RrStoredThreadLocal.GetAsync();
+    public override ValueTask<double> GetThreadLocalAsync(CancellationToken cancellationToken = default) => RrStoredThreadLocal.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetThreadLocalAsync(double value) => RrStoredThreadLocal.SetAsync(value);
+    public override ValueTask SetThreadLocalAsync(double value, CancellationToken cancellationToken = default) => RrStoredThreadLocal.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetThrowAsync() => RrStoredThrow.GetAsync();
+    public override ValueTask<double> GetThrowAsync(CancellationToken cancellationToken = default) => RrStoredThrow.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetThrowAsync(double value) => RrStoredThrow.SetAsync(value);
+    public override ValueTask SetThrowAsync(double value, CancellationToken cancellationToken = default) => RrStoredThrow.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetTrueAsync() => RrStoredTrue.GetAsync();
+    public override ValueTask<double> GetTrueAsync(CancellationToken cancellationToken = default) => RrStoredTrue.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetTrueAsync(double value) => RrStoredTrue.SetAsync(value);
+    public override ValueTask SetTrueAsync(double value, CancellationToken cancellationToken = default) => RrStoredTrue.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetTryAsync() => RrStoredTry.GetAsync();
+    public override ValueTask<double> GetTryAsync(CancellationToken cancellationToken = default) => RrStoredTry.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetTryAsync(double value) => RrStoredTry.SetAsync(value);
+    public override ValueTask SetTryAsync(double value, CancellationToken cancellationToken = default) => RrStoredTry.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetTypedefAsync() => RrStoredTypedef.GetAsync();
+    public override ValueTask<double> GetTypedefAsync(CancellationToken cancellationToken = default) => RrStoredTypedef.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetTypedefAsync(double value) => RrStoredTypedef.SetAsync(value);
+    public override ValueTask SetTypedefAsync(double value, CancellationToken cancellationToken = default) => RrStoredTypedef.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetTypeidAsync() => RrStoredTypeid.GetAsync();
+    public override ValueTask<double> GetTypeidAsync(CancellationToken cancellationToken = default) => RrStoredTypeid.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetTypeidAsync(double value) => RrStoredTypeid.SetAsync(value);
+    public override ValueTask SetTypeidAsync(double value, CancellationToken cancellationToken = default) => RrStoredTypeid.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetTypenameAsync() => RrStoredTypename.GetAsync();
+    public override ValueTask<double> GetTypenameAsync(CancellationToken cancellationToken = default) => RrStoredTypename.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetTypenameAsync(double value) => RrStoredTypename.SetAsync(value);
+    public override ValueTask SetTypenameAsync(double value, CancellationToken cancellationToken = default) => RrStoredTypename.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetUnionAsync() => RrStoredUnion.GetAsync();
+    public override ValueTask<double> GetUnionAsync(CancellationToken cancellationToken = default) => RrStoredUnion.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetUnionAsync(double value) => RrStoredUnion.SetAsync(value);
+    public override ValueTask SetUnionAsync(double value, CancellationToken cancellationToken = default) => RrStoredUnion.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetUnsignedAsync() => RrStoredUnsigned.GetAsync();
+    public override ValueTask<double> GetUnsignedAsync(CancellationToken cancellationToken = default) => RrStoredUnsigned.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetUnsignedAsync(double value) => RrStoredUnsigned.SetAsync(value);
+    public override ValueTask SetUnsignedAsync(double value, CancellationToken cancellationToken = default) => RrStoredUnsigned.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetVirtualAsync() => RrStoredVirtual.GetAsync();
+    public override ValueTask<double> GetVirtualAsync(CancellationToken cancellationToken = default) => RrStoredVirtual.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetVirtualAsync(double value) => RrStoredVirtual.SetAsync(value);
+    public override ValueTask SetVirtualAsync(double value, CancellationToken cancellationToken = default) => RrStoredVirtual.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetVolatileAsync() => RrStoredVolatile.GetAsync();
+    public override ValueTask<double> GetVolatileAsync(CancellationToken cancellationToken = default) => RrStoredVolatile.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetVolatileAsync(double value) => RrStoredVolatile.SetAsync(value);
+    public override ValueTask SetVolatileAsync(double value, CancellationToken cancellationToken = default) => RrStoredVolatile.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetWcharTAsync() => RrStoredWcharT.GetAsync();
+    public override ValueTask<double> GetWcharTAsync(CancellationToken cancellationToken = default) => RrStoredWcharT.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetWcharTAsync(double value) => RrStoredWcharT.SetAsync(value);
+    public override ValueTask SetWcharTAsync(double value, CancellationToken cancellationToken = default) => RrStoredWcharT.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetWhileAsync() => RrStoredWhile.GetAsync();
+    public override ValueTask<double> GetWhileAsync(CancellationToken cancellationToken = default) => RrStoredWhile.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetWhileAsync(double value) => RrStoredWhile.SetAsync(value);
+    public override ValueTask SetWhileAsync(double value, CancellationToken cancellationToken = default) => RrStoredWhile.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetXorAsync() => RrStoredXor.GetAsync();
+    public override ValueTask<double> GetXorAsync(CancellationToken cancellationToken = default) => RrStoredXor.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetXorAsync(double value) => RrStoredXor.SetAsync(value);
+    public override ValueTask SetXorAsync(double value, CancellationToken cancellationToken = default) => RrStoredXor.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetXorEqAsync() => RrStoredXorEq.GetAsync();
+    public override ValueTask<double> GetXorEqAsync(CancellationToken cancellationToken = default) => RrStoredXorEq.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetXorEqAsync(double value) => RrStoredXorEq.SetAsync(value);
+    public override ValueTask SetXorEqAsync(double value, CancellationToken cancellationToken = default) => RrStoredXorEq.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetAssertAsync() => RrStoredAssert.GetAsync();
+    public override ValueTask<double> GetAssertAsync(CancellationToken cancellationToken = default) => RrStoredAssert.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetAssertAsync(double value) => RrStoredAssert.SetAsync(value);
+    public override ValueTask SetAssertAsync(double value, CancellationToken cancellationToken = default) => RrStoredAssert.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetErrnoAsync() => RrStoredErrno.GetAsync();
+    public override ValueTask<double> GetErrnoAsync(CancellationToken cancellationToken = default) => RrStoredErrno.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetErrnoAsync(double value) => RrStoredErrno.SetAsync(value);
+    public override ValueTask SetErrnoAsync(double value, CancellationToken cancellationToken = default) => RrStoredErrno.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetLinuxAsync() => RrStoredLinux.GetAsync();
+    public override ValueTask<double> GetLinuxAsync(CancellationToken cancellationToken = default) => RrStoredLinux.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetLinuxAsync(double value) => RrStoredLinux.SetAsync(value);
+    public override ValueTask SetLinuxAsync(double value, CancellationToken cancellationToken = default) => RrStoredLinux.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetUnixAsync() => RrStoredUnix.GetAsync();
+    public override ValueTask<double> GetUnixAsync(CancellationToken cancellationToken = default) => RrStoredUnix.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetUnixAsync(double value) => RrStoredUnix.SetAsync(value);
+    public override ValueTask SetUnixAsync(double value, CancellationToken cancellationToken = default) => RrStoredUnix.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetMajorAsync() => RrStoredMajor.GetAsync();
+    public override ValueTask<double> GetMajorAsync(CancellationToken cancellationToken = default) => RrStoredMajor.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetMajorAsync(double value) => RrStoredMajor.SetAsync(value);
+    public override ValueTask SetMajorAsync(double value, CancellationToken cancellationToken = default) => RrStoredMajor.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetMinorAsync() => RrStoredMinor.GetAsync();
+    public override ValueTask<double> GetMinorAsync(CancellationToken cancellationToken = default) => RrStoredMinor.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetMinorAsync(double value) => RrStoredMinor.SetAsync(value);
+    public override ValueTask SetMinorAsync(double value, CancellationToken cancellationToken = default) => RrStoredMinor.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetEofAsync() => RrStoredEof.GetAsync();
+    public override ValueTask<double> GetEofAsync(CancellationToken cancellationToken = default) => RrStoredEof.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetEofAsync(double value) => RrStoredEof.SetAsync(value);
+    public override ValueTask SetEofAsync(double value, CancellationToken cancellationToken = default) => RrStoredEof.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetNullAsync() => RrStoredNull.GetAsync();
+    public override ValueTask<double> GetNullAsync(CancellationToken cancellationToken = default) => RrStoredNull.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetNullAsync(double value) => RrStoredNull.SetAsync(value);
+    public override ValueTask SetNullAsync(double value, CancellationToken cancellationToken = default) => RrStoredNull.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetInfinityAsync() => RrStoredInfinity.GetAsync();
+    public override ValueTask<double> GetInfinityAsync(CancellationToken cancellationToken = default) => RrStoredInfinity.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetInfinityAsync(double value) => RrStoredInfinity.SetAsync(value);
+    public override ValueTask SetInfinityAsync(double value, CancellationToken cancellationToken = default) => RrStoredInfinity.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetNanAsync() => RrStoredNan.GetAsync();
+    public override ValueTask<double> GetNanAsync(CancellationToken cancellationToken = default) => RrStoredNan.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetNanAsync(double value) => RrStoredNan.SetAsync(value);
+    public override ValueTask SetNanAsync(double value, CancellationToken cancellationToken = default) => RrStoredNan.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetRandMaxAsync() => RrStoredRandMax.GetAsync();
+    public override ValueTask<double> GetRandMaxAsync(CancellationToken cancellationToken = default) => RrStoredRandMax.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetRandMaxAsync(double value) => RrStoredRandMax.SetAsync(value);
+    public override ValueTask SetRandMaxAsync(double value, CancellationToken cancellationToken = default) => RrStoredRandMax.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetBufsizAsync() => RrStoredBufsiz.GetAsync();
+    public override ValueTask<double> GetBufsizAsync(CancellationToken cancellationToken = default) => RrStoredBufsiz.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetBufsizAsync(double value) => RrStoredBufsiz.SetAsync(value);
+    public override ValueTask SetBufsizAsync(double value, CancellationToken cancellationToken = default) => RrStoredBufsiz.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetSigintAsync() => RrStoredSigint.GetAsync();
+    public override ValueTask<double> GetSigintAsync(CancellationToken cancellationToken = default) => RrStoredSigint.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetSigintAsync(double value) => RrStoredSigint.SetAsync(value);
+    public override ValueTask SetSigintAsync(double value, CancellationToken cancellationToken = default) => RrStoredSigint.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetFinalAsync() => RrStoredFinal.GetAsync();
+    public override ValueTask<double> GetFinalAsync(CancellationToken cancellationToken = default) => RrStoredFinal.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetFinalAsync(double value) => RrStoredFinal.SetAsync(value);
+    public override ValueTask SetFinalAsync(double value, CancellationToken cancellationToken = default) => RrStoredFinal.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetOverrideAsync() => RrStoredOverride.GetAsync();
+    public override ValueTask<double> GetOverrideAsync(CancellationToken cancellationToken = default) => RrStoredOverride.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetOverrideAsync(double value) => RrStoredOverride.SetAsync(value);
+    public override ValueTask SetOverrideAsync(double value, CancellationToken cancellationToken = default) => RrStoredOverride.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<double> GetModuleAsync() => RrStoredModule.GetAsync();
+    public override ValueTask<double> GetModuleAsync(CancellationToken cancellationToken = default) => RrStoredModule.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetModuleAsync(double value) => RrStoredModule.SetAsync(value);
+    public override ValueTask SetModuleAsync(double value, CancellationToken cancellationToken = default) => RrStoredModule.SetAsync(value);
 }
 
 public interface INew
@@ -5483,207 +5483,207 @@ public abstract class NewSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<Template?> AlignasAsync(Export bitor);
+    public abstract ValueTask<Template?> AlignasAsync(Export bitor, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> AlignofAsync(Export @break);
+    public abstract ValueTask<Template?> AlignofAsync(Export @break, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> AndAsync(Export @case);
+    public abstract ValueTask<Template?> AndAsync(Export @case, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> AndEqAsync(Export @catch);
+    public abstract ValueTask<Template?> AndEqAsync(Export @catch, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> AsmAsync(Export @char);
+    public abstract ValueTask<Template?> AsmAsync(Export @char, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> AutoAsync(Export char16T);
+    public abstract ValueTask<Template?> AutoAsync(Export char16T, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> BitandAsync(Export char32T);
+    public abstract ValueTask<Template?> BitandAsync(Export char32T, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> BitorAsync(Export char8T);
+    public abstract ValueTask<Template?> BitorAsync(Export char8T, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> BreakAsync(Export @class);
+    public abstract ValueTask<Template?> BreakAsync(Export @class, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> CaseAsync(Export coAwait);
+    public abstract ValueTask<Template?> CaseAsync(Export coAwait, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> CatchAsync(Export coReturn);
+    public abstract ValueTask<Template?> CatchAsync(Export coReturn, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> CharAsync(Export coYield);
+    public abstract ValueTask<Template?> CharAsync(Export coYield, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> Char16TAsync(Export compl);
+    public abstract ValueTask<Template?> Char16TAsync(Export compl, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> Char32TAsync(Export concept);
+    public abstract ValueTask<Template?> Char32TAsync(Export concept, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> Char8TAsync(Export @const);
+    public abstract ValueTask<Template?> Char8TAsync(Export @const, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ClassAsync(Export constCast);
+    public abstract ValueTask<Template?> ClassAsync(Export constCast, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> CoAwaitAsync(Export consteval);
+    public abstract ValueTask<Template?> CoAwaitAsync(Export consteval, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> CoReturnAsync(Export constexpr);
+    public abstract ValueTask<Template?> CoReturnAsync(Export constexpr, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> CoYieldAsync(Export constinit);
+    public abstract ValueTask<Template?> CoYieldAsync(Export constinit, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ComplAsync(Export @continue);
+    public abstract ValueTask<Template?> ComplAsync(Export @continue, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ConceptAsync(Export decltype);
+    public abstract ValueTask<Template?> ConceptAsync(Export decltype, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ConstAsync(Export @default);
+    public abstract ValueTask<Template?> ConstAsync(Export @default, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ConstCastAsync(Export delete);
+    public abstract ValueTask<Template?> ConstCastAsync(Export delete, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ConstevalAsync(Export @do);
+    public abstract ValueTask<Template?> ConstevalAsync(Export @do, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ConstexprAsync(Export dynamicCast);
+    public abstract ValueTask<Template?> ConstexprAsync(Export dynamicCast, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ConstinitAsync(Export @else);
+    public abstract ValueTask<Template?> ConstinitAsync(Export @else, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ContinueAsync(Export @explicit);
+    public abstract ValueTask<Template?> ContinueAsync(Export @explicit, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> DecltypeAsync(Export export);
+    public abstract ValueTask<Template?> DecltypeAsync(Export export, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> DefaultAsync(Export @extern);
+    public abstract ValueTask<Template?> DefaultAsync(Export @extern, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> DeleteAsync(Export @false);
+    public abstract ValueTask<Template?> DeleteAsync(Export @false, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> DoAsync(Export @float);
+    public abstract ValueTask<Template?> DoAsync(Export @float, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> DynamicCastAsync(Export @for);
+    public abstract ValueTask<Template?> DynamicCastAsync(Export @for, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ElseAsync(Export friend);
+    public abstract ValueTask<Template?> ElseAsync(Export friend, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ExplicitAsync(Export @goto);
+    public abstract ValueTask<Template?> ExplicitAsync(Export @goto, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ExportAsync(Export @if);
+    public abstract ValueTask<Template?> ExportAsync(Export @if, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ExternAsync(Export inline);
+    public abstract ValueTask<Template?> ExternAsync(Export inline, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> FalseAsync(Export @int);
+    public abstract ValueTask<Template?> FalseAsync(Export @int, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> FloatAsync(Export @long);
+    public abstract ValueTask<Template?> FloatAsync(Export @long, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ForAsync(Export mutable);
+    public abstract ValueTask<Template?> ForAsync(Export mutable, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> FriendAsync(Export @namespace);
+    public abstract ValueTask<Template?> FriendAsync(Export @namespace, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> GotoAsync(Export @new);
+    public abstract ValueTask<Template?> GotoAsync(Export @new, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> IfAsync(Export noexcept);
+    public abstract ValueTask<Template?> IfAsync(Export noexcept, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> InlineAsync(Export not);
+    public abstract ValueTask<Template?> InlineAsync(Export not, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> IntAsync(Export notEq);
+    public abstract ValueTask<Template?> IntAsync(Export notEq, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> LongAsync(Export nullptr);
+    public abstract ValueTask<Template?> LongAsync(Export nullptr, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> MutableAsync(Export @operator);
+    public abstract ValueTask<Template?> MutableAsync(Export @operator, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> NamespaceAsync(Export or);
+    public abstract ValueTask<Template?> NamespaceAsync(Export or, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> NewAsync(Export orEq);
+    public abstract ValueTask<Template?> NewAsync(Export orEq, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> NoexceptAsync(Export @private);
+    public abstract ValueTask<Template?> NoexceptAsync(Export @private, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> NotAsync(Export @protected);
+    public abstract ValueTask<Template?> NotAsync(Export @protected, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> NotEqAsync(Export @public);
+    public abstract ValueTask<Template?> NotEqAsync(Export @public, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> NullptrAsync(Export register);
+    public abstract ValueTask<Template?> NullptrAsync(Export register, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> OperatorAsync(Export reinterpretCast);
+    public abstract ValueTask<Template?> OperatorAsync(Export reinterpretCast, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> OrAsync(Export requires);
+    public abstract ValueTask<Template?> OrAsync(Export requires, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> OrEqAsync(Export @return);
+    public abstract ValueTask<Template?> OrEqAsync(Export @return, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> PrivateAsync(Export @short);
+    public abstract ValueTask<Template?> PrivateAsync(Export @short, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ProtectedAsync(Export signed);
+    public abstract ValueTask<Template?> ProtectedAsync(Export signed, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> PublicAsync(Export @sizeof);
+    public abstract ValueTask<Template?> PublicAsync(Export @sizeof, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> RegisterAsync(Export @static);
+    public abstract ValueTask<Template?> RegisterAsync(Export @static, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ReinterpretCastAsync(Export staticAssert);
+    public abstract ValueTask<Template?> ReinterpretCastAsync(Export staticAssert, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> RequiresAsync(Export staticCast);
+    public abstract ValueTask<Template?> RequiresAsync(Export staticCast, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ReturnAsync(Export @switch);
+    public abstract ValueTask<Template?> ReturnAsync(Export @switch, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ShortAsync(Export template);
+    public abstract ValueTask<Template?> ShortAsync(Export template, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> SignedAsync(Export threadLocal);
+    public abstract ValueTask<Template?> SignedAsync(Export threadLocal, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> SizeofAsync(Export @throw);
+    public abstract ValueTask<Template?> SizeofAsync(Export @throw, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> StaticAsync(Export @true);
+    public abstract ValueTask<Template?> StaticAsync(Export @true, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> StaticAssertAsync(Export @try);
+    public abstract ValueTask<Template?> StaticAssertAsync(Export @try, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> StaticCastAsync(Export typedef);
+    public abstract ValueTask<Template?> StaticCastAsync(Export typedef, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> SwitchAsync(Export typeid);
+    public abstract ValueTask<Template?> SwitchAsync(Export typeid, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> TemplateAsync(Export typename);
+    public abstract ValueTask<Template?> TemplateAsync(Export typename, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ThreadLocalAsync(Export union);
+    public abstract ValueTask<Template?> ThreadLocalAsync(Export union, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ThrowAsync(Export unsigned);
+    public abstract ValueTask<Template?> ThrowAsync(Export unsigned, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> TrueAsync(Export @virtual);
+    public abstract ValueTask<Template?> TrueAsync(Export @virtual, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> TryAsync(Export @volatile);
+    public abstract ValueTask<Template?> TryAsync(Export @volatile, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> TypedefAsync(Export wcharT);
+    public abstract ValueTask<Template?> TypedefAsync(Export wcharT, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> TypeidAsync(Export @while);
+    public abstract ValueTask<Template?> TypeidAsync(Export @while, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> TypenameAsync(Export xor);
+    public abstract ValueTask<Template?> TypenameAsync(Export xor, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> UnionAsync(Export xorEq);
+    public abstract ValueTask<Template?> UnionAsync(Export xorEq, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> UnsignedAsync(Export assert);
+    public abstract ValueTask<Template?> UnsignedAsync(Export assert, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> VirtualAsync(Export errno);
+    public abstract ValueTask<Template?> VirtualAsync(Export errno, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> VolatileAsync(Export linux);
+    public abstract ValueTask<Template?> VolatileAsync(Export linux, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> WcharTAsync(Export unix);
+    public abstract ValueTask<Template?> WcharTAsync(Export unix, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> WhileAsync(Export major);
+    public abstract ValueTask<Template?> WhileAsync(Export major, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> XorAsync(Export minor);
+    public abstract ValueTask<Template?> XorAsync(Export minor, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> XorEqAsync(Export eof);
+    public abstract ValueTask<Template?> XorEqAsync(Export eof, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> AssertAsync(Export @null);
+    public abstract ValueTask<Template?> AssertAsync(Export @null, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ErrnoAsync(Export infinity);
+    public abstract ValueTask<Template?> ErrnoAsync(Export infinity, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> LinuxAsync(Export nan);
+    public abstract ValueTask<Template?> LinuxAsync(Export nan, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> UnixAsync(Export randMax);
+    public abstract ValueTask<Template?> UnixAsync(Export randMax, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> MajorAsync(Export bufsiz);
+    public abstract ValueTask<Template?> MajorAsync(Export bufsiz, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> MinorAsync(Export sigint);
+    public abstract ValueTask<Template?> MinorAsync(Export sigint, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> EofAsync(Export final);
+    public abstract ValueTask<Template?> EofAsync(Export final, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> NullAsync(Export @override);
+    public abstract ValueTask<Template?> NullAsync(Export @override, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> InfinityAsync(Export module);
+    public abstract ValueTask<Template?> InfinityAsync(Export module, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> NanAsync(Export alignas);
+    public abstract ValueTask<Template?> NanAsync(Export alignas, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> RandMaxAsync(Export alignof);
+    public abstract ValueTask<Template?> RandMaxAsync(Export alignof, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> BufsizAsync(Export and);
+    public abstract ValueTask<Template?> BufsizAsync(Export and, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> SigintAsync(Export andEq);
+    public abstract ValueTask<Template?> SigintAsync(Export andEq, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> FinalAsync(Export asm);
+    public abstract ValueTask<Template?> FinalAsync(Export asm, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> OverrideAsync(Export auto);
+    public abstract ValueTask<Template?> OverrideAsync(Export auto, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Template?> ModuleAsync(Export bitand);
+    public abstract ValueTask<Template?> ModuleAsync(Export bitand, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
@@ -5693,607 +5693,607 @@ public abstract class NewSkeleton : Skeleton
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export bitor = rrArguments.Read(ValueCodec.Enum<Export>(), "bitor"u8);
-                    return rrRequest.AnswerAsync(AlignasAsync(bitor), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(AlignasAsync(bitor, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 1:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @break = rrArguments.Read(ValueCodec.Enum<Export>(), "break"u8);
-                    return rrRequest.AnswerAsync(AlignofAsync(@break), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(AlignofAsync(@break, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 2:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @case = rrArguments.Read(ValueCodec.Enum<Export>(), "case"u8);
-                    return rrRequest.AnswerAsync(AndAsync(@case), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(AndAsync(@case, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 3:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @catch = rrArguments.Read(ValueCodec.Enum<Export>(), "catch"u8);
-                    return rrRequest.AnswerAsync(AndEqAsync(@catch), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(AndEqAsync(@catch, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 4:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @char = rrArguments.Read(ValueCodec.Enum<Export>(), "char"u8);
-                    return rrRequest.AnswerAsync(AsmAsync(@char), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(AsmAsync(@char, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 5:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export char16T = rrArguments.Read(ValueCodec.Enum<Export>(), "char16_t"u8);
-                    return rrRequest.AnswerAsync(AutoAsync(char16T), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(AutoAsync(char16T, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 6:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export char32T = rrArguments.Read(ValueCodec.Enum<Export>(), "char32_t"u8);
-                    return rrRequest.AnswerAsync(BitandAsync(char32T), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(BitandAsync(char32T, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 7:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export char8T = rrArguments.Read(ValueCodec.Enum<Export>(), "char8_t"u8);
-                    return rrRequest.AnswerAsync(BitorAsync(char8T), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(BitorAsync(char8T, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 8:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @class = rrArguments.Read(ValueCodec.Enum<Export>(), "class"u8);
-                    return rrRequest.AnswerAsync(BreakAsync(@class), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(BreakAsync(@class, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 9:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export coAwait = rrArguments.Read(ValueCodec.Enum<Export>(), "co_await"u8);
-                    return rrRequest.AnswerAsync(CaseAsync(coAwait), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(CaseAsync(coAwait, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 10:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export coReturn = rrArguments.Read(ValueCodec.Enum<Export>(), "co_return"u8);
-                    return rrRequest.AnswerAsync(CatchAsync(coReturn), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(CatchAsync(coReturn, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 11:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export coYield = rrArguments.Read(ValueCodec.Enum<Export>(), "co_yield"u8);
-                    return rrRequest.AnswerAsync(CharAsync(coYield), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(CharAsync(coYield, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 12:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export compl = rrArguments.Read(ValueCodec.Enum<Export>(), "compl"u8);
-                    return rrRequest.AnswerAsync(Char16TAsync(compl), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(Char16TAsync(compl, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 13:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export concept = rrArguments.Read(ValueCodec.Enum<Export>(), "concept"u8);
-                    return rrRequest.AnswerAsync(Char32TAsync(concept), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(Char32TAsync(concept, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 14:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @const = rrArguments.Read(ValueCodec.Enum<Export>(), "const"u8);
-                    return rrRequest.AnswerAsync(Char8TAsync(@const), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(Char8TAsync(@const, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 15:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export constCast = rrArguments.Read(ValueCodec.Enum<Export>(), "const_cast"u8);
-                    return rrRequest.AnswerAsync(ClassAsync(constCast), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ClassAsync(constCast, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 16:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export consteval = rrArguments.Read(ValueCodec.Enum<Export>(), "consteval"u8);
-                    return rrRequest.AnswerAsync(CoAwaitAsync(consteval), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(CoAwaitAsync(consteval, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 17:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export constexpr = rrArguments.Read(ValueCodec.Enum<Export>(), "constexpr"u8);
-                    return rrRequest.AnswerAsync(CoReturnAsync(constexpr), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(CoReturnAsync(constexpr, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 18:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export constinit = rrArguments.Read(ValueCodec.Enum<Export>(), "constinit"u8);
-                    return rrRequest.AnswerAsync(CoYieldAsync(constinit), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(CoYieldAsync(constinit, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 19:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @continue = rrArguments.Read(ValueCodec.Enum<Export>(), "continue"u8);
-                    return rrRequest.AnswerAsync(ComplAsync(@continue), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ComplAsync(@continue, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 20:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export decltype = rrArguments.Read(ValueCodec.Enum<Export>(), "decltype"u8);
-                    return rrRequest.AnswerAsync(ConceptAsync(decltype), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ConceptAsync(decltype, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 21:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @default = rrArguments.Read(ValueCodec.Enum<Export>(), "default"u8);
-                    return rrRequest.AnswerAsync(ConstAsync(@default), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ConstAsync(@default, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 22:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export delete = rrArguments.Read(ValueCodec.Enum<Export>(), "delete"u8);
-                    return rrRequest.AnswerAsync(ConstCastAsync(delete), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ConstCastAsync(delete, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 23:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @do = rrArguments.Read(ValueCodec.Enum<Export>(), "do"u8);
-                    return rrRequest.AnswerAsync(ConstevalAsync(@do), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ConstevalAsync(@do, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 24:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export dynamicCast = rrArguments.Read(ValueCodec.Enum<Export>(), "dynamic_cast"u8);
-                    return rrRequest.AnswerAsync(ConstexprAsync(dynamicCast), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ConstexprAsync(dynamicCast, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 25:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @else = rrArguments.Read(ValueCodec.Enum<Export>(), "else"u8);
-                    return rrRequest.AnswerAsync(ConstinitAsync(@else), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ConstinitAsync(@else, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 26:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @explicit = rrArguments.Read(ValueCodec.Enum<Export>(), "explicit"u8);
-                    return rrRequest.AnswerAsync(ContinueAsync(@explicit), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ContinueAsync(@explicit, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 27:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export export = rrArguments.Read(ValueCodec.Enum<Export>(), "export"u8);
-                    return rrRequest.AnswerAsync(DecltypeAsync(export), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(DecltypeAsync(export, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 28:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @extern = rrArguments.Read(ValueCodec.Enum<Export>(), "extern"u8);
-                    return rrRequest.AnswerAsync(DefaultAsync(@extern), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(DefaultAsync(@extern, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 29:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @false = rrArguments.Read(ValueCodec.Enum<Export>(), "false"u8);
-                    return rrRequest.AnswerAsync(DeleteAsync(@false), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(DeleteAsync(@false, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 30:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @float = rrArguments.Read(ValueCodec.Enum<Export>(), "float"u8);
-                    return rrRequest.AnswerAsync(DoAsync(@float), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(DoAsync(@float, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 31:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @for = rrArguments.Read(ValueCodec.Enum<Export>(), "for"u8);
-                    return rrRequest.AnswerAsync(DynamicCastAsync(@for), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(DynamicCastAsync(@for, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 32:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export friend = rrArguments.Read(ValueCodec.Enum<Export>(), "friend"u8);
-                    return rrRequest.AnswerAsync(ElseAsync(friend), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ElseAsync(friend, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 33:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @goto = rrArguments.Read(ValueCodec.Enum<Export>(), "goto"u8);
-                    return rrRequest.AnswerAsync(ExplicitAsync(@goto), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ExplicitAsync(@goto, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 34:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @if = rrArguments.Read(ValueCodec.Enum<Export>(), "if"u8);
-                    return rrRequest.AnswerAsync(ExportAsync(@if), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ExportAsync(@if, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 35:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export inline = rrArguments.Read(ValueCodec.Enum<Export>(), "inline"u8);
-                    return rrRequest.AnswerAsync(ExternAsync(inline), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ExternAsync(inline, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 36:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @int = rrArguments.Read(ValueCodec.Enum<Export>(), "int"u8);
-                    return rrRequest.AnswerAsync(FalseAsync(@int), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(FalseAsync(@int, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 37:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @long = rrArguments.Read(ValueCodec.Enum<Export>(), "long"u8);
-                    return rrRequest.AnswerAsync(FloatAsync(@long), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(FloatAsync(@long, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 38:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export mutable = rrArguments.Read(ValueCodec.Enum<Export>(), "mutable"u8);
-                    return rrRequest.AnswerAsync(ForAsync(mutable), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ForAsync(mutable, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 39:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @namespace = rrArguments.Read(ValueCodec.Enum<Export>(), "namespace"u8);
-                    return rrRequest.AnswerAsync(FriendAsync(@namespace), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(FriendAsync(@namespace, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 40:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @new = rrArguments.Read(ValueCodec.Enum<Export>(), "new"u8);
-                    return rrRequest.AnswerAsync(GotoAsync(@new), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(GotoAsync(@new, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 41:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export noexcept = rrArguments.Read(ValueCodec.Enum<Export>(), "noexcept"u8);
-                    return rrRequest.AnswerAsync(IfAsync(noexcept), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(IfAsync(noexcept, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 42:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export not = rrArguments.Read(ValueCodec.Enum<Export>(), "not"u8);
-                    return rrRequest.AnswerAsync(InlineAsync(not), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(InlineAsync(not, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 43:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export notEq = rrArguments.Read(ValueCodec.Enum<Export>(), "not_eq"u8);
-                    return rrRequest.AnswerAsync(IntAsync(notEq), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(IntAsync(notEq, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 44:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export nullptr = rrArguments.Read(ValueCodec.Enum<Export>(), "nullptr"u8);
-                    return rrRequest.AnswerAsync(LongAsync(nullptr), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(LongAsync(nullptr, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 45:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @operator = rrArguments.Read(ValueCodec.Enum<Export>(), "operator"u8);
-                    return rrRequest.AnswerAsync(MutableAsync(@operator), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(MutableAsync(@operator, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 46:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export or = rrArguments.Read(ValueCodec.Enum<Export>(), "or"u8);
-                    return rrRequest.AnswerAsync(NamespaceAsync(or), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(NamespaceAsync(or, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 47:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export orEq = rrArguments.Read(ValueCodec.Enum<Export>(), "or_eq"u8);
-                    return rrRequest.AnswerAsync(NewAsync(orEq), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(NewAsync(orEq, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 48:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @private = rrArguments.Read(ValueCodec.Enum<Export>(), "private"u8);
-                    return rrRequest.AnswerAsync(NoexceptAsync(@private), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(NoexceptAsync(@private, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 49:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @protected = rrArguments.Read(ValueCodec.Enum<Export>(), "protected"u8);
-                    return rrRequest.AnswerAsync(NotAsync(@protected), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(NotAsync(@protected, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 50:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @public = rrArguments.Read(ValueCodec.Enum<Export>(), "public"u8);
-                    return rrRequest.AnswerAsync(NotEqAsync(@public), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(NotEqAsync(@public, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 51:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export register = rrArguments.Read(ValueCodec.Enum<Export>(), "register"u8);
-                    return rrRequest.AnswerAsync(NullptrAsync(register), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(NullptrAsync(register, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 52:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export reinterpretCast = rrArguments.Read(ValueCodec.Enum<Export>(), "reinterpret_cast"u8);
-                    return rrRequest.AnswerAsync(OperatorAsync(reinterpretCast), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(OperatorAsync(reinterpretCast, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 53:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export requires = rrArguments.Read(ValueCodec.Enum<Export>(), "requires"u8);
-                    return rrRequest.AnswerAsync(OrAsync(requires), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(OrAsync(requires, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 54:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @return = rrArguments.Read(ValueCodec.Enum<Export>(), "return"u8);
-                    return rrRequest.AnswerAsync(OrEqAsync(@return), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(OrEqAsync(@return, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 55:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @short = rrArguments.Read(ValueCodec.Enum<Export>(), "short"u8);
-                    return rrRequest.AnswerAsync(PrivateAsync(@short), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(PrivateAsync(@short, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 56:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export signed = rrArguments.Read(ValueCodec.Enum<Export>(), "signed"u8);
-                    return rrRequest.AnswerAsync(ProtectedAsync(signed), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ProtectedAsync(signed, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 57:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @sizeof = rrArguments.Read(ValueCodec.Enum<Export>(), "sizeof"u8);
-                    return rrRequest.AnswerAsync(PublicAsync(@sizeof), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(PublicAsync(@sizeof, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 58:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @static = rrArguments.Read(ValueCodec.Enum<Export>(), "static"u8);
-                    return rrRequest.AnswerAsync(RegisterAsync(@static), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(RegisterAsync(@static, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 59:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export staticAssert = rrArguments.Read(ValueCodec.Enum<Export>(), "static_assert"u8);
-                    return rrRequest.AnswerAsync(ReinterpretCastAsync(staticAssert), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ReinterpretCastAsync(staticAssert, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 60:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export staticCast = rrArguments.Read(ValueCodec.Enum<Export>(), "static_cast"u8);
-                    return rrRequest.AnswerAsync(RequiresAsync(staticCast), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(RequiresAsync(staticCast, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 61:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @switch = rrArguments.Read(ValueCodec.Enum<Export>(), "switch"u8);
-                    return rrRequest.AnswerAsync(ReturnAsync(@switch), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ReturnAsync(@switch, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 62:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export template = rrArguments.Read(ValueCodec.Enum<Export>(), "template"u8);
-                    return rrRequest.AnswerAsync(ShortAsync(template), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ShortAsync(template, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 63:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export threadLocal = rrArguments.Read(ValueCodec.Enum<Export>(), "thread_local"u8);
-                    return rrRequest.AnswerAsync(SignedAsync(threadLocal), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(SignedAsync(threadLocal, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 64:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @throw = rrArguments.Read(ValueCodec.Enum<Export>(), "throw"u8);
-                    return rrRequest.AnswerAsync(SizeofAsync(@throw), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(SizeofAsync(@throw, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 65:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @true = rrArguments.Read(ValueCodec.Enum<Export>(), "true"u8);
-                    return rrRequest.AnswerAsync(StaticAsync(@true), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(StaticAsync(@true, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 66:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @try = rrArguments.Read(ValueCodec.Enum<Export>(), "try"u8);
-                    return rrRequest.AnswerAsync(StaticAssertAsync(@try), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(StaticAssertAsync(@try, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 67:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export typedef = rrArguments.Read(ValueCodec.Enum<Export>(), "typedef"u8);
-                    return rrRequest.AnswerAsync(StaticCastAsync(typedef), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(StaticCastAsync(typedef, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 68:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export typeid = rrArguments.Read(ValueCodec.Enum<Export>(), "typeid"u8);
-                    return rrRequest.AnswerAsync(SwitchAsync(typeid), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(SwitchAsync(typeid, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 69:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export typename = rrArguments.Read(ValueCodec.Enum<Export>(), "typename"u8);
-                    return rrRequest.AnswerAsync(TemplateAsync(typename), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(TemplateAsync(typename, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 70:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export union = rrArguments.Read(ValueCodec.Enum<Export>(), "union"u8);
-                    return rrRequest.AnswerAsync(ThreadLocalAsync(union), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ThreadLocalAsync(union, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 71:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export unsigned = rrArguments.Read(ValueCodec.Enum<Export>(), "unsigned"u8);
-                    return rrRequest.AnswerAsync(ThrowAsync(unsigned), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ThrowAsync(unsigned, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 72:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @virtual = rrArguments.Read(ValueCodec.Enum<Export>(), "virtual"u8);
-                    return rrRequest.AnswerAsync(TrueAsync(@virtual), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(TrueAsync(@virtual, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 73:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @volatile = rrArguments.Read(ValueCodec.Enum<Export>(), "volatile"u8);
-                    return rrRequest.AnswerAsync(TryAsync(@volatile), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(TryAsync(@volatile, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 74:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export wcharT = rrArguments.Read(ValueCodec.Enum<Export>(), "wchar_t"u8);
-                    return rrRequest.AnswerAsync(TypedefAsync(wcharT), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(TypedefAsync(wcharT, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 75:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @while = rrArguments.Read(ValueCodec.Enum<Export>(), "while"u8);
-                    return rrRequest.AnswerAsync(TypeidAsync(@while), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(TypeidAsync(@while, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 76:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export xor = rrArguments.Read(ValueCodec.Enum<Export>(), "xor"u8);
-                    return rrRequest.AnswerAsync(TypenameAsync(xor), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(TypenameAsync(xor, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 77:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export xorEq = rrArguments.Read(ValueCodec.Enum<Export>(), "xor_eq"u8);
-                    return rrRequest.AnswerAsync(UnionAsync(xorEq), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(UnionAsync(xorEq, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 78:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export assert = rrArguments.Read(ValueCodec.Enum<Export>(), "assert"u8);
-                    return rrRequest.AnswerAsync(UnsignedAsync(assert), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(UnsignedAsync(assert, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 79:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export errno = rrArguments.Read(ValueCodec.Enum<Export>(), "errno"u8);
-                    return rrRequest.AnswerAsync(VirtualAsync(errno), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(VirtualAsync(errno, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 80:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export linux = rrArguments.Read(ValueCodec.Enum<Export>(), "linux"u8);
-                    return rrRequest.AnswerAsync(VolatileAsync(linux), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(VolatileAsync(linux, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 81:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export unix = rrArguments.Read(ValueCodec.Enum<Export>(), "unix"u8);
-                    return rrRequest.AnswerAsync(WcharTAsync(unix), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(WcharTAsync(unix, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 82:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export major = rrArguments.Read(ValueCodec.Enum<Export>(), "major"u8);
-                    return rrRequest.AnswerAsync(WhileAsync(major), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(WhileAsync(major, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 83:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export minor = rrArguments.Read(ValueCodec.Enum<Export>(), "minor"u8);
-                    return rrRequest.AnswerAsync(XorAsync(minor), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(XorAsync(minor, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 84:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export eof = rrArguments.Read(ValueCodec.Enum<Export>(), "EOF"u8);
-                    return rrRequest.AnswerAsync(XorEqAsync(eof), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(XorEqAsync(eof, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 85:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @null = rrArguments.Read(ValueCodec.Enum<Export>(), "NULL"u8);
-                    return rrRequest.AnswerAsync(AssertAsync(@null), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(AssertAsync(@null, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 86:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export infinity = rrArguments.Read(ValueCodec.Enum<Export>(), "INFINITY"u8);
-                    return rrRequest.AnswerAsync(ErrnoAsync(infinity), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ErrnoAsync(infinity, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 87:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export nan = rrArguments.Read(ValueCodec.Enum<Export>(), "NAN"u8);
-                    return rrRequest.AnswerAsync(LinuxAsync(nan), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(LinuxAsync(nan, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 88:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export randMax = rrArguments.Read(ValueCodec.Enum<Export>(), "RAND_MAX"u8);
-                    return rrRequest.AnswerAsync(UnixAsync(randMax), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(UnixAsync(randMax, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 89:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export bufsiz = rrArguments.Read(ValueCodec.Enum<Export>(), "BUFSIZ"u8);
-                    return rrRequest.AnswerAsync(MajorAsync(bufsiz), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(MajorAsync(bufsiz, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 90:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export sigint = rrArguments.Read(ValueCodec.Enum<Export>(), "SIGINT"u8);
-                    return rrRequest.AnswerAsync(MinorAsync(sigint), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(MinorAsync(sigint, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 91:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export final = rrArguments.Read(ValueCodec.Enum<Export>(), "final"u8);
-                    return rrRequest.AnswerAsync(EofAsync(final), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(EofAsync(final, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 92:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @override = rrArguments.Read(ValueCodec.Enum<Export>(), "override"u8);
-                    return rrRequest.AnswerAsync(NullAsync(@override), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(NullAsync(@override, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 93:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export module = rrArguments.Read(ValueCodec.Enum<Export>(), "module"u8);
-                    return rrRequest.AnswerAsync(InfinityAsync(module), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(InfinityAsync(module, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 94:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export alignas = rrArguments.Read(ValueCodec.Enum<Export>(), "alignas"u8);
-                    return rrRequest.AnswerAsync(NanAsync(alignas), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(NanAsync(alignas, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 95:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export alignof = rrArguments.Read(ValueCodec.Enum<Export>(), "alignof"u8);
-                    return rrRequest.AnswerAsync(RandMaxAsync(alignof), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(RandMaxAsync(alignof, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 96:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export and = rrArguments.Read(ValueCodec.Enum<Export>(), "and"u8);
-                    return rrRequest.AnswerAsync(BufsizAsync(and), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(BufsizAsync(and, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 97:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export andEq = rrArguments.Read(ValueCodec.Enum<Export>(), "and_eq"u8);
-                    return rrRequest.AnswerAsync(SigintAsync(andEq), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(SigintAsync(andEq, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 98:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export asm = rrArguments.Read(ValueCodec.Enum<Export>(), "asm"u8);
-                    return rrRequest.AnswerAsync(FinalAsync(asm), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(FinalAsync(asm, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 99:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export auto = rrArguments.Read(ValueCodec.Enum<Export>(), "auto"u8);
-                    return rrRequest.AnswerAsync(OverrideAsync(auto), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(OverrideAsync(auto, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             case 100:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export bitand = rrArguments.Read(ValueCodec.Enum<Export>(), "bitand"u8);
-                    return rrRequest.AnswerAsync(ModuleAsync(bitand), global::Experimental.ReservedWords.Template.RrCodec);
+                    return rrRequest.AnswerAsync(ModuleAsync(bitand, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -6479,7 +6479,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Alignas
     {
-        add => RrSubscribe("alignas", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("alignas", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "alignas"u8)));
         remove => RrUnsubscribe("alignas", value);
     }
@@ -6487,7 +6487,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Alignof
     {
-        add => RrSubscribe("alignof", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("alignof", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "alignof"u8)));
         remove => RrUnsubscribe("alignof", value);
     }
@@ -6495,7 +6495,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> And
     {
-        add => RrSubscribe("and", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("and", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "and"u8)));
         remove => RrUnsubscribe("and", value);
     }
@@ -6503,7 +6503,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> AndEq
     {
-        add => RrSubscribe("and_eq", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("and_eq", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "and_eq"u8)));
         remove => RrUnsubscribe("and_eq", value);
     }
@@ -6511,7 +6511,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Asm
     {
-        add => RrSubscribe("asm", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("asm", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "asm"u8)));
         remove => RrUnsubscribe("asm", value);
     }
@@ -6519,7 +6519,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Auto
     {
-        add => RrSubscribe("auto", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("auto", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "auto"u8)));
         remove => RrUnsubscribe("auto", value);
     }
@@ -6527,7 +6527,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Bitand
     {
-        add => RrSubscribe("bitand", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("bitand", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "bitand"u8)));
         remove => RrUnsubscribe("bitand", value);
     }
@@ -6535,7 +6535,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Bitor
     {
-        add => RrSubscribe("bitor", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("bitor", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "bitor"u8)));
         remove => RrUnsubscribe("bitor", value);
     }
@@ -6543,7 +6543,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Break
     {
-        add => RrSubscribe("break", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("break", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "break"u8)));
         remove => RrUnsubscribe("break", value);
     }
@@ -6551,7 +6551,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Case
     {
-        add => RrSubscribe("case", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("case", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "case"u8)));
         remove => RrUnsubscribe("case", value);
     }
@@ -6559,7 +6559,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Catch
     {
-        add => RrSubscribe("catch", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("catch", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "catch"u8)));
         remove => RrUnsubscribe("catch", value);
     }
@@ -6567,7 +6567,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Char
     {
-        add => RrSubscribe("char", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("char", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "char"u8)));
         remove => RrUnsubscribe("char", value);
     }
@@ -6575,7 +6575,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Char16T
     {
-        add => RrSubscribe("char16_t", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("char16_t", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "char16_t"u8)));
         remove => RrUnsubscribe("char16_t", value);
     }
@@ -6583,7 +6583,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Char32T
     {
-        add => RrSubscribe("char32_t", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("char32_t", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "char32_t"u8)));
         remove => RrUnsubscribe("char32_t", value);
     }
@@ -6591,7 +6591,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Char8T
     {
-        add => RrSubscribe("char8_t", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("char8_t", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "char8_t"u8)));
         remove => RrUnsubscribe("char8_t", value);
     }
@@ -6599,7 +6599,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Class
     {
-        add => RrSubscribe("class", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("class", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "class"u8)));
         remove => RrUnsubscribe("class", value);
     }
@@ -6607,7 +6607,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> CoAwait
     {
-        add => RrSubscribe("co_await", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("co_await", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "co_await"u8)));
         remove => RrUnsubscribe("co_await", value);
     }
@@ -6615,7 +6615,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> CoReturn
     {
-        add => RrSubscribe("co_return", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("co_return", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "co_return"u8)));
         remove => RrUnsubscribe("co_return", value);
     }
@@ -6623,7 +6623,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> CoYield
     {
-        add => RrSubscribe("co_yield", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("co_yield", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "co_yield"u8)));
         remove => RrUnsubscribe("co_yield", value);
     }
@@ -6631,7 +6631,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Compl
     {
-        add => RrSubscribe("compl", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("compl", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "compl"u8)));
         remove => RrUnsubscribe("compl", value);
     }
@@ -6639,7 +6639,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Concept
     {
-        add => RrSubscribe("concept", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("concept", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "concept"u8)));
         remove => RrUnsubscribe("concept", value);
     }
@@ -6647,7 +6647,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Const
     {
-        add => RrSubscribe("const", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("const", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "const"u8)));
         remove => RrUnsubscribe("const", value);
     }
@@ -6655,7 +6655,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> ConstCast
     {
-        add => RrSubscribe("const_cast", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("const_cast", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "const_cast"u8)));
         remove => RrUnsubscribe("const_cast", value);
     }
@@ -6663,7 +6663,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Consteval
     {
-        add => RrSubscribe("consteval", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("consteval", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "consteval"u8)));
         remove => RrUnsubscribe("consteval", value);
     }
@@ -6671,7 +6671,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Constexpr
     {
-        add => RrSubscribe("constexpr", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("constexpr", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "constexpr"u8)));
         remove => RrUnsubscribe("constexpr", value);
     }
@@ -6679,7 +6679,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Constinit
     {
-        add => RrSubscribe("constinit", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("constinit", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "constinit"u8)));
         remove => RrUnsubscribe("constinit", value);
     }
@@ -6687,7 +6687,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Continue
     {
-        add => RrSubscribe("continue", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("continue", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "continue"u8)));
         remove => RrUnsubscribe("continue", value);
     }
@@ -6695,7 +6695,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Decltype
     {
-        add => RrSubscribe("decltype", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("decltype", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "decltype"u8)));
         remove => RrUnsubscribe("decltype", value);
     }
@@ -6703,7 +6703,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Default
     {
-        add => RrSubscribe("default", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("default", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "default"u8)));
         remove => RrUnsubscribe("default", value);
     }
@@ -6711,7 +6711,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Delete
     {
-        add => RrSubscribe("delete", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("delete", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "delete"u8)));
         remove => RrUnsubscribe("delete", value);
     }
@@ -6719,7 +6719,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Do
     {
-        add => RrSubscribe("do", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("do", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "do"u8)));
         remove => RrUnsubscribe("do", value);
     }
@@ -6727,7 +6727,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> DynamicCast
     {
-        add => RrSubscribe("dynamic_cast", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("dynamic_cast", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "dynamic_cast"u8)));
         remove => RrUnsubscribe("dynamic_cast", value);
     }
@@ -6735,7 +6735,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Else
     {
-        add => RrSubscribe("else", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("else", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "else"u8)));
         remove => RrUnsubscribe("else", value);
     }
@@ -6743,7 +6743,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Explicit
     {
-        add => RrSubscribe("explicit", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("explicit", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "explicit"u8)));
         remove => RrUnsubscribe("explicit", value);
     }
@@ -6751,7 +6751,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Export
     {
-        add => RrSubscribe("export", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("export", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "export"u8)));
         remove => RrUnsubscribe("export", value);
     }
@@ -6759,7 +6759,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Extern
     {
-        add => RrSubscribe("extern", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("extern", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "extern"u8)));
         remove => RrUnsubscribe("extern", value);
     }
@@ -6767,7 +6767,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> False
     {
-        add => RrSubscribe("false", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("false", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "false"u8)));
         remove => RrUnsubscribe("false", value);
     }
@@ -6775,7 +6775,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Float
     {
-        add => RrSubscribe("float", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("float", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "float"u8)));
         remove => RrUnsubscribe("float", value);
     }
@@ -6783,7 +6783,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> For
     {
-        add => RrSubscribe("for", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("for", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "for"u8)));
         remove => RrUnsubscribe("for", value);
     }
@@ -6791,7 +6791,7 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
     /// <inheritdoc/>
     public event Action<double> Friend
     {
-        add => RrSubscribe("friend", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("friend", value, static (Action<double> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Double, "friend"u8)));
         remove => RrUnsubscribe("friend", value);
     }
@@ -7555,254 +7555,254 @@ public abstract class ClassSkeleton : Skeleton
         .With("friend"u8, ValueCodec.Double, friend)
         .Fire();
 
-    public abstract ValueTask<Skeleton> GetGotoAsync();
+    public abstract ValueTask<Skeleton> GetGotoAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetIfAsync();
+    public abstract ValueTask<Skeleton> GetIfAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetInlineAsync();
+    public abstract ValueTask<Skeleton> GetInlineAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetIntAsync();
+    public abstract ValueTask<Skeleton> GetIntAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetLongAsync();
+    public abstract ValueTask<Skeleton> GetLongAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetMutableAsync();
+    public abstract ValueTask<Skeleton> GetMutableAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetNamespaceAsync();
+    public abstract ValueTask<Skeleton> GetNamespaceAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetNewAsync();
+    public abstract ValueTask<Skeleton> GetNewAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetNoexceptAsync();
+    public abstract ValueTask<Skeleton> GetNoexceptAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetNotAsync();
+    public abstract ValueTask<Skeleton> GetNotAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetNotEqAsync();
+    public abstract ValueTask<Skeleton> GetNotEqAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetNullptrAsync();
+    public abstract ValueTask<Skeleton> GetNullptrAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetOperatorAsync();
+    public abstract ValueTask<Skeleton> GetOperatorAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetOrAsync();
+    public abstract ValueTask<Skeleton> GetOrAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetOrEqAsync();
+    public abstract ValueTask<Skeleton> GetOrEqAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetPrivateAsync();
+    public abstract ValueTask<Skeleton> GetPrivateAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetProtectedAsync();
+    public abstract ValueTask<Skeleton> GetProtectedAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetPublicAsync();
+    public abstract ValueTask<Skeleton> GetPublicAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetRegisterAsync();
+    public abstract ValueTask<Skeleton> GetRegisterAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetReinterpretCastAsync();
+    public abstract ValueTask<Skeleton> GetReinterpretCastAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetRequiresAsync();
+    public abstract ValueTask<Skeleton> GetRequiresAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetReturnAsync();
+    public abstract ValueTask<Skeleton> GetReturnAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetShortAsync();
+    public abstract ValueTask<Skeleton> GetShortAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetSignedAsync();
+    public abstract ValueTask<Skeleton> GetSignedAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetSizeofAsync();
+    public abstract ValueTask<Skeleton> GetSizeofAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetStaticAsync();
+    public abstract ValueTask<Skeleton> GetStaticAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetStaticAssertAsync();
+    public abstract ValueTask<Skeleton> GetStaticAssertAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetStaticCastAsync();
+    public abstract ValueTask<Skeleton> GetStaticCastAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetSwitchAsync();
+    public abstract ValueTask<Skeleton> GetSwitchAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetTemplateAsync();
+    public abstract ValueTask<Skeleton> GetTemplateAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetThreadLocalAsync();
+    public abstract ValueTask<Skeleton> GetThreadLocalAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetThrowAsync();
+    public abstract ValueTask<Skeleton> GetThrowAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetTrueAsync();
+    public abstract ValueTask<Skeleton> GetTrueAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetTryAsync();
+    public abstract ValueTask<Skeleton> GetTryAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetTypedefAsync();
+    public abstract ValueTask<Skeleton> GetTypedefAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetTypeidAsync();
+    public abstract ValueTask<Skeleton> GetTypeidAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetTypenameAsync();
+    public abstract ValueTask<Skeleton> GetTypenameAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetUnionAsync();
+    public abstract ValueTask<Skeleton> GetUnionAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetUnsignedAsync();
+    public abstract ValueTask<Skeleton> GetUnsignedAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetVirtualAsync();
+    public abstract ValueTask<Skeleton> GetVirtualAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetVolatileAsync();
+    public abstract ValueTask<Skeleton> GetVolatileAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetWcharTAsync();
+    public abstract ValueTask<Skeleton> GetWcharTAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetWhileAsync();
+    public abstract ValueTask<Skeleton> GetWhileAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetXorAsync();
+    public abstract ValueTask<Skeleton> GetXorAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetXorEqAsync();
+    public abstract ValueTask<Skeleton> GetXorEqAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetAssertAsync();
+    public abstract ValueTask<Skeleton> GetAssertAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetErrnoAsync();
+    public abstract ValueTask<Skeleton> GetErrnoAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetLinuxAsync();
+    public abstract ValueTask<Skeleton> GetLinuxAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetUnixAsync();
+    public abstract ValueTask<Skeleton> GetUnixAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetMajorAsync();
+    public abstract ValueTask<Skeleton> GetMajorAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetMinorAsync();
+    public abstract ValueTask<Skeleton> GetMinorAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetEofAsync();
+    public abstract ValueTask<Skeleton> GetEofAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetNullAsync();
+    public abstract ValueTask<Skeleton> GetNullAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetInfinityAsync();
+    public abstract ValueTask<Skeleton> GetInfinityAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetNanAsync();
+    public abstract ValueTask<Skeleton> GetNanAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetRandMaxAsync();
+    public abstract ValueTask<Skeleton> GetRandMaxAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetBufsizAsync();
+    public abstract ValueTask<Skeleton> GetBufsizAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetSigintAsync();
+    public abstract ValueTask<Skeleton> GetSigintAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetFinalAsync();
+    public abstract ValueTask<Skeleton> GetFinalAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetOverrideAsync();
+    public abstract ValueTask<Skeleton> GetOverrideAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<Skeleton> GetModuleAsync();
+    public abstract ValueTask<Skeleton> GetModuleAsync(CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 40:
-                return rrRequest.AnswerObjectAsync(GetGotoAsync());
+                return rrRequest.AnswerObjectAsync(GetGotoAsync(rrRequest.Cancelled));
             case 41:
-                return rrRequest.AnswerObjectAsync(GetIfAsync());
+                return rrRequest.AnswerObjectAsync(GetIfAsync(rrRequest.Cancelled));
             case 42:
-                return rrRequest.AnswerObjectAsync(GetInlineAsync());
+                return rrRequest.AnswerObjectAsync(GetInlineAsync(rrRequest.Cancelled));
             case 43:
-                return rrRequest.AnswerObjectAsync(GetIntAsync());
+                return rrRequest.AnswerObjectAsync(GetIntAsync(rrRequest.Cancelled));
             case 44:
-                return rrRequest.AnswerObjectAsync(GetLongAsync());
+                return rrRequest.AnswerObjectAsync(GetLongAsync(rrRequest.Cancelled));
             case 45:
-                return rrRequest.AnswerObjectAsync(GetMutableAsync());
+                return rrRequest.AnswerObjectAsync(GetMutableAsync(rrRequest.Cancelled));
             case 46:
-                return rrRequest.AnswerObjectAsync(GetNamespaceAsync());
+                return rrRequest.AnswerObjectAsync(GetNamespaceAsync(rrRequest.Cancelled));
             case 47:
-                return rrRequest.AnswerObjectAsync(GetNewAsync());
+                return rrRequest.AnswerObjectAsync(GetNewAsync(rrRequest.Cancelled));
             case 48:
-                return rrRequest.AnswerObjectAsync(GetNoexceptAsync());
+                return rrRequest.AnswerObjectAsync(GetNoexceptAsync(rrRequest.Cancelled));
             case 49:
-                return rrRequest.AnswerObjectAsync(GetNotAsync());
+                return rrRequest.AnswerObjectAsync(GetNotAsync(rrRequest.Cancelled));
             case 50:
-                return rrRequest.AnswerObjectAsync(GetNotEqAsync());
+                return rrRequest.AnswerObjectAsync(GetNotEqAsync(rrRequest.Cancelled));
             case 51:
-                return rrRequest.AnswerObjectAsync(GetNullptrAsync());
+                return rrRequest.AnswerObjectAsync(GetNullptrAsync(rrRequest.Cancelled));
             case 52:
-                return rrRequest.AnswerObjectAsync(GetOperatorAsync());
+                return rrRequest.AnswerObjectAsync(GetOperatorAsync(rrRequest.Cancelled));
             case 53:
-                return rrRequest.AnswerObjectAsync(GetOrAsync());
+                return rrRequest.AnswerObjectAsync(GetOrAsync(rrRequest.Cancelled));
             case 54:
-                return rrRequest.AnswerObjectAsync(GetOrEqAsync());
+                return rrRequest.AnswerObjectAsync(GetOrEqAsync(rrRequest.Cancelled));
             case 55:
-                return rrRequest.AnswerObjectAsync(GetPrivateAsync());
+                return rrRequest.AnswerObjectAsync(GetPrivateAsync(rrRequest.Cancelled));
             case 56:
-                return rrRequest.AnswerObjectAsync(GetProtectedAsync());
+                return rrRequest.AnswerObjectAsync(GetProtectedAsync(rrRequest.Cancelled));
             case 57:
-                return rrRequest.AnswerObjectAsync(GetPublicAsync());
+                return rrRequest.AnswerObjectAsync(GetPublicAsync(rrRequest.Cancelled));
             case 58:
-                return rrRequest.AnswerObjectAsync(GetRegisterAsync());
+                return rrRequest.AnswerObjectAsync(GetRegisterAsync(rrRequest.Cancelled));
             case 59:
-                return rrRequest.AnswerObjectAsync(GetReinterpretCastAsync());
+                return rrRequest.AnswerObjectAsync(GetReinterpretCastAsync(rrRequest.Cancelled));
             case 60:
-                return rrRequest.AnswerObjectAsync(GetRequiresAsync());
+                return rrRequest.AnswerObjectAsync(GetRequiresAsync(rrRequest.Cancelled));
             case 61:
-                return rrRequest.AnswerObjectAsync(GetReturnAsync());
+                return rrRequest.AnswerObjectAsync(GetReturnAsync(rrRequest.Cancelled));
             case 62:
-                return rrRequest.AnswerObjectAsync(GetShortAsync());
+                return rrRequest.AnswerObjectAsync(GetShortAsync(rrRequest.Cancelled));
             case 63:
-                return rrRequest.AnswerObjectAsync(GetSignedAsync());
+                return rrRequest.AnswerObjectAsync(GetSignedAsync(rrRequest.Cancelled));
             case 64:
-                return rrRequest.AnswerObjectAsync(GetSizeofAsync());
+                return rrRequest.AnswerObjectAsync(GetSizeofAsync(rrRequest.Cancelled));
             case 65:
-                return rrRequest.AnswerObjectAsync(GetStaticAsync());
+                return rrRequest.AnswerObjectAsync(GetStaticAsync(rrRequest.Cancelled));
             case 66:
-                return rrRequest.AnswerObjectAsync(GetStaticAssertAsync());
+                return rrRequest.AnswerObjectAsync(GetStaticAssertAsync(rrRequest.Cancelled));
             case 67:
-                return rrRequest.AnswerObjectAsync(GetStaticCastAsync());
+                return rrRequest.AnswerObjectAsync(GetStaticCastAsync(rrRequest.Cancelled));
             case 68:
-                return rrRequest.AnswerObjectAsync(GetSwitchAsync());
+                return rrRequest.AnswerObjectAsync(GetSwitchAsync(rrRequest.Cancelled));
             case 69:
-                return rrRequest.AnswerObjectAsync(GetTemplateAsync());
+                return rrRequest.AnswerObjectAsync(GetTemplateAsync(rrRequest.Cancelled));
             case 70:
-                return rrRequest.AnswerObjectAsync(GetThreadLocalAsync());
+                return rrRequest.AnswerObjectAsync(GetThreadLocalAsync(rrRequest.Cancelled));
             case 71:
-                return rrRequest.AnswerObjectAsync(GetThrowAsync());
+                return rrRequest.AnswerObjectAsync(GetThrowAsync(rrRequest.Cancelled));
             case 72:
-                return rrRequest.AnswerObjectAsync(GetTrueAsync());
+                return rrRequest.AnswerObjectAsync(GetTrueAsync(rrRequest.Cancelled));
             case 73:
-                return rrRequest.AnswerObjectAsync(GetTryAsync());
+                return rrRequest.AnswerObjectAsync(GetTryAsync(rrRequest.Cancelled));
             case 74:
-                return rrRequest.AnswerObjectAsync(GetTypedefAsync());
+                return rrRequest.AnswerObjectAsync(GetTypedefAsync(rrRequest.Cancelled));
             case 75:
-                return rrRequest.AnswerObjectAsync(GetTypeidAsync());
+                return rrRequest.AnswerObjectAsync(GetTypeidAsync(rrRequest.Cancelled));
             case 76:
-                return rrRequest.AnswerObjectAsync(GetTypenameAsync());
+                return rrRequest.AnswerObjectAsync(GetTypenameAsync(rrRequest.Cancelled));
             case 77:
-                return rrRequest.AnswerObjectAsync(GetUnionAsync());
+                return rrRequest.AnswerObjectAsync(GetUnionAsync(rrRequest.Cancelled));
             case 78:
-                return rrRequest.AnswerObjectAsync(GetUnsignedAsync());
+                return rrRequest.AnswerObjectAsync(GetUnsignedAsync(rrRequest.Cancelled));
             case 79:
-                return rrRequest.AnswerObjectAsync(GetVirtualAsync());
+                return rrRequest.AnswerObjectAsync(GetVirtualAsync(rrRequest.Cancelled));
             case 80:
-                return rrRequest.AnswerObjectAsync(GetVolatileAsync());
+                return rrRequest.AnswerObjectAsync(GetVolatileAsync(rrRequest.Cancelled));
             case 81:
-                return rrRequest.AnswerObjectAsync(GetWcharTAsync());
+                return rrRequest.AnswerObjectAsync(GetWcharTAsync(rrRequest.Cancelled));
             case 82:
-                return rrRequest.AnswerObjectAsync(GetWhileAsync());
+                return rrRequest.AnswerObjectAsync(GetWhileAsync(rrRequest.Cancelled));
             case 83:
-                return rrRequest.AnswerObjectAsync(GetXorAsync());
+                return rrRequest.AnswerObjectAsync(GetXorAsync(rrRequest.Cancelled));
             case 84:
-                return rrRequest.AnswerObjectAsync(GetXorEqAsync());
+                return rrRequest.AnswerObjectAsync(GetXorEqAsync(rrRequest.Cancelled));
             case 85:
-                return rrRequest.AnswerObjectAsync(GetAssertAsync());
+                return rrRequest.AnswerObjectAsync(GetAssertAsync(rrRequest.Cancelled));
             case 86:
-                return rrRequest.AnswerObjectAsync(GetErrnoAsync());
+                return rrRequest.AnswerObjectAsync(GetErrnoAsync(rrRequest.Cancelled));
             case 87:
-                return rrRequest.AnswerObjectAsync(GetLinuxAsync());
+                return rrRequest.AnswerObjectAsync(GetLinuxAsync(rrRequest.Cancelled));
             case 88:
-                return rrRequest.AnswerObjectAsync(GetUnixAsync());
+                return rrRequest.AnswerObjectAsync(GetUnixAsync(rrRequest.Cancelled));
             case 89:
-                return rrRequest.AnswerObjectAsync(GetMajorAsync());
+                return rrRequest.AnswerObjectAsync(GetMajorAsync(rrRequest.Cancelled));
             case 90:
-                return rrRequest.AnswerObjectAsync(GetMinorAsync());
+                return rrRequest.AnswerObjectAsync(GetMinorAsync(rrRequest.Cancelled));
             case 91:
-                return rrRequest.AnswerObjectAsync(GetEofAsync());
+                return rrRequest.AnswerObjectAsync(GetEofAsync(rrRequest.Cancelled));
             case 92:
-                return rrRequest.AnswerObjectAsync(GetNullAsync());
+                return rrRequest.AnswerObjectAsync(GetNullAsync(rrRequest.Cancelled));
             case 93:
-                return rrRequest.AnswerObjectAsync(GetInfinityAsync());
+                return rrRequest.AnswerObjectAsync(GetInfinityAsync(rrRequest.Cancelled));
             case 94:
-                return rrRequest.AnswerObjectAsync(GetNanAsync());
+                return rrRequest.AnswerObjectAsync(GetNanAsync(rrRequest.Cancelled));
             case 95:
-                return rrRequest.AnswerObjectAsync(GetRandMaxAsync());
+                return rrRequest.AnswerObjectAsync(GetRandMaxAsync(rrRequest.Cancelled));
             case 96:
-                return rrRequest.AnswerObjectAsync(GetBufsizAsync());
+                return rrRequest.AnswerObjectAsync(GetBufsizAsync(rrRequest.Cancelled));
             case 97:
-                return rrRequest.AnswerObjectAsync(GetSigintAsync());
+                return rrRequest.AnswerObjectAsync(GetSigintAsync(rrRequest.Cancelled));
             case 98:
-                return rrRequest.AnswerObjectAsync(GetFinalAsync());
+                return rrRequest.AnswerObjectAsync(GetFinalAsync(rrRequest.Cancelled));
             case 99:
-                return rrRequest.AnswerObjectAsync(GetOverrideAsync());
+                return rrRequest.AnswerObjectAsync(GetOverrideAsync(rrRequest.Cancelled));
             case 100:
-                return rrRequest.AnswerObjectAsync(GetModuleAsync());
+                return rrRequest.AnswerObjectAsync(GetModuleAsync(rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
         }
@@ -7812,7 +7812,7 @@ public abstract class ClassSkeleton : Skeleton
 /// <summary>What the runtime knows of experimental.reserved_words.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.reserved_words", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.reserved_words", RrText)
     {
         Exceptions =
         [

@@ -105,7 +105,7 @@ public class NodeStub(ObjectHandle rrHandle) : Stub(rrHandle), INode, IStub<Node
     /// <inheritdoc/>
     public event Action<int> Swap
     {
-        add => RrSubscribe("swap", value, static (rrHandler, ref rrArguments) => rrHandler(
+        add => RrSubscribe("swap", value, static (Action<int> rrHandler, scoped ref FieldReader rrArguments) => rrHandler(
             rrArguments.Read(ValueCodec.Int32, "std"u8)));
         remove => RrUnsubscribe("swap", value);
     }
@@ -133,43 +133,43 @@ public abstract class NodeSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public abstract ValueTask<Optional?> GetErrorAsync();
+    public abstract ValueTask<Optional?> GetErrorAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetErrorAsync(Optional? value);
+    public abstract ValueTask SetErrorAsync(Optional? value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<List<string>?> GetSharedPtrAsync();
+    public abstract ValueTask<List<string>?> GetSharedPtrAsync(CancellationToken cancellationToken = default);
 
-    public abstract ValueTask SetSharedPtrAsync(List<string>? value);
+    public abstract ValueTask SetSharedPtrAsync(List<string>? value, CancellationToken cancellationToken = default);
 
-    public abstract ValueTask<int> MoveAsync(Optional? std, int sizeT);
+    public abstract ValueTask<int> MoveAsync(Optional? std, int sizeT, CancellationToken cancellationToken = default);
 
     public void FireSwap(int std) => RrEvent(3)
         .With("std"u8, ValueCodec.Int32, std)
         .Fire();
 
-    public abstract ValueTask<Skeleton> GetArrayAsync(int index);
+    public abstract ValueTask<Skeleton> GetArrayAsync(int index, CancellationToken cancellationToken = default);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
         switch (rrRequest.Member)
         {
             case 0 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetErrorAsync(), Optional.RrCodec);
+                return rrRequest.AnswerAsync(GetErrorAsync(rrRequest.Cancelled), Optional.RrCodec);
             case 0 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetErrorAsync(rrRequest.Argument(Optional.RrCodec)));
+                return rrRequest.AnswerAsync(SetErrorAsync(rrRequest.Argument(Optional.RrCodec), rrRequest.Cancelled));
             case 1 when rrRequest.IsGet:
-                return rrRequest.AnswerAsync(GetSharedPtrAsync(), RrCodecs.StringList);
+                return rrRequest.AnswerAsync(GetSharedPtrAsync(rrRequest.Cancelled), RrCodecs.StringList);
             case 1 when rrRequest.IsSet:
-                return rrRequest.AnswerAsync(SetSharedPtrAsync(rrRequest.Argument(RrCodecs.StringList)));
+                return rrRequest.AnswerAsync(SetSharedPtrAsync(rrRequest.Argument(RrCodecs.StringList), rrRequest.Cancelled));
             case 2:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Optional? std = rrArguments.Read(Optional.RrCodec, "std"u8);
                     int sizeT = rrArguments.Read(ValueCodec.Int32, "size_t"u8);
-                    return rrRequest.AnswerAsync(MoveAsync(std, sizeT), ValueCodec.Int32);
+                    return rrRequest.AnswerAsync(MoveAsync(std, sizeT, rrRequest.Cancelled), ValueCodec.Int32);
                 }
             case 4:
-                return rrRequest.AnswerObjectAsync(GetArrayAsync(rrRequest.IndexNumber));
+                return rrRequest.AnswerObjectAsync(GetArrayAsync(rrRequest.IndexNumber, rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
         }
@@ -183,30 +183,30 @@ public class NodeDefault : NodeSkeleton
     protected Stored<List<string>?> RrStoredSharedPtr { get; } = new(default);
 
     /// <inheritdoc/>
-    public override ValueTask<Optional?> GetErrorAsync() => RrStoredError.GetAsync();
+    public override ValueTask<Optional?> GetErrorAsync(CancellationToken cancellationToken = default) => RrStoredError.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetErrorAsync(Optional? value) => RrStoredError.SetAsync(value);
+    public override ValueTask SetErrorAsync(Optional? value, CancellationToken cancellationToken = default) => RrStoredError.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<List<string>?> GetSharedPtrAsync() => RrStoredSharedPtr.GetAsync();
+    public override ValueTask<List<string>?> GetSharedPtrAsync(CancellationToken cancellationToken = default) => RrStoredSharedPtr.GetAsync();
 
     /// <inheritdoc/>
-    public override ValueTask SetSharedPtrAsync(List<string>? value) => RrStoredSharedPtr.SetAsync(value);
+    public override ValueTask SetSharedPtrAsync(List<string>? value, CancellationToken cancellationToken = default) => RrStoredSharedPtr.SetAsync(value);
 
     /// <inheritdoc/>
-    public override ValueTask<int> MoveAsync(Optional? std, int sizeT) =>
+    public override ValueTask<int> MoveAsync(Optional? std, int sizeT, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("move");
 
     /// <inheritdoc/>
-    public override ValueTask<Skeleton> GetArrayAsync(int index) =>
+    public override ValueTask<Skeleton> GetArrayAsync(int index, CancellationToken cancellationToken = default) =>
         throw NotServed.Member("array");
 }
 
 /// <summary>What the runtime knows of experimental.rr.std.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.rr.std", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.rr.std", RrText)
     {
         Exceptions =
         [

@@ -42,7 +42,7 @@ public sealed record Empty
 /// <summary>What the runtime knows of experimental.structs.</summary>
 public static class RrDefinition
 {
-    public static ServiceDefinition Value { get; } = new(StubApi.Version1, "experimental.structs", RrText)
+    public static ServiceDefinition Value { get; } = new(StubApi.Version2, "experimental.structs", RrText)
     {
         Exceptions =
         [

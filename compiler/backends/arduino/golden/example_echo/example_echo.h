@@ -3,7 +3,7 @@
 
 #include <Robdef.h>
 
-static_assert(rr::arduinoApi == 1, "made for another version of the library; run robdef again");
+static_assert(rr::arduinoApi == 2, "made for another version of the library; run robdef again");
 
 namespace example {
 namespace echo {
@@ -43,20 +43,20 @@ class RootSender {
  public:
   RootSender(rr::Link& link, uint8_t index) : link_(link), index_(index) {}
   bool fireAdded(uint32_t count) {
-    if (!link_.start(rr::serial::Kind::Event, 0 + index_, 4)) return false;
+    if (!link_.start(rr::serial::Kind::Event, index_, 4)) return false;
     write(link_.values(), count);
     return link_.finish();
   }
   /// What comes goes back, and one more.
   bool sendCounts(uint32_t packet) {
-    if (!link_.isOpen(0 + index_)) return false;
-    if (!link_.start(rr::serial::Kind::OutPacket, 0 + index_, 5)) return false;
+    if (!link_.isOpen(index_)) return false;
+    if (!link_.start(rr::serial::Kind::OutPacket, index_, 5)) return false;
     write(link_.values(), packet);
     return link_.finish();
   }
   /// Asks the client whose call was handled last; answeredDoubled gets the answer.
   bool askDoubled(double value) {
-    if (!link_.start(rr::serial::Kind::Ask, 0 + index_, 6)) return false;
+    if (!link_.start(rr::serial::Kind::Ask, index_, 6)) return false;
     write(link_.values(), value);
     return link_.finish();
   }
@@ -99,18 +99,12 @@ class EchoService {
   static Status handle(void* self, rr::Request& request, rr::Writer& reply) {
     EchoService& service = *static_cast<EchoService*>(self);
     if (request.object < 1) {
-      return service.handleRoot(request.object - 0, request, reply);
+      return service.handleRoot(request.object, request, reply);
     }
     return Status::ObjectNotFound;
   }
 
-  static bool writeWire(void* self, uint8_t slot, rr::Writer& body) {
-    EchoService& service = *static_cast<EchoService*>(self);
-    (void)service;
-    (void)slot;
-    (void)body;
-    return false;
-  }
+  static bool writeWire(void*, uint8_t, rr::Writer&) { return false; }
 
   Status handleRoot(uint8_t index, rr::Request& request, rr::Writer& reply) {
     EchoDevice* const device = findRoot(index);
@@ -121,7 +115,7 @@ class EchoService {
         double value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getValue(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setValue(value);
       }
       case 1: {  // property count
@@ -133,14 +127,14 @@ class EchoService {
         if (request.kind != Kind::Call) break;
         double a;
         double b;
-        if (!rr::readAll(request, a, b)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, a, b)) return request.values.refusal();
         double result;
         return rr::answer(reply, device->add(a, b, result), result);
       }
       case 3: {  // function wait
         if (request.kind != Kind::Call) break;
         uint16_t time;
-        if (!rr::readAll(request, time)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, time)) return request.values.refusal();
         return device->wait(time);
       }
       case 4: {  // event added
@@ -148,26 +142,26 @@ class EchoService {
       }
       case 5: {  // pipe counts
         if (request.kind == Kind::Open || request.kind == Kind::Close) {
-          return link_.setOpen(0 + index, request.kind == Kind::Open);
+          return link_.setOpen(index, request.kind == Kind::Open);
         }
         if (request.kind != Kind::Packet) break;
         uint32_t packet;
-        if (!rr::readAll(request, packet)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, packet)) return request.values.refusal();
         return device->receiveCounts(packet);
       }
       case 6: {  // callback doubled
         if (request.kind != Kind::Answer) break;
         uint8_t code;
-        if (!read(request.values, code)) return Status::DataTypeMismatch;
+        if (!read(request.values, code)) return request.values.refusal();
         double result = double();
-        if (code == 0 && !rr::readAll(request, result)) return Status::DataTypeMismatch;
+        if (code == 0 && !rr::readAll(request, result)) return request.values.refusal();
         device->answeredDoubled(static_cast<Status>(code), result);
         return Status::Ok;
       }
       case 7: {  // function ask
         if (request.kind != Kind::Call) break;
         double question;
-        if (!rr::readAll(request, question)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, question)) return request.values.refusal();
         return device->ask(question);
       }
       default:
@@ -181,8 +175,8 @@ class EchoService {
 
   // There is one service of a kind in a sketch, so its memory has a fixed place.
   static uint8_t request_[37];
-  static uint8_t reply_[37];
-  static uint8_t out_[16];
+  static uint8_t reply_[37 + rr::stuffing];
+  static uint8_t out_[16 + rr::stuffing];
   static uint8_t queue_[31];
   static uint8_t flags_[1];
   static const rr::Served served_;
@@ -192,9 +186,9 @@ class EchoService {
 template <class EchoDevice>
 uint8_t EchoService<EchoDevice>::request_[37];
 template <class EchoDevice>
-uint8_t EchoService<EchoDevice>::reply_[37];
+uint8_t EchoService<EchoDevice>::reply_[37 + rr::stuffing];
 template <class EchoDevice>
-uint8_t EchoService<EchoDevice>::out_[16];
+uint8_t EchoService<EchoDevice>::out_[16 + rr::stuffing];
 template <class EchoDevice>
 uint8_t EchoService<EchoDevice>::queue_[31];
 template <class EchoDevice>
@@ -204,8 +198,7 @@ const rr::Served EchoService<EchoDevice>::served_ = {
     rrTexts, 2, rrHash, &EchoService::handle, &EchoService::writeWire};
 template <class EchoDevice>
 const rr::Memory EchoService<EchoDevice>::memory_ = {
-    request_,       reply_,        out_,        queue_,    flags_,
-    sizeof request_, sizeof reply_, sizeof out_, 1, sizeof queue_};
+    request_, reply_, out_, queue_, flags_, 37, 37, 16, 1, 31};
 
 }  // namespace echo
 }  // namespace example

@@ -3,7 +3,7 @@
 
 #include <Robdef.h>
 
-static_assert(rr::arduinoApi == 1, "made for another version of the library; run robdef again");
+static_assert(rr::arduinoApi == 2, "made for another version of the library; run robdef again");
 
 namespace example {
 namespace empty {
@@ -58,18 +58,12 @@ class NothingService {
   static Status handle(void* self, rr::Request& request, rr::Writer& reply) {
     NothingService& service = *static_cast<NothingService*>(self);
     if (request.object < 1) {
-      return service.handleRoot(request.object - 0, request, reply);
+      return service.handleRoot(request.object, request, reply);
     }
     return Status::ObjectNotFound;
   }
 
-  static bool writeWire(void* self, uint8_t slot, rr::Writer& body) {
-    NothingService& service = *static_cast<NothingService*>(self);
-    (void)service;
-    (void)slot;
-    (void)body;
-    return false;
-  }
+  static bool writeWire(void*, uint8_t, rr::Writer&) { return false; }
 
   Status handleRoot(uint8_t index, rr::Request& request, rr::Writer& reply) {
     NothingDevice* const device = findRoot(index);
@@ -87,8 +81,8 @@ class NothingService {
 
   // There is one service of a kind in a sketch, so its memory has a fixed place.
   static uint8_t request_[37];
-  static uint8_t reply_[37];
-  static uint8_t out_[5];
+  static uint8_t reply_[37 + rr::stuffing];
+  static uint8_t out_[5 + rr::stuffing];
   static uint8_t queue_[1];
   static uint8_t flags_[1];
   static const rr::Served served_;
@@ -98,9 +92,9 @@ class NothingService {
 template <class NothingDevice>
 uint8_t NothingService<NothingDevice>::request_[37];
 template <class NothingDevice>
-uint8_t NothingService<NothingDevice>::reply_[37];
+uint8_t NothingService<NothingDevice>::reply_[37 + rr::stuffing];
 template <class NothingDevice>
-uint8_t NothingService<NothingDevice>::out_[5];
+uint8_t NothingService<NothingDevice>::out_[5 + rr::stuffing];
 template <class NothingDevice>
 uint8_t NothingService<NothingDevice>::queue_[1];
 template <class NothingDevice>
@@ -110,8 +104,7 @@ const rr::Served NothingService<NothingDevice>::served_ = {
     rrTexts, 2, rrHash, &NothingService::handle, &NothingService::writeWire};
 template <class NothingDevice>
 const rr::Memory NothingService<NothingDevice>::memory_ = {
-    request_,       reply_,        out_,        queue_,    flags_,
-    sizeof request_, sizeof reply_, sizeof out_, 0, sizeof queue_};
+    request_, reply_, out_, queue_, flags_, 37, 37, 5, 0, 1};
 
 }  // namespace empty
 }  // namespace example

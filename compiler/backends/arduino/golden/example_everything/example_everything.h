@@ -3,7 +3,7 @@
 
 #include <Robdef.h>
 
-static_assert(rr::arduinoApi == 1, "made for another version of the library; run robdef again");
+static_assert(rr::arduinoApi == 2, "made for another version of the library; run robdef again");
 
 namespace example {
 namespace shapes {
@@ -27,14 +27,10 @@ struct Point {
   float y;
 };
 inline bool read(rr::Reader& from, Point& value) {
-  (void)from;
-  (void)value;
-  return true && read(from, value.x) && read(from, value.y);
+  return read(from, value.x) && read(from, value.y);
 }
 inline bool write(rr::Writer& to, const Point& value) {
-  (void)to;
-  (void)value;
-  return true && write(to, value.x) && write(to, value.y);
+  return write(to, value.x) && write(to, value.y);
 }
 }  // namespace shapes
 }  // namespace example
@@ -75,14 +71,10 @@ struct Vector {
   double y;
 };
 inline bool read(rr::Reader& from, Vector& value) {
-  (void)from;
-  (void)value;
-  return true && read(from, value.x) && read(from, value.y);
+  return read(from, value.x) && read(from, value.y);
 }
 inline bool write(rr::Writer& to, const Vector& value) {
-  (void)to;
-  (void)value;
-  return true && write(to, value.x) && write(to, value.y);
+  return write(to, value.x) && write(to, value.y);
 }
 
 struct Pair {
@@ -90,14 +82,10 @@ struct Pair {
   rr::Bounded<uint8_t, 3> rest;
 };
 inline bool read(rr::Reader& from, Pair& value) {
-  (void)from;
-  (void)value;
-  return true && read(from, value.first) && read(from, value.rest);
+  return read(from, value.first) && read(from, value.rest);
 }
 inline bool write(rr::Writer& to, const Pair& value) {
-  (void)to;
-  (void)value;
-  return true && write(to, value.first) && write(to, value.rest);
+  return write(to, value.first) && write(to, value.rest);
 }
 
 struct Report {
@@ -109,14 +97,10 @@ struct Report {
   rr::Complex<double> turn;
 };
 inline bool read(rr::Reader& from, Report& value) {
-  (void)from;
-  (void)value;
-  return true && read(from, value.name) && read(from, value.mode) && read(from, value.where) && read(from, value.pairs) && read(from, value.samples) && read(from, value.turn);
+  return read(from, value.name) && read(from, value.mode) && read(from, value.where) && read(from, value.pairs) && read(from, value.samples) && read(from, value.turn);
 }
 inline bool write(rr::Writer& to, const Report& value) {
-  (void)to;
-  (void)value;
-  return true && write(to, value.name) && write(to, value.mode) && write(to, value.where) && write(to, value.pairs) && write(to, value.samples) && write(to, value.turn);
+  return write(to, value.name) && write(to, value.mode) && write(to, value.where) && write(to, value.pairs) && write(to, value.samples) && write(to, value.turn);
 }
 constexpr rr::Status Jammed = static_cast<rr::Status>(192);
 constexpr rr::Status Cold = static_cast<rr::Status>(193);
@@ -247,32 +231,32 @@ class RootSender {
  public:
   RootSender(rr::Link& link, uint8_t index) : link_(link), index_(index) {}
   bool fireHappened(const rr::Text<10>& text, ::example::everything::Mode mode) {
-    if (!link_.start(rr::serial::Kind::Event, 0 + index_, 18)) return false;
+    if (!link_.start(rr::serial::Kind::Event, index_, 18)) return false;
     write(link_.values(), text);
     write(link_.values(), mode);
     return link_.finish();
   }
   bool sendSamples(uint16_t packet) {
-    if (!link_.isOpen(0 + index_)) return false;
-    if (!link_.start(rr::serial::Kind::OutPacket, 0 + index_, 19)) return false;
+    if (!link_.isOpen(index_)) return false;
+    if (!link_.start(rr::serial::Kind::OutPacket, index_, 19)) return false;
     write(link_.values(), packet);
     return link_.finish();
   }
   bool sendCommands(uint8_t packet) {
     if (!link_.isOpen(1 + index_)) return false;
-    if (!link_.start(rr::serial::Kind::OutPacket, 0 + index_, 20)) return false;
+    if (!link_.start(rr::serial::Kind::OutPacket, index_, 20)) return false;
     write(link_.values(), packet);
     return link_.finish();
   }
   /// Asks the client whose call was handled last; answeredConfirm gets the answer.
   bool askConfirm(uint8_t question) {
-    if (!link_.start(rr::serial::Kind::Ask, 0 + index_, 21)) return false;
+    if (!link_.start(rr::serial::Kind::Ask, index_, 21)) return false;
     write(link_.values(), question);
     return link_.finish();
   }
   /// Asks the client whose call was handled last; answeredTold gets the answer.
   bool askTold() {
-    if (!link_.start(rr::serial::Kind::Ask, 0 + index_, 22)) return false;
+    if (!link_.start(rr::serial::Kind::Ask, index_, 22)) return false;
     return link_.finish();
   }
   /// Its value is asked for with getPosition when it can be sent.
@@ -405,23 +389,23 @@ class BoardService {
   typedef rr::Status Status;
 
   BoardDevice* findRoot(uint8_t) { return &root_; }
-  MotorDevice* findMotor(uint8_t index) {
-    auto* const parent = findRoot(index / 1);
+  MotorDevice* findMotor(uint8_t) {
+    auto* const parent = findRoot(0);
     return parent == nullptr ? nullptr : parent->motor();
   }
   LampDevice* findLamp(uint8_t index) {
-    auto* const parent = findRoot(index / 3);
-    return parent == nullptr ? nullptr : parent->lamp(index % 3);
+    auto* const parent = findRoot(0);
+    return parent == nullptr ? nullptr : parent->lamp(index);
   }
-  LampDevice* findMotorLamp(uint8_t index) {
-    auto* const parent = findMotor(index / 1);
+  LampDevice* findMotorLamp(uint8_t) {
+    auto* const parent = findMotor(0);
     return parent == nullptr ? nullptr : parent->lamp();
   }
 
   static Status handle(void* self, rr::Request& request, rr::Writer& reply) {
     BoardService& service = *static_cast<BoardService*>(self);
     if (request.object < 1) {
-      return service.handleRoot(request.object - 0, request, reply);
+      return service.handleRoot(request.object, request, reply);
     }
     if (request.object < 2) {
       return service.handleMotor(request.object - 1, request, reply);
@@ -437,14 +421,11 @@ class BoardService {
 
   static bool writeWire(void* self, uint8_t slot, rr::Writer& body) {
     BoardService& service = *static_cast<BoardService*>(self);
-    (void)service;
-    (void)slot;
-    (void)body;
     if (slot >= 2 && slot < 3) {  // position
       BoardDevice* const device = service.findRoot(slot - 2);
       ::example::everything::Vector value;
       if (device == nullptr || device->getPosition(value) != Status::Ok) return false;
-      body.putByte(0 + slot - 2);
+      body.putByte(slot - 2);
       body.putByte(23);
       return write(body, value);
     }
@@ -452,7 +433,7 @@ class BoardService {
       BoardDevice* const device = service.findRoot(slot - 4);
       int16_t value;
       if (device == nullptr || device->getBoth(value) != Status::Ok) return false;
-      body.putByte(0 + slot - 4);
+      body.putByte(slot - 4);
       body.putByte(25);
       return write(body, value);
     }
@@ -484,35 +465,35 @@ class BoardService {
         bool value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getOn(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setOn(value);
       }
       case 1: {  // property small
         int8_t value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getSmall(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setSmall(value);
       }
       case 2: {  // property word
         uint16_t value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getWord(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setWord(value);
       }
       case 3: {  // property big
         int64_t value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getBig(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setBig(value);
       }
       case 4: {  // property unsigned_big
         uint64_t value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getUnsignedBig(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setUnsignedBig(value);
       }
       case 5: {  // property ratio
@@ -524,68 +505,68 @@ class BoardService {
         double value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getExact(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setExact(value);
       }
       case 7: {  // property mode
         ::example::everything::Mode value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getMode(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setMode(value);
       }
       case 8: {  // property report
         ::example::everything::Report value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getReport(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setReport(value);
       }
       case 9: {  // property corners
         rr::Fixed<::example::shapes::Point, 3> value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getCorners(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setCorners(value);
       }
       case 10: {  // property matrix
         rr::Fixed<double, 4> value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getMatrix(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setMatrix(value);
       }
       case 11: {  // property numbers
         rr::Bounded<int32_t, 5> value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getNumbers(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setNumbers(value);
       }
       case 12: {  // property phase
         rr::Complex<double> value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getPhase(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setPhase(value);
       }
       case 13: {  // property text
         rr::Text<16> value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getText(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setText(value);
       }
       case 14: {  // property secret
         uint8_t value;
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setSecret(value);
       }
       case 15: {  // function greet
         if (request.kind != Kind::Call) break;
         rr::Text<8> name;
-        if (!rr::readAll(request, name)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, name)) return request.values.refusal();
         rr::Text<20> result;
         return rr::answer(reply, device->greet(name, result), result);
       }
@@ -593,14 +574,14 @@ class BoardService {
         if (request.kind != Kind::Call) break;
         double a;
         double b;
-        if (!rr::readAll(request, a, b)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, a, b)) return request.values.refusal();
         double result;
         return rr::answer(reply, device->add(a, b, result), result);
       }
       case 17: {  // function fail
         if (request.kind != Kind::Call) break;
         uint8_t how;
-        if (!rr::readAll(request, how)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, how)) return request.values.refusal();
         return device->fail(how);
       }
       case 18: {  // event happened
@@ -608,7 +589,7 @@ class BoardService {
       }
       case 19: {  // pipe samples
         if (request.kind == Kind::Open || request.kind == Kind::Close) {
-          return link_.setOpen(0 + index, request.kind == Kind::Open);
+          return link_.setOpen(index, request.kind == Kind::Open);
         }
         break;
       }
@@ -618,22 +599,22 @@ class BoardService {
         }
         if (request.kind != Kind::Packet) break;
         uint8_t packet;
-        if (!rr::readAll(request, packet)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, packet)) return request.values.refusal();
         return device->receiveCommands(packet);
       }
       case 21: {  // callback confirm
         if (request.kind != Kind::Answer) break;
         uint8_t code;
-        if (!read(request.values, code)) return Status::DataTypeMismatch;
+        if (!read(request.values, code)) return request.values.refusal();
         bool result = bool();
-        if (code == 0 && !rr::readAll(request, result)) return Status::DataTypeMismatch;
+        if (code == 0 && !rr::readAll(request, result)) return request.values.refusal();
         device->answeredConfirm(static_cast<Status>(code), result);
         return Status::Ok;
       }
       case 22: {  // callback told
         if (request.kind != Kind::Answer) break;
         uint8_t code;
-        if (!read(request.values, code)) return Status::DataTypeMismatch;
+        if (!read(request.values, code)) return request.values.refusal();
         device->answeredTold(static_cast<Status>(code));
         return Status::Ok;
       }
@@ -651,7 +632,7 @@ class BoardService {
         }
         double value;
         if (request.kind != Kind::Packet) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setTarget(value);
       }
       case 25: {  // wire both
@@ -661,12 +642,12 @@ class BoardService {
         int16_t value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getBoth(value), value);
         if (request.kind != Kind::Packet) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setBoth(value);
       }
       case 26: {  // objref motor
         if (request.kind != Kind::Child) break;
-        if (!rr::readAll(request)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request)) return request.values.refusal();
         const uint8_t child = index;
         if (findMotor(child) == nullptr) return Status::ObjectNotFound;
         return rr::answer(reply, Status::Ok, static_cast<uint8_t>(1 + child));
@@ -674,9 +655,9 @@ class BoardService {
       case 27: {  // objref lamp
         if (request.kind != Kind::Child) break;
         int32_t which;
-        if (!rr::readAll(request, which)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, which)) return request.values.refusal();
         if (which < 0 || which >= 3) return Status::ObjectNotFound;
-        const uint8_t child = static_cast<uint8_t>(index * 3 + which);
+        const uint8_t child = static_cast<uint8_t>(which);
         if (findLamp(child) == nullptr) return Status::ObjectNotFound;
         return rr::answer(reply, Status::Ok, static_cast<uint8_t>(2 + child));
       }
@@ -695,12 +676,12 @@ class BoardService {
         double value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getSpeed(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setSpeed(value);
       }
       case 1: {  // objref lamp
         if (request.kind != Kind::Child) break;
-        if (!rr::readAll(request)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request)) return request.values.refusal();
         const uint8_t child = index;
         if (findMotorLamp(child) == nullptr) return Status::ObjectNotFound;
         return rr::answer(reply, Status::Ok, static_cast<uint8_t>(5 + child));
@@ -720,13 +701,13 @@ class BoardService {
         uint8_t value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getLevel(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setLevel(value);
       }
       case 1: {  // function blink
         if (request.kind != Kind::Call) break;
         uint8_t times;
-        if (!rr::readAll(request, times)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, times)) return request.values.refusal();
         return device->blink(times);
       }
       case 2: {  // event burnt
@@ -739,7 +720,7 @@ class BoardService {
         uint8_t value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getGlow(value), value);
         if (request.kind != Kind::Packet) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setGlow(value);
       }
       default:
@@ -757,13 +738,13 @@ class BoardService {
         uint8_t value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getLevel(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setLevel(value);
       }
       case 1: {  // function blink
         if (request.kind != Kind::Call) break;
         uint8_t times;
-        if (!rr::readAll(request, times)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, times)) return request.values.refusal();
         return device->blink(times);
       }
       case 2: {  // event burnt
@@ -776,7 +757,7 @@ class BoardService {
         uint8_t value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getGlow(value), value);
         if (request.kind != Kind::Packet) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setGlow(value);
       }
       default:
@@ -790,8 +771,8 @@ class BoardService {
 
   // There is one service of a kind in a sketch, so its memory has a fixed place.
   static uint8_t request_[85];
-  static uint8_t reply_[84];
-  static uint8_t out_[23];
+  static uint8_t reply_[84 + rr::stuffing];
+  static uint8_t out_[23 + rr::stuffing];
   static uint8_t queue_[62];
   static uint8_t flags_[9];
   static const rr::Served served_;
@@ -801,9 +782,9 @@ class BoardService {
 template <class BoardDevice, class MotorDevice, class LampDevice>
 uint8_t BoardService<BoardDevice, MotorDevice, LampDevice>::request_[85];
 template <class BoardDevice, class MotorDevice, class LampDevice>
-uint8_t BoardService<BoardDevice, MotorDevice, LampDevice>::reply_[84];
+uint8_t BoardService<BoardDevice, MotorDevice, LampDevice>::reply_[84 + rr::stuffing];
 template <class BoardDevice, class MotorDevice, class LampDevice>
-uint8_t BoardService<BoardDevice, MotorDevice, LampDevice>::out_[23];
+uint8_t BoardService<BoardDevice, MotorDevice, LampDevice>::out_[23 + rr::stuffing];
 template <class BoardDevice, class MotorDevice, class LampDevice>
 uint8_t BoardService<BoardDevice, MotorDevice, LampDevice>::queue_[62];
 template <class BoardDevice, class MotorDevice, class LampDevice>
@@ -813,8 +794,7 @@ const rr::Served BoardService<BoardDevice, MotorDevice, LampDevice>::served_ = {
     rrTexts, 3, rrHash, &BoardService::handle, &BoardService::writeWire};
 template <class BoardDevice, class MotorDevice, class LampDevice>
 const rr::Memory BoardService<BoardDevice, MotorDevice, LampDevice>::memory_ = {
-    request_,       reply_,        out_,        queue_,    flags_,
-    sizeof request_, sizeof reply_, sizeof out_, 9, sizeof queue_};
+    request_, reply_, out_, queue_, flags_, 85, 84, 23, 9, 62};
 
 }  // namespace everything
 }  // namespace example

@@ -12,7 +12,7 @@
 #include <rr/type.hpp>
 #include <utility>
 
-static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
+static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace experimental::big_arrays {
 
@@ -32,56 +32,96 @@ extern const ::rr::ObjectType rr_object_Store;
 /// A Store on another node.
 class StoreStub : public virtual ::rr::Stub {
  public:
-  ::rr::Array<double> get_exact() { return rr_get<::rr::Array<double>>(rr_members_Store[0]); }
+  ::rr::Array<double> get_exact(const ::rr::CallOptions& options = {}) {
+    return rr_get<::rr::Array<double>>(rr_members_Store[0], options);
+  }
+  template <class Token>
+  auto async_get_exact(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::rr::Array<double>>(rr_members_Store[0], options,
+                                             ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_exact(Token&& token) {
-    return rr_async_get<::rr::Array<double>>(rr_members_Store[0], ::std::forward<Token>(token));
+    return async_get_exact(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_exact(const ::rr::Array<double>& value) { rr_set(rr_members_Store[0], &value); }
+  void set_exact(const ::rr::Array<double>& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Store[0], options, &value);
+  }
+  template <class Token>
+  auto async_set_exact(const ::rr::Array<double>& value, const ::rr::CallOptions& options,
+                       Token&& token) {
+    return rr_async_set<::rr::Array<double>>(rr_members_Store[0], options,
+                                             ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_exact(const ::rr::Array<double>& value, Token&& token) {
-    return rr_async_set<::rr::Array<double>>(rr_members_Store[0], ::std::forward<Token>(token),
-                                             value);
+    return async_set_exact(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::array<::std::uint8_t, 16384> get_at_the_edge() {
-    return rr_get<::std::array<::std::uint8_t, 16384>>(rr_members_Store[1]);
+  ::std::array<::std::uint8_t, 16384> get_at_the_edge(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::array<::std::uint8_t, 16384>>(rr_members_Store[1], options);
+  }
+  template <class Token>
+  auto async_get_at_the_edge(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::array<::std::uint8_t, 16384>>(rr_members_Store[1], options,
+                                                             ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_at_the_edge(Token&& token) {
-    return rr_async_get<::std::array<::std::uint8_t, 16384>>(rr_members_Store[1],
-                                                             ::std::forward<Token>(token));
+    return async_get_at_the_edge(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_at_the_edge(const ::std::array<::std::uint8_t, 16384>& value) {
-    rr_set(rr_members_Store[1], &value);
+  void set_at_the_edge(const ::std::array<::std::uint8_t, 16384>& value,
+                       const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Store[1], options, &value);
+  }
+  template <class Token>
+  auto async_set_at_the_edge(const ::std::array<::std::uint8_t, 16384>& value,
+                             const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::std::array<::std::uint8_t, 16384>>(rr_members_Store[1], options,
+                                                             ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_at_the_edge(const ::std::array<::std::uint8_t, 16384>& value, Token&& token) {
-    return rr_async_set<::std::array<::std::uint8_t, 16384>>(rr_members_Store[1],
-                                                             ::std::forward<Token>(token), value);
+    return async_set_at_the_edge(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::Array<::std::uint8_t> get_beyond_it() {
-    return rr_get<::rr::Array<::std::uint8_t>>(rr_members_Store[2]);
+  ::rr::Array<::std::uint8_t> get_beyond_it(const ::rr::CallOptions& options = {}) {
+    return rr_get<::rr::Array<::std::uint8_t>>(rr_members_Store[2], options);
+  }
+  template <class Token>
+  auto async_get_beyond_it(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::rr::Array<::std::uint8_t>>(rr_members_Store[2], options,
+                                                     ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_beyond_it(Token&& token) {
-    return rr_async_get<::rr::Array<::std::uint8_t>>(rr_members_Store[2],
-                                                     ::std::forward<Token>(token));
+    return async_get_beyond_it(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_beyond_it(const ::rr::Array<::std::uint8_t>& value) {
-    rr_set(rr_members_Store[2], &value);
+  void set_beyond_it(const ::rr::Array<::std::uint8_t>& value,
+                     const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Store[2], options, &value);
+  }
+  template <class Token>
+  auto async_set_beyond_it(const ::rr::Array<::std::uint8_t>& value,
+                           const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::rr::Array<::std::uint8_t>>(rr_members_Store[2], options,
+                                                     ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_beyond_it(const ::rr::Array<::std::uint8_t>& value, Token&& token) {
-    return rr_async_set<::rr::Array<::std::uint8_t>>(rr_members_Store[2],
-                                                     ::std::forward<Token>(token), value);
+    return async_set_beyond_it(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::MultiArray<float> depth(const ::rr::Array<::std::uint16_t>& raw) {
-    return rr_call<::rr::MultiArray<float>>(rr_members_Store[3], raw);
+  ::rr::MultiArray<float> depth(const ::rr::Array<::std::uint16_t>& raw,
+                                const ::rr::CallOptions& options = {}) {
+    return rr_call<::rr::MultiArray<float>>(rr_members_Store[3], options, raw);
+  }
+  template <class Token>
+  auto async_depth(const ::rr::Array<::std::uint16_t>& raw, const ::rr::CallOptions& options,
+                   Token&& token) {
+    return rr_async_call<::rr::MultiArray<float>>(rr_members_Store[3], options,
+                                                  ::std::forward<Token>(token), raw);
   }
   template <class Token>
   auto async_depth(const ::rr::Array<::std::uint16_t>& raw, Token&& token) {
-    return rr_async_call<::rr::MultiArray<float>>(rr_members_Store[3], ::std::forward<Token>(token),
-                                                  raw);
+    return async_depth(raw, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <utility>
 
-static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
+static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace experimental::constants {
 
@@ -59,19 +59,30 @@ extern const ::rr::ObjectType rr_object_Machine;
 /// A Machine on another node.
 class MachineStub : public virtual ::rr::Stub {
  public:
-  ::std::optional<Setting> get_setting() {
-    return rr_get<::std::optional<Setting>>(rr_members_Machine[0]);
+  ::std::optional<Setting> get_setting(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::optional<Setting>>(rr_members_Machine[0], options);
+  }
+  template <class Token>
+  auto async_get_setting(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::optional<Setting>>(rr_members_Machine[0], options,
+                                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_setting(Token&& token) {
-    return rr_async_get<::std::optional<Setting>>(rr_members_Machine[0],
-                                                  ::std::forward<Token>(token));
+    return async_get_setting(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_setting(const ::std::optional<Setting>& value) { rr_set(rr_members_Machine[0], &value); }
+  void set_setting(const ::std::optional<Setting>& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Machine[0], options, &value);
+  }
+  template <class Token>
+  auto async_set_setting(const ::std::optional<Setting>& value, const ::rr::CallOptions& options,
+                         Token&& token) {
+    return rr_async_set<::std::optional<Setting>>(rr_members_Machine[0], options,
+                                                  ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_setting(const ::std::optional<Setting>& value, Token&& token) {
-    return rr_async_set<::std::optional<Setting>>(rr_members_Machine[0],
-                                                  ::std::forward<Token>(token), value);
+    return async_set_setting(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };

@@ -70,8 +70,9 @@ constinit const ::rr::ObjectType rr_object_Shutters{
 
 const ::rr::ObjectType& ShuttersStub::rr_object_type() const { return rr_object_Shutters; }
 
-::std::shared_ptr<ShuttersStub> ShuttersStub::get_part(::std::int32_t index) {
-  return rr_find_as<ShuttersStub>(rr_members_Shutters[3], index);
+::std::shared_ptr<ShuttersStub> ShuttersStub::get_part(::std::int32_t index,
+                                                       const ::rr::CallOptions& options) {
+  return rr_find_as<ShuttersStub>(rr_members_Shutters[3], options, index);
 }
 
 const ::rr::ObjectType& ShuttersSkeleton::rr_object_type() const { return rr_object_Shutters; }

@@ -15,7 +15,7 @@
 #include <string>
 #include <utility>
 
-static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
+static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 /// Controls the shutters of a building.
 ///
@@ -55,27 +55,46 @@ extern const ::rr::ObjectType rr_object_Shutters;
 class ShuttersStub : public virtual ::rr::Stub {
  public:
   /// How many there are.
-  ::std::int32_t get_count() { return rr_get<::std::int32_t>(rr_members_Shutters[0]); }
+  ::std::int32_t get_count(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::int32_t>(rr_members_Shutters[0], options);
+  }
+  template <class Token>
+  auto async_get_count(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::int32_t>(rr_members_Shutters[0], options,
+                                        ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_count(Token&& token) {
-    return rr_async_get<::std::int32_t>(rr_members_Shutters[0], ::std::forward<Token>(token));
+    return async_get_count(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   /// Moves one shutter and answers when it is there. `*/` and /* are text.
-  ::std::optional<Place> move(::std::int32_t number, double position) {
-    return rr_call<::std::optional<Place>>(rr_members_Shutters[1], number, position);
+  ::std::optional<Place> move(::std::int32_t number, double position,
+                              const ::rr::CallOptions& options = {}) {
+    return rr_call<::std::optional<Place>>(rr_members_Shutters[1], options, number, position);
+  }
+  template <class Token>
+  auto async_move(::std::int32_t number, double position, const ::rr::CallOptions& options,
+                  Token&& token) {
+    return rr_async_call<::std::optional<Place>>(rr_members_Shutters[1], options,
+                                                 ::std::forward<Token>(token), number, position);
   }
   template <class Token>
   auto async_move(::std::int32_t number, double position, Token&& token) {
-    return rr_async_call<::std::optional<Place>>(rr_members_Shutters[1],
-                                                 ::std::forward<Token>(token), number, position);
+    return async_move(number, position, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   /// Somebody moved one by hand.
   ::rr::Event<::std::int32_t> moved() { return {*this, rr_members_Shutters[2]}; }
   /// One shutter.
-  ::std::shared_ptr<ShuttersStub> get_part(::std::int32_t index);
+  ::std::shared_ptr<ShuttersStub> get_part(::std::int32_t index,
+                                           const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_part(::std::int32_t index, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<ShuttersStub>(rr_members_Shutters[3], options,
+                                       ::std::forward<Token>(token), index);
+  }
   template <class Token>
   auto async_get_part(::std::int32_t index, Token&& token) {
-    return rr_async_find<ShuttersStub>(rr_members_Shutters[3], ::std::forward<Token>(token), index);
+    return async_get_part(index, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
+static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace experimental::enums {
 
@@ -39,53 +39,94 @@ extern const ::rr::ObjectType rr_object_Machine;
 /// A Machine on another node.
 class MachineStub : public virtual ::rr::Stub {
  public:
-  State get_state() { return rr_get<State>(rr_members_Machine[0]); }
+  State get_state(const ::rr::CallOptions& options = {}) {
+    return rr_get<State>(rr_members_Machine[0], options);
+  }
+  template <class Token>
+  auto async_get_state(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<State>(rr_members_Machine[0], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_state(Token&& token) {
-    return rr_async_get<State>(rr_members_Machine[0], ::std::forward<Token>(token));
+    return async_get_state(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_state(State value) { rr_set(rr_members_Machine[0], &value); }
+  void set_state(State value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Machine[0], options, &value);
+  }
+  template <class Token>
+  auto async_set_state(State value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<State>(rr_members_Machine[0], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_state(State value, Token&& token) {
-    return rr_async_set<State>(rr_members_Machine[0], ::std::forward<Token>(token), value);
+    return async_set_state(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::optional<::std::vector<State>> get_history() {
-    return rr_get<::std::optional<::std::vector<State>>>(rr_members_Machine[1]);
+  ::std::optional<::std::vector<State>> get_history(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::optional<::std::vector<State>>>(rr_members_Machine[1], options);
+  }
+  template <class Token>
+  auto async_get_history(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::optional<::std::vector<State>>>(rr_members_Machine[1], options,
+                                                               ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_history(Token&& token) {
-    return rr_async_get<::std::optional<::std::vector<State>>>(rr_members_Machine[1],
-                                                               ::std::forward<Token>(token));
+    return async_get_history(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_history(const ::std::optional<::std::vector<State>>& value) {
-    rr_set(rr_members_Machine[1], &value);
+  void set_history(const ::std::optional<::std::vector<State>>& value,
+                   const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Machine[1], options, &value);
+  }
+  template <class Token>
+  auto async_set_history(const ::std::optional<::std::vector<State>>& value,
+                         const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::std::optional<::std::vector<State>>>(rr_members_Machine[1], options,
+                                                               ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_history(const ::std::optional<::std::vector<State>>& value, Token&& token) {
-    return rr_async_set<::std::optional<::std::vector<State>>>(rr_members_Machine[1],
-                                                               ::std::forward<Token>(token), value);
+    return async_set_history(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::optional<::std::map<::std::string, State>> get_parts() {
-    return rr_get<::std::optional<::std::map<::std::string, State>>>(rr_members_Machine[2]);
+  ::std::optional<::std::map<::std::string, State>> get_parts(
+      const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::optional<::std::map<::std::string, State>>>(rr_members_Machine[2],
+                                                                     options);
+  }
+  template <class Token>
+  auto async_get_parts(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::optional<::std::map<::std::string, State>>>(
+        rr_members_Machine[2], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_parts(Token&& token) {
-    return rr_async_get<::std::optional<::std::map<::std::string, State>>>(
-        rr_members_Machine[2], ::std::forward<Token>(token));
+    return async_get_parts(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_parts(const ::std::optional<::std::map<::std::string, State>>& value) {
-    rr_set(rr_members_Machine[2], &value);
+  void set_parts(const ::std::optional<::std::map<::std::string, State>>& value,
+                 const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Machine[2], options, &value);
+  }
+  template <class Token>
+  auto async_set_parts(const ::std::optional<::std::map<::std::string, State>>& value,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::std::optional<::std::map<::std::string, State>>>(
+        rr_members_Machine[2], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_parts(const ::std::optional<::std::map<::std::string, State>>& value,
                        Token&& token) {
-    return rr_async_set<::std::optional<::std::map<::std::string, State>>>(
-        rr_members_Machine[2], ::std::forward<Token>(token), value);
+    return async_set_parts(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  Limits limit(State state) { return rr_call<Limits>(rr_members_Machine[3], state); }
+  Limits limit(State state, const ::rr::CallOptions& options = {}) {
+    return rr_call<Limits>(rr_members_Machine[3], options, state);
+  }
+  template <class Token>
+  auto async_limit(State state, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<Limits>(rr_members_Machine[3], options, ::std::forward<Token>(token),
+                                 state);
+  }
   template <class Token>
   auto async_limit(State state, Token&& token) {
-    return rr_async_call<Limits>(rr_members_Machine[3], ::std::forward<Token>(token), state);
+    return async_limit(state, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };

@@ -7,13 +7,14 @@
 #include <optional>
 #include <rr/answer.hpp>
 #include <rr/skeleton.hpp>
+#include <rr/stored.hpp>
 #include <rr/stub.hpp>
 #include <rr/type.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
-static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
+static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace experimental::events {
 
@@ -35,10 +36,14 @@ class SirenStub : public virtual ::rr::Stub {
   raised() {
     return {*this, rr_members_Siren[1]};
   }
-  void test() { rr_call<void>(rr_members_Siren[2]); }
+  void test(const ::rr::CallOptions& options = {}) { rr_call<void>(rr_members_Siren[2], options); }
+  template <class Token>
+  auto async_test(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<void>(rr_members_Siren[2], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_test(Token&& token) {
-    return rr_async_call<void>(rr_members_Siren[2], ::std::forward<Token>(token));
+    return async_test(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
@@ -61,6 +66,12 @@ class SirenSkeleton : public virtual ::rr::Skeleton {
   void rr_dispatch(::std::size_t member, ::rr::Request& request) override;
   ::std::shared_ptr<::rr::Skeleton> rr_child(::std::size_t member,
                                              const ::rr::ObjectIndex& index) override;
+};
+
+/// A Siren whose functions and objrefs fail until they are overridden.
+class SirenDefault : public SirenSkeleton {
+ public:
+  void test() override { ::rr::throw_not_implemented("test"); }
 };
 
 extern const ::rr::Definition rr_definition;

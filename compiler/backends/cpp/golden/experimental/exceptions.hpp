@@ -6,12 +6,13 @@
 #include <rr/answer.hpp>
 #include <rr/error.hpp>
 #include <rr/skeleton.hpp>
+#include <rr/stored.hpp>
 #include <rr/stub.hpp>
 #include <rr/varvalue.hpp>
 #include <string>
 #include <utility>
 
-static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
+static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace experimental::exceptions {
 
@@ -40,10 +41,14 @@ extern const ::rr::ObjectType rr_object_Press;
 /// A Press on another node.
 class PressStub : public virtual ::rr::Stub {
  public:
-  void close() { rr_call<void>(rr_members_Press[0]); }
+  void close(const ::rr::CallOptions& options = {}) { rr_call<void>(rr_members_Press[0], options); }
+  template <class Token>
+  auto async_close(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<void>(rr_members_Press[0], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_close(Token&& token) {
-    return rr_async_call<void>(rr_members_Press[0], ::std::forward<Token>(token));
+    return async_close(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
@@ -60,6 +65,12 @@ class PressSkeleton : public virtual ::rr::Skeleton {
   void rr_dispatch(::std::size_t member, ::rr::Request& request) override;
   ::std::shared_ptr<::rr::Skeleton> rr_child(::std::size_t member,
                                              const ::rr::ObjectIndex& index) override;
+};
+
+/// A Press whose functions and objrefs fail until they are overridden.
+class PressDefault : public PressSkeleton {
+ public:
+  void close() override { ::rr::throw_not_implemented("close"); }
 };
 
 extern const ::rr::Definition rr_definition;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <rr/answer.hpp>
 #include <rr/skeleton.hpp>
+#include <rr/stored.hpp>
 #include <rr/stub.hpp>
 #include <rr/type.hpp>
 #include <rr/varvalue.hpp>
@@ -16,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
+static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace experimental::functions {
 
@@ -33,66 +34,117 @@ extern const ::rr::ObjectType rr_object_Machine;
 /// A Machine on another node.
 class MachineStub : public virtual ::rr::Stub {
  public:
-  void stop() { rr_call<void>(rr_members_Machine[0]); }
+  void stop(const ::rr::CallOptions& options = {}) {
+    rr_call<void>(rr_members_Machine[0], options);
+  }
+  template <class Token>
+  auto async_stop(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<void>(rr_members_Machine[0], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_stop(Token&& token) {
-    return rr_async_call<void>(rr_members_Machine[0], ::std::forward<Token>(token));
+    return async_stop(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double speed() { return rr_call<double>(rr_members_Machine[1]); }
+  double speed(const ::rr::CallOptions& options = {}) {
+    return rr_call<double>(rr_members_Machine[1], options);
+  }
+  template <class Token>
+  auto async_speed(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<double>(rr_members_Machine[1], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_speed(Token&& token) {
-    return rr_async_call<double>(rr_members_Machine[1], ::std::forward<Token>(token));
+    return async_speed(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void move_to(double pan, double tilt) { rr_call<void>(rr_members_Machine[2], pan, tilt); }
+  void move_to(double pan, double tilt, const ::rr::CallOptions& options = {}) {
+    rr_call<void>(rr_members_Machine[2], options, pan, tilt);
+  }
+  template <class Token>
+  auto async_move_to(double pan, double tilt, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<void>(rr_members_Machine[2], options, ::std::forward<Token>(token), pan,
+                               tilt);
+  }
   template <class Token>
   auto async_move_to(double pan, double tilt, Token&& token) {
-    return rr_async_call<void>(rr_members_Machine[2], ::std::forward<Token>(token), pan, tilt);
+    return async_move_to(pan, tilt, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::string join(const ::std::string& first, const ::std::string& second,
-                     const ::std::optional<::std::vector<::std::string>>& others) {
-    return rr_call<::std::string>(rr_members_Machine[3], first, second, others);
+                     const ::std::optional<::std::vector<::std::string>>& others,
+                     const ::rr::CallOptions& options = {}) {
+    return rr_call<::std::string>(rr_members_Machine[3], options, first, second, others);
+  }
+  template <class Token>
+  auto async_join(const ::std::string& first, const ::std::string& second,
+                  const ::std::optional<::std::vector<::std::string>>& others,
+                  const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::string>(rr_members_Machine[3], options,
+                                        ::std::forward<Token>(token), first, second, others);
   }
   template <class Token>
   auto async_join(const ::std::string& first, const ::std::string& second,
                   const ::std::optional<::std::vector<::std::string>>& others, Token&& token) {
-    return rr_async_call<::std::string>(rr_members_Machine[3], ::std::forward<Token>(token), first,
-                                        second, others);
+    return async_join(first, second, others, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<Report> inspect(const ::std::optional<Report>& previous,
-                                  const ::rr::Array<::std::uint8_t>& picture) {
-    return rr_call<::std::optional<Report>>(rr_members_Machine[4], previous, picture);
+                                  const ::rr::Array<::std::uint8_t>& picture,
+                                  const ::rr::CallOptions& options = {}) {
+    return rr_call<::std::optional<Report>>(rr_members_Machine[4], options, previous, picture);
+  }
+  template <class Token>
+  auto async_inspect(const ::std::optional<Report>& previous,
+                     const ::rr::Array<::std::uint8_t>& picture, const ::rr::CallOptions& options,
+                     Token&& token) {
+    return rr_async_call<::std::optional<Report>>(rr_members_Machine[4], options,
+                                                  ::std::forward<Token>(token), previous, picture);
   }
   template <class Token>
   auto async_inspect(const ::std::optional<Report>& previous,
                      const ::rr::Array<::std::uint8_t>& picture, Token&& token) {
-    return rr_async_call<::std::optional<Report>>(rr_members_Machine[4],
-                                                  ::std::forward<Token>(token), previous, picture);
+    return async_inspect(previous, picture, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::Array<double> filter(const ::rr::Array<double>& samples,
-                             const ::std::array<double, 3>& weights, bool normalize) {
-    return rr_call<::rr::Array<double>>(rr_members_Machine[5], samples, weights, normalize);
+                             const ::std::array<double, 3>& weights, bool normalize,
+                             const ::rr::CallOptions& options = {}) {
+    return rr_call<::rr::Array<double>>(rr_members_Machine[5], options, samples, weights,
+                                        normalize);
+  }
+  template <class Token>
+  auto async_filter(const ::rr::Array<double>& samples, const ::std::array<double, 3>& weights,
+                    bool normalize, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::rr::Array<double>>(
+        rr_members_Machine[5], options, ::std::forward<Token>(token), samples, weights, normalize);
   }
   template <class Token>
   auto async_filter(const ::rr::Array<double>& samples, const ::std::array<double, 3>& weights,
                     bool normalize, Token&& token) {
-    return rr_async_call<::rr::Array<double>>(rr_members_Machine[5], ::std::forward<Token>(token),
-                                              samples, weights, normalize);
+    return async_filter(samples, weights, normalize, ::rr::CallOptions(),
+                        ::std::forward<Token>(token));
   }
   ::std::optional<::std::map<::std::string, ::rr::VarValue>> a_function_whose_name_is_rather_long(
       const ::rr::VarValue& a_first_parameter_with_a_long_name,
-      const ::std::optional<::std::vector<::rr::VarValue>>& another_parameter_with_a_long_name) {
+      const ::std::optional<::std::vector<::rr::VarValue>>& another_parameter_with_a_long_name,
+      const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(
-        rr_members_Machine[6], a_first_parameter_with_a_long_name,
+        rr_members_Machine[6], options, a_first_parameter_with_a_long_name,
         another_parameter_with_a_long_name);
   }
   template <class Token>
   auto async_a_function_whose_name_is_rather_long(
       const ::rr::VarValue& a_first_parameter_with_a_long_name,
       const ::std::optional<::std::vector<::rr::VarValue>>& another_parameter_with_a_long_name,
-      Token&& token) {
+      const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(
-        rr_members_Machine[6], ::std::forward<Token>(token), a_first_parameter_with_a_long_name,
-        another_parameter_with_a_long_name);
+        rr_members_Machine[6], options, ::std::forward<Token>(token),
+        a_first_parameter_with_a_long_name, another_parameter_with_a_long_name);
+  }
+  template <class Token>
+  auto async_a_function_whose_name_is_rather_long(
+      const ::rr::VarValue& a_first_parameter_with_a_long_name,
+      const ::std::optional<::std::vector<::rr::VarValue>>& another_parameter_with_a_long_name,
+      Token&& token) {
+    return async_a_function_whose_name_is_rather_long(
+        a_first_parameter_with_a_long_name, another_parameter_with_a_long_name, ::rr::CallOptions(),
+        ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
@@ -148,6 +200,30 @@ class MachineSkeleton : public virtual ::rr::Skeleton {
   void rr_dispatch(::std::size_t member, ::rr::Request& request) override;
   ::std::shared_ptr<::rr::Skeleton> rr_child(::std::size_t member,
                                              const ::rr::ObjectIndex& index) override;
+};
+
+/// A Machine whose functions and objrefs fail until they are overridden.
+class MachineDefault : public MachineSkeleton {
+ public:
+  void stop() override { ::rr::throw_not_implemented("stop"); }
+  double speed() override { ::rr::throw_not_implemented("speed"); }
+  void move_to(double, double) override { ::rr::throw_not_implemented("move_to"); }
+  ::std::string join(const ::std::string&, const ::std::string&,
+                     const ::std::optional<::std::vector<::std::string>>&) override {
+    ::rr::throw_not_implemented("join");
+  }
+  ::std::optional<Report> inspect(const ::std::optional<Report>&,
+                                  const ::rr::Array<::std::uint8_t>&) override {
+    ::rr::throw_not_implemented("inspect");
+  }
+  ::rr::Array<double> filter(const ::rr::Array<double>&, const ::std::array<double, 3>&,
+                             bool) override {
+    ::rr::throw_not_implemented("filter");
+  }
+  ::std::optional<::std::map<::std::string, ::rr::VarValue>> a_function_whose_name_is_rather_long(
+      const ::rr::VarValue&, const ::std::optional<::std::vector<::rr::VarValue>>&) override {
+    ::rr::throw_not_implemented("a_function_whose_name_is_rather_long");
+  }
 };
 
 extern const ::rr::Definition rr_definition;

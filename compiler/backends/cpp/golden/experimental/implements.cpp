@@ -201,8 +201,9 @@ constinit const ::rr::ObjectType rr_object_Drive{
 
 const ::rr::ObjectType& DriveStub::rr_object_type() const { return rr_object_Drive; }
 
-::std::shared_ptr<NamedStub> DriveStub::get_part(const ::std::string& index) {
-  return rr_find_as<NamedStub>(rr_members_Drive[6], index);
+::std::shared_ptr<NamedStub> DriveStub::get_part(const ::std::string& index,
+                                                 const ::rr::CallOptions& options) {
+  return rr_find_as<NamedStub>(rr_members_Drive[6], options, index);
 }
 
 const ::rr::ObjectType& DriveSkeleton::rr_object_type() const { return rr_object_Drive; }

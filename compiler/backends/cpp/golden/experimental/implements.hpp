@@ -12,7 +12,7 @@
 
 #include "experimental/objrefs.hpp"
 
-static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
+static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace experimental::implements {
 
@@ -22,10 +22,16 @@ extern const ::rr::ObjectType rr_object_Named;
 /// A Named on another node.
 class NamedStub : public virtual ::rr::Stub {
  public:
-  ::std::string get_name() { return rr_get<::std::string>(rr_members_Named[0]); }
+  ::std::string get_name(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::string>(rr_members_Named[0], options);
+  }
+  template <class Token>
+  auto async_get_name(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::string>(rr_members_Named[0], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_name(Token&& token) {
-    return rr_async_get<::std::string>(rr_members_Named[0], ::std::forward<Token>(token));
+    return async_get_name(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::Event<::std::string> renamed() { return {*this, rr_members_Named[1]}; }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
@@ -59,10 +65,16 @@ extern const ::rr::ObjectType rr_object_Device;
 /// A Device on another node.
 class DeviceStub : public virtual NamedStub {
  public:
-  void reset() { rr_call<void>(rr_members_Device[2]); }
+  void reset(const ::rr::CallOptions& options = {}) {
+    rr_call<void>(rr_members_Device[2], options);
+  }
+  template <class Token>
+  auto async_reset(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<void>(rr_members_Device[2], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_reset(Token&& token) {
-    return rr_async_call<void>(rr_members_Device[2], ::std::forward<Token>(token));
+    return async_reset(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
@@ -99,15 +111,27 @@ extern const ::rr::ObjectType rr_object_Powered;
 /// A Powered on another node.
 class PoweredStub : public virtual NamedStub {
  public:
-  bool get_on() { return rr_get<bool>(rr_members_Powered[2]); }
+  bool get_on(const ::rr::CallOptions& options = {}) {
+    return rr_get<bool>(rr_members_Powered[2], options);
+  }
+  template <class Token>
+  auto async_get_on(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<bool>(rr_members_Powered[2], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_on(Token&& token) {
-    return rr_async_get<bool>(rr_members_Powered[2], ::std::forward<Token>(token));
+    return async_get_on(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_on(bool value) { rr_set(rr_members_Powered[2], &value); }
+  void set_on(bool value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Powered[2], options, &value);
+  }
+  template <class Token>
+  auto async_set_on(bool value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<bool>(rr_members_Powered[2], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_on(bool value, Token&& token) {
-    return rr_async_set<bool>(rr_members_Powered[2], ::std::forward<Token>(token), value);
+    return async_set_on(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
@@ -148,20 +172,38 @@ class DriveStub : public virtual DeviceStub,
                   public virtual NamedStub,
                   public virtual ::experimental::objrefs::JointStub {
  public:
-  double get_torque() { return rr_get<double>(rr_members_Drive[5]); }
+  double get_torque(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_Drive[5], options);
+  }
+  template <class Token>
+  auto async_get_torque(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_Drive[5], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_torque(Token&& token) {
-    return rr_async_get<double>(rr_members_Drive[5], ::std::forward<Token>(token));
+    return async_get_torque(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_torque(double value) { rr_set(rr_members_Drive[5], &value); }
+  void set_torque(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Drive[5], options, &value);
+  }
+  template <class Token>
+  auto async_set_torque(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_Drive[5], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_torque(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_Drive[5], ::std::forward<Token>(token), value);
+    return async_set_torque(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<NamedStub> get_part(const ::std::string& index);
+  ::std::shared_ptr<NamedStub> get_part(const ::std::string& index,
+                                        const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_part(const ::std::string& index, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<NamedStub>(rr_members_Drive[6], options, ::std::forward<Token>(token),
+                                    index);
+  }
   template <class Token>
   auto async_get_part(const ::std::string& index, Token&& token) {
-    return rr_async_find<NamedStub>(rr_members_Drive[6], ::std::forward<Token>(token), index);
+    return async_get_part(index, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };

@@ -14,7 +14,7 @@
 #include "experimental/enums.hpp"
 #include "experimental/namedarrays.hpp"
 
-static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
+static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace experimental::imports {
 
@@ -36,41 +36,72 @@ extern const ::rr::ObjectType rr_object_Planner;
 /// A Planner on another node.
 class PlannerStub : public virtual ::rr::Stub {
  public:
-  ::std::optional<Plan> get_plan() { return rr_get<::std::optional<Plan>>(rr_members_Planner[0]); }
+  ::std::optional<Plan> get_plan(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::optional<Plan>>(rr_members_Planner[0], options);
+  }
+  template <class Token>
+  auto async_get_plan(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::optional<Plan>>(rr_members_Planner[0], options,
+                                               ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_plan(Token&& token) {
-    return rr_async_get<::std::optional<Plan>>(rr_members_Planner[0], ::std::forward<Token>(token));
+    return async_get_plan(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_plan(const ::std::optional<Plan>& value) { rr_set(rr_members_Planner[0], &value); }
+  void set_plan(const ::std::optional<Plan>& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Planner[0], options, &value);
+  }
+  template <class Token>
+  auto async_set_plan(const ::std::optional<Plan>& value, const ::rr::CallOptions& options,
+                      Token&& token) {
+    return rr_async_set<::std::optional<Plan>>(rr_members_Planner[0], options,
+                                               ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_plan(const ::std::optional<Plan>& value, Token&& token) {
-    return rr_async_set<::std::optional<Plan>>(rr_members_Planner[0], ::std::forward<Token>(token),
-                                               value);
+    return async_set_plan(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::Array<::experimental::namedarrays::Pixel> get_picture() {
-    return rr_get<::rr::Array<::experimental::namedarrays::Pixel>>(rr_members_Planner[1]);
+  ::rr::Array<::experimental::namedarrays::Pixel> get_picture(
+      const ::rr::CallOptions& options = {}) {
+    return rr_get<::rr::Array<::experimental::namedarrays::Pixel>>(rr_members_Planner[1], options);
+  }
+  template <class Token>
+  auto async_get_picture(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::rr::Array<::experimental::namedarrays::Pixel>>(
+        rr_members_Planner[1], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_picture(Token&& token) {
-    return rr_async_get<::rr::Array<::experimental::namedarrays::Pixel>>(
-        rr_members_Planner[1], ::std::forward<Token>(token));
+    return async_get_picture(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_picture(const ::rr::Array<::experimental::namedarrays::Pixel>& value) {
-    rr_set(rr_members_Planner[1], &value);
+  void set_picture(const ::rr::Array<::experimental::namedarrays::Pixel>& value,
+                   const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Planner[1], options, &value);
+  }
+  template <class Token>
+  auto async_set_picture(const ::rr::Array<::experimental::namedarrays::Pixel>& value,
+                         const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::rr::Array<::experimental::namedarrays::Pixel>>(
+        rr_members_Planner[1], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_picture(const ::rr::Array<::experimental::namedarrays::Pixel>& value,
                          Token&& token) {
-    return rr_async_set<::rr::Array<::experimental::namedarrays::Pixel>>(
-        rr_members_Planner[1], ::std::forward<Token>(token), value);
+    return async_set_picture(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::Array<Pose> solve(const Pose& start, const Direction& approach, State state) {
-    return rr_call<::rr::Array<Pose>>(rr_members_Planner[2], start, approach, state);
+  ::rr::Array<Pose> solve(const Pose& start, const Direction& approach, State state,
+                          const ::rr::CallOptions& options = {}) {
+    return rr_call<::rr::Array<Pose>>(rr_members_Planner[2], options, start, approach, state);
+  }
+  template <class Token>
+  auto async_solve(const Pose& start, const Direction& approach, State state,
+                   const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::rr::Array<Pose>>(rr_members_Planner[2], options,
+                                            ::std::forward<Token>(token), start, approach, state);
   }
   template <class Token>
   auto async_solve(const Pose& start, const Direction& approach, State state, Token&& token) {
-    return rr_async_call<::rr::Array<Pose>>(rr_members_Planner[2], ::std::forward<Token>(token),
-                                            start, approach, state);
+    return async_solve(start, approach, state, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };

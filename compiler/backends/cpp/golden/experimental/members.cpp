@@ -474,8 +474,8 @@ constinit const ::rr::ObjectType rr_object_Station{
 
 const ::rr::ObjectType& StationStub::rr_object_type() const { return rr_object_Station; }
 
-::std::shared_ptr<GeneratorsStub> StationStub::get_generators() {
-  return rr_find_as<GeneratorsStub>(rr_members_Station[15]);
+::std::shared_ptr<GeneratorsStub> StationStub::get_generators(const ::rr::CallOptions& options) {
+  return rr_find_as<GeneratorsStub>(rr_members_Station[15], options);
 }
 
 const ::rr::ObjectType& StationSkeleton::rr_object_type() const { return rr_object_Station; }

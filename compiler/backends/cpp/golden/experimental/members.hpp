@@ -26,7 +26,7 @@
 #include "experimental/namedarrays.hpp"
 #include "experimental/pods.hpp"
 
-static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
+static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace experimental::members {
 
@@ -55,13 +55,17 @@ class SensorStub : public virtual ::rr::Stub {
   ::rr::Callback<::std::int32_t(::std::int32_t)> ask() { return {*this, rr_members_Sensor[1]}; }
   ::rr::Wire<::std::array<double, 3>> force() { return {*this, rr_members_Sensor[2]}; }
   ::rr::ArrayMemory<double> buffer() { return {*this, rr_members_Sensor[3]}; }
-  ::rr::Generator<double> count(double limit) {
-    return rr_generate<double, void>(rr_members_Sensor[4], limit);
+  ::rr::Generator<double> count(double limit, const ::rr::CallOptions& options = {}) {
+    return rr_generate<double, void>(rr_members_Sensor[4], options, limit);
+  }
+  template <class Token>
+  auto async_count(double limit, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_generate<double, void>(rr_members_Sensor[4], options,
+                                           ::std::forward<Token>(token), limit);
   }
   template <class Token>
   auto async_count(double limit, Token&& token) {
-    return rr_async_generate<double, void>(rr_members_Sensor[4], ::std::forward<Token>(token),
-                                           limit);
+    return async_count(limit, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
@@ -71,13 +75,19 @@ class SensorSkeleton : public virtual ::rr::Skeleton {
  public:
   /// Each picture when it is taken.
   ::rr::PipeServer<::std::optional<Frame>> frames() const { return {*this, rr_members_Sensor[0]}; }
-  ::std::int32_t ask(::std::uint32_t client, ::std::int32_t question) const {
-    return rr_call_back<::std::int32_t>(rr_members_Sensor[1], client, question);
+  ::std::int32_t ask(::std::uint32_t client, ::std::int32_t question,
+                     const ::rr::CallOptions& options = {}) const {
+    return rr_call_back<::std::int32_t>(rr_members_Sensor[1], options, client, question);
+  }
+  template <class Token>
+  auto async_ask(::std::uint32_t client, ::std::int32_t question, const ::rr::CallOptions& options,
+                 Token&& token) const {
+    return rr_async_call_back<::std::int32_t>(rr_members_Sensor[1], options,
+                                              ::std::forward<Token>(token), client, question);
   }
   template <class Token>
   auto async_ask(::std::uint32_t client, ::std::int32_t question, Token&& token) const {
-    return rr_async_call_back<::std::int32_t>(rr_members_Sensor[1], ::std::forward<Token>(token),
-                                              client, question);
+    return async_ask(client, question, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::WireServer<::std::array<double, 3>> force() const { return {*this, rr_members_Sensor[2]}; }
   virtual ::std::shared_ptr<::rr::ArrayMemorySource<double>> buffer() = 0;
@@ -106,75 +116,118 @@ extern const ::rr::ObjectType rr_object_Generators;
 /// A Generators on another node.
 class GeneratorsStub : public virtual ::rr::Stub {
  public:
-  ::rr::Generator<double> count(double limit) {
-    return rr_generate<double, void>(rr_members_Generators[0], limit);
+  ::rr::Generator<double> count(double limit, const ::rr::CallOptions& options = {}) {
+    return rr_generate<double, void>(rr_members_Generators[0], options, limit);
+  }
+  template <class Token>
+  auto async_count(double limit, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_generate<double, void>(rr_members_Generators[0], options,
+                                           ::std::forward<Token>(token), limit);
   }
   template <class Token>
   auto async_count(double limit, Token&& token) {
-    return rr_async_generate<double, void>(rr_members_Generators[0], ::std::forward<Token>(token),
-                                           limit);
+    return async_count(limit, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::Generator<::std::optional<Frame>> all_frames() {
-    return rr_generate<::std::optional<Frame>, void>(rr_members_Generators[1]);
+  ::rr::Generator<::std::optional<Frame>> all_frames(const ::rr::CallOptions& options = {}) {
+    return rr_generate<::std::optional<Frame>, void>(rr_members_Generators[1], options);
+  }
+  template <class Token>
+  auto async_all_frames(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_generate<::std::optional<Frame>, void>(rr_members_Generators[1], options,
+                                                           ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_all_frames(Token&& token) {
-    return rr_async_generate<::std::optional<Frame>, void>(rr_members_Generators[1],
-                                                           ::std::forward<Token>(token));
+    return async_all_frames(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::Generator<void, ::std::optional<Frame>> collect(const ::std::string& label) {
-    return rr_generate<void, ::std::optional<Frame>>(rr_members_Generators[2], label);
+  ::rr::Generator<void, ::std::optional<Frame>> collect(const ::std::string& label,
+                                                        const ::rr::CallOptions& options = {}) {
+    return rr_generate<void, ::std::optional<Frame>>(rr_members_Generators[2], options, label);
+  }
+  template <class Token>
+  auto async_collect(const ::std::string& label, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_generate<void, ::std::optional<Frame>>(rr_members_Generators[2], options,
+                                                           ::std::forward<Token>(token), label);
   }
   template <class Token>
   auto async_collect(const ::std::string& label, Token&& token) {
-    return rr_async_generate<void, ::std::optional<Frame>>(rr_members_Generators[2],
-                                                           ::std::forward<Token>(token), label);
+    return async_collect(label, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::Generator<void, ::rr::Array<::std::uint8_t>> accept() {
-    return rr_generate<void, ::rr::Array<::std::uint8_t>>(rr_members_Generators[3]);
+  ::rr::Generator<void, ::rr::Array<::std::uint8_t>> accept(const ::rr::CallOptions& options = {}) {
+    return rr_generate<void, ::rr::Array<::std::uint8_t>>(rr_members_Generators[3], options);
+  }
+  template <class Token>
+  auto async_accept(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_generate<void, ::rr::Array<::std::uint8_t>>(rr_members_Generators[3], options,
+                                                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_accept(Token&& token) {
-    return rr_async_generate<void, ::rr::Array<::std::uint8_t>>(rr_members_Generators[3],
-                                                                ::std::forward<Token>(token));
+    return async_accept(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::Generator<double, double> running_sum(double start, const ::std::string& unit) {
-    return rr_generate<double, double>(rr_members_Generators[4], start, unit);
+  ::rr::Generator<double, double> running_sum(double start, const ::std::string& unit,
+                                              const ::rr::CallOptions& options = {}) {
+    return rr_generate<double, double>(rr_members_Generators[4], options, start, unit);
+  }
+  template <class Token>
+  auto async_running_sum(double start, const ::std::string& unit, const ::rr::CallOptions& options,
+                         Token&& token) {
+    return rr_async_generate<double, double>(rr_members_Generators[4], options,
+                                             ::std::forward<Token>(token), start, unit);
   }
   template <class Token>
   auto async_running_sum(double start, const ::std::string& unit, Token&& token) {
-    return rr_async_generate<double, double>(rr_members_Generators[4], ::std::forward<Token>(token),
-                                             start, unit);
+    return async_running_sum(start, unit, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::Generator<::std::string, ::rr::Array<Sample>> relabel() {
-    return rr_generate<::std::string, ::rr::Array<Sample>>(rr_members_Generators[5]);
+  ::rr::Generator<::std::string, ::rr::Array<Sample>> relabel(
+      const ::rr::CallOptions& options = {}) {
+    return rr_generate<::std::string, ::rr::Array<Sample>>(rr_members_Generators[5], options);
+  }
+  template <class Token>
+  auto async_relabel(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_generate<::std::string, ::rr::Array<Sample>>(rr_members_Generators[5], options,
+                                                                 ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_relabel(Token&& token) {
-    return rr_async_generate<::std::string, ::rr::Array<Sample>>(rr_members_Generators[5],
-                                                                 ::std::forward<Token>(token));
+    return async_relabel(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::Generator<Vector3> trace_a_path_between_points(
       const Vector3& a_first_point_with_a_long_name, const ::rr::Array<Vector3>& other_points,
-      const ::std::optional<::std::vector<Mode>>& modes) {
-    return rr_generate<Vector3, void>(rr_members_Generators[6], a_first_point_with_a_long_name,
-                                      other_points, modes);
+      const ::std::optional<::std::vector<Mode>>& modes, const ::rr::CallOptions& options = {}) {
+    return rr_generate<Vector3, void>(rr_members_Generators[6], options,
+                                      a_first_point_with_a_long_name, other_points, modes);
+  }
+  template <class Token>
+  auto async_trace_a_path_between_points(const Vector3& a_first_point_with_a_long_name,
+                                         const ::rr::Array<Vector3>& other_points,
+                                         const ::std::optional<::std::vector<Mode>>& modes,
+                                         const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_generate<Vector3, void>(rr_members_Generators[6], options,
+                                            ::std::forward<Token>(token),
+                                            a_first_point_with_a_long_name, other_points, modes);
   }
   template <class Token>
   auto async_trace_a_path_between_points(const Vector3& a_first_point_with_a_long_name,
                                          const ::rr::Array<Vector3>& other_points,
                                          const ::std::optional<::std::vector<Mode>>& modes,
                                          Token&& token) {
-    return rr_async_generate<Vector3, void>(rr_members_Generators[6], ::std::forward<Token>(token),
-                                            a_first_point_with_a_long_name, other_points, modes);
+    return async_trace_a_path_between_points(a_first_point_with_a_long_name, other_points, modes,
+                                             ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::Generator<::rr::VarValue> token(const ::rr::VarValue& Token, ::std::int32_t limit) {
-    return rr_generate<::rr::VarValue, void>(rr_members_Generators[7], Token, limit);
+  ::rr::Generator<::rr::VarValue> token(const ::rr::VarValue& Token, ::std::int32_t limit,
+                                        const ::rr::CallOptions& options = {}) {
+    return rr_generate<::rr::VarValue, void>(rr_members_Generators[7], options, Token, limit);
+  }
+  template <class Token_>
+  auto async_token(const ::rr::VarValue& Token, ::std::int32_t limit,
+                   const ::rr::CallOptions& options, Token_&& token) {
+    return rr_async_generate<::rr::VarValue, void>(rr_members_Generators[7], options,
+                                                   ::std::forward<Token_>(token), Token, limit);
   }
   template <class Token_>
   auto async_token(const ::rr::VarValue& Token, ::std::int32_t limit, Token_&& token) {
-    return rr_async_generate<::rr::VarValue, void>(rr_members_Generators[7],
-                                                   ::std::forward<Token_>(token), Token, limit);
+    return async_token(Token, limit, ::rr::CallOptions(), ::std::forward<Token_>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
@@ -196,6 +249,34 @@ class GeneratorsSkeleton : public virtual ::rr::Skeleton {
   void rr_dispatch(::std::size_t member, ::rr::Request& request) override;
   ::std::shared_ptr<::rr::Skeleton> rr_child(::std::size_t member,
                                              const ::rr::ObjectIndex& index) override;
+};
+
+/// A Generators whose functions and objrefs fail until they are overridden.
+class GeneratorsDefault : public GeneratorsSkeleton {
+ public:
+  ::rr::Sequence<double> count(double) override { ::rr::throw_not_implemented("count"); }
+  ::rr::Sequence<::std::optional<Frame>> all_frames() override {
+    ::rr::throw_not_implemented("all_frames");
+  }
+  ::rr::Sequence<void, ::std::optional<Frame>> collect(::std::string) override {
+    ::rr::throw_not_implemented("collect");
+  }
+  ::rr::Sequence<void, ::rr::Array<::std::uint8_t>> accept() override {
+    ::rr::throw_not_implemented("accept");
+  }
+  ::rr::Sequence<double, double> running_sum(double, ::std::string) override {
+    ::rr::throw_not_implemented("running_sum");
+  }
+  ::rr::Sequence<::std::string, ::rr::Array<Sample>> relabel() override {
+    ::rr::throw_not_implemented("relabel");
+  }
+  ::rr::Sequence<Vector3> trace_a_path_between_points(
+      Vector3, ::rr::Array<Vector3>, ::std::optional<::std::vector<Mode>>) override {
+    ::rr::throw_not_implemented("trace_a_path_between_points");
+  }
+  ::rr::Sequence<::rr::VarValue> token(::rr::VarValue, ::std::int32_t) override {
+    ::rr::throw_not_implemented("token");
+  }
 };
 
 extern const ::rr::Member rr_members_Pipes[11];
@@ -282,56 +363,91 @@ class CallbacksStub : public virtual ::rr::Stub {
 /// Serves one Callbacks: derive from it and implement its members.
 class CallbacksSkeleton : public virtual ::rr::Skeleton {
  public:
-  void ping(::std::uint32_t client) const { rr_call_back<void>(rr_members_Callbacks[0], client); }
+  void ping(::std::uint32_t client, const ::rr::CallOptions& options = {}) const {
+    rr_call_back<void>(rr_members_Callbacks[0], options, client);
+  }
+  template <class Token>
+  auto async_ping(::std::uint32_t client, const ::rr::CallOptions& options, Token&& token) const {
+    return rr_async_call_back<void>(rr_members_Callbacks[0], options, ::std::forward<Token>(token),
+                                    client);
+  }
   template <class Token>
   auto async_ping(::std::uint32_t client, Token&& token) const {
-    return rr_async_call_back<void>(rr_members_Callbacks[0], ::std::forward<Token>(token), client);
+    return async_ping(client, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::int32_t add(::std::uint32_t client, ::std::int32_t a, ::std::int32_t b) const {
-    return rr_call_back<::std::int32_t>(rr_members_Callbacks[1], client, a, b);
+  ::std::int32_t add(::std::uint32_t client, ::std::int32_t a, ::std::int32_t b,
+                     const ::rr::CallOptions& options = {}) const {
+    return rr_call_back<::std::int32_t>(rr_members_Callbacks[1], options, client, a, b);
+  }
+  template <class Token>
+  auto async_add(::std::uint32_t client, ::std::int32_t a, ::std::int32_t b,
+                 const ::rr::CallOptions& options, Token&& token) const {
+    return rr_async_call_back<::std::int32_t>(rr_members_Callbacks[1], options,
+                                              ::std::forward<Token>(token), client, a, b);
   }
   template <class Token>
   auto async_add(::std::uint32_t client, ::std::int32_t a, ::std::int32_t b, Token&& token) const {
-    return rr_async_call_back<::std::int32_t>(rr_members_Callbacks[1], ::std::forward<Token>(token),
-                                              client, a, b);
+    return async_add(client, a, b, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<Frame> measure(::std::uint32_t client, const ::std::string& label,
-                                 const Vector3& at) const {
-    return rr_call_back<::std::optional<Frame>>(rr_members_Callbacks[2], client, label, at);
+                                 const Vector3& at, const ::rr::CallOptions& options = {}) const {
+    return rr_call_back<::std::optional<Frame>>(rr_members_Callbacks[2], options, client, label,
+                                                at);
+  }
+  template <class Token>
+  auto async_measure(::std::uint32_t client, const ::std::string& label, const Vector3& at,
+                     const ::rr::CallOptions& options, Token&& token) const {
+    return rr_async_call_back<::std::optional<Frame>>(
+        rr_members_Callbacks[2], options, ::std::forward<Token>(token), client, label, at);
   }
   template <class Token>
   auto async_measure(::std::uint32_t client, const ::std::string& label, const Vector3& at,
                      Token&& token) const {
-    return rr_async_call_back<::std::optional<Frame>>(
-        rr_members_Callbacks[2], ::std::forward<Token>(token), client, label, at);
+    return async_measure(client, label, at, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double hurry(::std::uint32_t client_, const ::rr::Array<Sample>& client,
-               const ::std::optional<::std::vector<::std::int32_t>>& token) const {
-    return rr_call_back<double>(rr_members_Callbacks[3], client_, client, token);
+               const ::std::optional<::std::vector<::std::int32_t>>& token,
+               const ::rr::CallOptions& options = {}) const {
+    return rr_call_back<double>(rr_members_Callbacks[3], options, client_, client, token);
+  }
+  template <class Token>
+  auto async_hurry(::std::uint32_t client_, const ::rr::Array<Sample>& client,
+                   const ::std::optional<::std::vector<::std::int32_t>>& token,
+                   const ::rr::CallOptions& options, Token&& token_) const {
+    return rr_async_call_back<double>(rr_members_Callbacks[3], options,
+                                      ::std::forward<Token>(token_), client_, client, token);
   }
   template <class Token>
   auto async_hurry(::std::uint32_t client_, const ::rr::Array<Sample>& client,
                    const ::std::optional<::std::vector<::std::int32_t>>& token,
                    Token&& token_) const {
-    return rr_async_call_back<double>(rr_members_Callbacks[3], ::std::forward<Token>(token_),
-                                      client_, client, token);
+    return async_hurry(client_, client, token, ::rr::CallOptions(), ::std::forward<Token>(token_));
   }
   ::std::optional<::std::map<::std::string, ::rr::VarValue>> a_callback_whose_name_is_rather_long(
       ::std::uint32_t client, const ::rr::VarValue& a_first_parameter_with_a_long_name,
-      const ::std::optional<::std::vector<::rr::VarValue>>& another_parameter_with_a_long_name)
-      const {
+      const ::std::optional<::std::vector<::rr::VarValue>>& another_parameter_with_a_long_name,
+      const ::rr::CallOptions& options = {}) const {
     return rr_call_back<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(
-        rr_members_Callbacks[4], client, a_first_parameter_with_a_long_name,
+        rr_members_Callbacks[4], options, client, a_first_parameter_with_a_long_name,
         another_parameter_with_a_long_name);
   }
   template <class Token>
   auto async_a_callback_whose_name_is_rather_long(
       ::std::uint32_t client, const ::rr::VarValue& a_first_parameter_with_a_long_name,
       const ::std::optional<::std::vector<::rr::VarValue>>& another_parameter_with_a_long_name,
-      Token&& token) const {
+      const ::rr::CallOptions& options, Token&& token) const {
     return rr_async_call_back<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(
-        rr_members_Callbacks[4], ::std::forward<Token>(token), client,
+        rr_members_Callbacks[4], options, ::std::forward<Token>(token), client,
         a_first_parameter_with_a_long_name, another_parameter_with_a_long_name);
+  }
+  template <class Token>
+  auto async_a_callback_whose_name_is_rather_long(
+      ::std::uint32_t client, const ::rr::VarValue& a_first_parameter_with_a_long_name,
+      const ::std::optional<::std::vector<::rr::VarValue>>& another_parameter_with_a_long_name,
+      Token&& token) const {
+    return async_a_callback_whose_name_is_rather_long(
+        client, a_first_parameter_with_a_long_name, another_parameter_with_a_long_name,
+        ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
   void rr_dispatch(::std::size_t member, ::rr::Request& request) override;
@@ -389,15 +505,30 @@ extern const ::rr::ObjectType rr_object_Memories;
 /// A Memories on another node.
 class MemoriesStub : public virtual ::rr::Stub {
  public:
-  ::std::string get_label() { return rr_get<::std::string>(rr_members_Memories[0]); }
+  ::std::string get_label(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::string>(rr_members_Memories[0], options);
+  }
+  template <class Token>
+  auto async_get_label(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::string>(rr_members_Memories[0], options,
+                                       ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_label(Token&& token) {
-    return rr_async_get<::std::string>(rr_members_Memories[0], ::std::forward<Token>(token));
+    return async_get_label(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_label(const ::std::string& value) { rr_set(rr_members_Memories[0], &value); }
+  void set_label(const ::std::string& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Memories[0], options, &value);
+  }
+  template <class Token>
+  auto async_set_label(const ::std::string& value, const ::rr::CallOptions& options,
+                       Token&& token) {
+    return rr_async_set<::std::string>(rr_members_Memories[0], options,
+                                       ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_label(const ::std::string& value, Token&& token) {
-    return rr_async_set<::std::string>(rr_members_Memories[0], ::std::forward<Token>(token), value);
+    return async_set_label(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::ArrayMemory<double> m_double() { return {*this, rr_members_Memories[1]}; }
   ::rr::ArrayMemory<bool> m_bool() { return {*this, rr_members_Memories[2]}; }
@@ -480,10 +611,15 @@ class StationStub : public virtual SensorStub, public virtual MemoriesStub {
  public:
   ::rr::Wire<Mode> mode() { return {*this, rr_members_Station[13]}; }
   ::rr::Event<Mode> changed() { return {*this, rr_members_Station[14]}; }
-  ::std::shared_ptr<GeneratorsStub> get_generators();
+  ::std::shared_ptr<GeneratorsStub> get_generators(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_generators(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<GeneratorsStub>(rr_members_Station[15], options,
+                                         ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_generators(Token&& token) {
-    return rr_async_find<GeneratorsStub>(rr_members_Station[15], ::std::forward<Token>(token));
+    return async_get_generators(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
@@ -564,13 +700,18 @@ class ReservedStub : public virtual ::rr::Stub {
   }
   ::rr::Wire<::std::int32_t> union_() { return {*this, rr_members_Reserved[2]}; }
   ::rr::ArrayMemory<::std::int32_t> register_() { return {*this, rr_members_Reserved[3]}; }
-  ::rr::Generator<::std::int32_t, ::std::int32_t> for_(::std::int32_t this_one) {
-    return rr_generate<::std::int32_t, ::std::int32_t>(rr_members_Reserved[4], this_one);
+  ::rr::Generator<::std::int32_t, ::std::int32_t> for_(::std::int32_t this_one,
+                                                       const ::rr::CallOptions& options = {}) {
+    return rr_generate<::std::int32_t, ::std::int32_t>(rr_members_Reserved[4], options, this_one);
+  }
+  template <class Token>
+  auto async_for_(::std::int32_t this_one, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_generate<::std::int32_t, ::std::int32_t>(
+        rr_members_Reserved[4], options, ::std::forward<Token>(token), this_one);
   }
   template <class Token>
   auto async_for_(::std::int32_t this_one, Token&& token) {
-    return rr_async_generate<::std::int32_t, ::std::int32_t>(
-        rr_members_Reserved[4], ::std::forward<Token>(token), this_one);
+    return async_for_(this_one, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
@@ -579,13 +720,19 @@ class ReservedStub : public virtual ::rr::Stub {
 class ReservedSkeleton : public virtual ::rr::Skeleton {
  public:
   ::rr::PipeServer<::std::int32_t> new_() const { return {*this, rr_members_Reserved[0]}; }
-  ::std::int32_t delete_(::std::uint32_t client, ::std::int32_t class_) const {
-    return rr_call_back<::std::int32_t>(rr_members_Reserved[1], client, class_);
+  ::std::int32_t delete_(::std::uint32_t client, ::std::int32_t class_,
+                         const ::rr::CallOptions& options = {}) const {
+    return rr_call_back<::std::int32_t>(rr_members_Reserved[1], options, client, class_);
+  }
+  template <class Token>
+  auto async_delete_(::std::uint32_t client, ::std::int32_t class_,
+                     const ::rr::CallOptions& options, Token&& token) const {
+    return rr_async_call_back<::std::int32_t>(rr_members_Reserved[1], options,
+                                              ::std::forward<Token>(token), client, class_);
   }
   template <class Token>
   auto async_delete_(::std::uint32_t client, ::std::int32_t class_, Token&& token) const {
-    return rr_async_call_back<::std::int32_t>(rr_members_Reserved[1], ::std::forward<Token>(token),
-                                              client, class_);
+    return async_delete_(client, class_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::WireServer<::std::int32_t> union_() const { return {*this, rr_members_Reserved[2]}; }
   virtual ::std::shared_ptr<::rr::ArrayMemorySource<::std::int32_t>> register_() = 0;

@@ -15,7 +15,7 @@
 #include <string>
 #include <utility>
 
-static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
+static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace experimental::namedarrays {
 
@@ -60,107 +60,194 @@ extern const ::rr::ObjectType rr_object_Arm;
 /// A Arm on another node.
 class ArmStub : public virtual ::rr::Stub {
  public:
-  Pose get_pose() { return rr_get<Pose>(rr_members_Arm[0]); }
+  Pose get_pose(const ::rr::CallOptions& options = {}) {
+    return rr_get<Pose>(rr_members_Arm[0], options);
+  }
+  template <class Token>
+  auto async_get_pose(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<Pose>(rr_members_Arm[0], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_pose(Token&& token) {
-    return rr_async_get<Pose>(rr_members_Arm[0], ::std::forward<Token>(token));
+    return async_get_pose(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_pose(const Pose& value) { rr_set(rr_members_Arm[0], &value); }
+  void set_pose(const Pose& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Arm[0], options, &value);
+  }
+  template <class Token>
+  auto async_set_pose(const Pose& value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<Pose>(rr_members_Arm[0], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_pose(const Pose& value, Token&& token) {
-    return rr_async_set<Pose>(rr_members_Arm[0], ::std::forward<Token>(token), value);
+    return async_set_pose(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::Array<Pose> get_path() { return rr_get<::rr::Array<Pose>>(rr_members_Arm[1]); }
+  ::rr::Array<Pose> get_path(const ::rr::CallOptions& options = {}) {
+    return rr_get<::rr::Array<Pose>>(rr_members_Arm[1], options);
+  }
+  template <class Token>
+  auto async_get_path(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::rr::Array<Pose>>(rr_members_Arm[1], options,
+                                           ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_path(Token&& token) {
-    return rr_async_get<::rr::Array<Pose>>(rr_members_Arm[1], ::std::forward<Token>(token));
+    return async_get_path(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_path(const ::rr::Array<Pose>& value) { rr_set(rr_members_Arm[1], &value); }
+  void set_path(const ::rr::Array<Pose>& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Arm[1], options, &value);
+  }
+  template <class Token>
+  auto async_set_path(const ::rr::Array<Pose>& value, const ::rr::CallOptions& options,
+                      Token&& token) {
+    return rr_async_set<::rr::Array<Pose>>(rr_members_Arm[1], options, ::std::forward<Token>(token),
+                                           value);
+  }
   template <class Token>
   auto async_set_path(const ::rr::Array<Pose>& value, Token&& token) {
-    return rr_async_set<::rr::Array<Pose>>(rr_members_Arm[1], ::std::forward<Token>(token), value);
+    return async_set_path(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::array<Vector3, 2> get_corners() {
-    return rr_get<::std::array<Vector3, 2>>(rr_members_Arm[2]);
+  ::std::array<Vector3, 2> get_corners(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::array<Vector3, 2>>(rr_members_Arm[2], options);
+  }
+  template <class Token>
+  auto async_get_corners(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::array<Vector3, 2>>(rr_members_Arm[2], options,
+                                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_corners(Token&& token) {
-    return rr_async_get<::std::array<Vector3, 2>>(rr_members_Arm[2], ::std::forward<Token>(token));
+    return async_get_corners(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_corners(const ::std::array<Vector3, 2>& value) { rr_set(rr_members_Arm[2], &value); }
+  void set_corners(const ::std::array<Vector3, 2>& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Arm[2], options, &value);
+  }
+  template <class Token>
+  auto async_set_corners(const ::std::array<Vector3, 2>& value, const ::rr::CallOptions& options,
+                         Token&& token) {
+    return rr_async_set<::std::array<Vector3, 2>>(rr_members_Arm[2], options,
+                                                  ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_corners(const ::std::array<Vector3, 2>& value, Token&& token) {
-    return rr_async_set<::std::array<Vector3, 2>>(rr_members_Arm[2], ::std::forward<Token>(token),
-                                                  value);
+    return async_set_corners(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::BoundedArray<Vector3, 4> get_contacts() {
-    return rr_get<::rr::BoundedArray<Vector3, 4>>(rr_members_Arm[3]);
+  ::rr::BoundedArray<Vector3, 4> get_contacts(const ::rr::CallOptions& options = {}) {
+    return rr_get<::rr::BoundedArray<Vector3, 4>>(rr_members_Arm[3], options);
+  }
+  template <class Token>
+  auto async_get_contacts(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::rr::BoundedArray<Vector3, 4>>(rr_members_Arm[3], options,
+                                                        ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_contacts(Token&& token) {
-    return rr_async_get<::rr::BoundedArray<Vector3, 4>>(rr_members_Arm[3],
-                                                        ::std::forward<Token>(token));
+    return async_get_contacts(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_contacts(const ::rr::BoundedArray<Vector3, 4>& value) {
-    rr_set(rr_members_Arm[3], &value);
+  void set_contacts(const ::rr::BoundedArray<Vector3, 4>& value,
+                    const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Arm[3], options, &value);
+  }
+  template <class Token>
+  auto async_set_contacts(const ::rr::BoundedArray<Vector3, 4>& value,
+                          const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::rr::BoundedArray<Vector3, 4>>(rr_members_Arm[3], options,
+                                                        ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_contacts(const ::rr::BoundedArray<Vector3, 4>& value, Token&& token) {
-    return rr_async_set<::rr::BoundedArray<Vector3, 4>>(rr_members_Arm[3],
-                                                        ::std::forward<Token>(token), value);
+    return async_set_contacts(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::MultiArray<Pixel> get_picture() {
-    return rr_get<::rr::MultiArray<Pixel>>(rr_members_Arm[4]);
+  ::rr::MultiArray<Pixel> get_picture(const ::rr::CallOptions& options = {}) {
+    return rr_get<::rr::MultiArray<Pixel>>(rr_members_Arm[4], options);
+  }
+  template <class Token>
+  auto async_get_picture(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::rr::MultiArray<Pixel>>(rr_members_Arm[4], options,
+                                                 ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_picture(Token&& token) {
-    return rr_async_get<::rr::MultiArray<Pixel>>(rr_members_Arm[4], ::std::forward<Token>(token));
+    return async_get_picture(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_picture(const ::rr::MultiArray<Pixel>& value) { rr_set(rr_members_Arm[4], &value); }
+  void set_picture(const ::rr::MultiArray<Pixel>& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Arm[4], options, &value);
+  }
+  template <class Token>
+  auto async_set_picture(const ::rr::MultiArray<Pixel>& value, const ::rr::CallOptions& options,
+                         Token&& token) {
+    return rr_async_set<::rr::MultiArray<Pixel>>(rr_members_Arm[4], options,
+                                                 ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_picture(const ::rr::MultiArray<Pixel>& value, Token&& token) {
-    return rr_async_set<::rr::MultiArray<Pixel>>(rr_members_Arm[4], ::std::forward<Token>(token),
-                                                 value);
+    return async_set_picture(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::FixedMultiArray<Pixel, 2, 2> get_thumbnail() {
-    return rr_get<::rr::FixedMultiArray<Pixel, 2, 2>>(rr_members_Arm[5]);
+  ::rr::FixedMultiArray<Pixel, 2, 2> get_thumbnail(const ::rr::CallOptions& options = {}) {
+    return rr_get<::rr::FixedMultiArray<Pixel, 2, 2>>(rr_members_Arm[5], options);
+  }
+  template <class Token>
+  auto async_get_thumbnail(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::rr::FixedMultiArray<Pixel, 2, 2>>(rr_members_Arm[5], options,
+                                                            ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_thumbnail(Token&& token) {
-    return rr_async_get<::rr::FixedMultiArray<Pixel, 2, 2>>(rr_members_Arm[5],
-                                                            ::std::forward<Token>(token));
+    return async_get_thumbnail(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_thumbnail(const ::rr::FixedMultiArray<Pixel, 2, 2>& value) {
-    rr_set(rr_members_Arm[5], &value);
+  void set_thumbnail(const ::rr::FixedMultiArray<Pixel, 2, 2>& value,
+                     const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Arm[5], options, &value);
+  }
+  template <class Token>
+  auto async_set_thumbnail(const ::rr::FixedMultiArray<Pixel, 2, 2>& value,
+                           const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::rr::FixedMultiArray<Pixel, 2, 2>>(rr_members_Arm[5], options,
+                                                            ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_thumbnail(const ::rr::FixedMultiArray<Pixel, 2, 2>& value, Token&& token) {
-    return rr_async_set<::rr::FixedMultiArray<Pixel, 2, 2>>(rr_members_Arm[5],
-                                                            ::std::forward<Token>(token), value);
+    return async_set_thumbnail(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::optional<::std::map<::std::string, Pose>> get_places() {
-    return rr_get<::std::optional<::std::map<::std::string, Pose>>>(rr_members_Arm[6]);
+  ::std::optional<::std::map<::std::string, Pose>> get_places(
+      const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::optional<::std::map<::std::string, Pose>>>(rr_members_Arm[6], options);
+  }
+  template <class Token>
+  auto async_get_places(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::optional<::std::map<::std::string, Pose>>>(
+        rr_members_Arm[6], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_places(Token&& token) {
-    return rr_async_get<::std::optional<::std::map<::std::string, Pose>>>(
-        rr_members_Arm[6], ::std::forward<Token>(token));
+    return async_get_places(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_places(const ::std::optional<::std::map<::std::string, Pose>>& value) {
-    rr_set(rr_members_Arm[6], &value);
+  void set_places(const ::std::optional<::std::map<::std::string, Pose>>& value,
+                  const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Arm[6], options, &value);
+  }
+  template <class Token>
+  auto async_set_places(const ::std::optional<::std::map<::std::string, Pose>>& value,
+                        const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::std::optional<::std::map<::std::string, Pose>>>(
+        rr_members_Arm[6], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_places(const ::std::optional<::std::map<::std::string, Pose>>& value,
                         Token&& token) {
-    return rr_async_set<::std::optional<::std::map<::std::string, Pose>>>(
-        rr_members_Arm[6], ::std::forward<Token>(token), value);
+    return async_set_places(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  Vector3 cross(const Vector3& a, const Vector3& b) {
-    return rr_call<Vector3>(rr_members_Arm[7], a, b);
+  Vector3 cross(const Vector3& a, const Vector3& b, const ::rr::CallOptions& options = {}) {
+    return rr_call<Vector3>(rr_members_Arm[7], options, a, b);
+  }
+  template <class Token>
+  auto async_cross(const Vector3& a, const Vector3& b, const ::rr::CallOptions& options,
+                   Token&& token) {
+    return rr_async_call<Vector3>(rr_members_Arm[7], options, ::std::forward<Token>(token), a, b);
   }
   template <class Token>
   auto async_cross(const Vector3& a, const Vector3& b, Token&& token) {
-    return rr_async_call<Vector3>(rr_members_Arm[7], ::std::forward<Token>(token), a, b);
+    return async_cross(a, b, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };

@@ -75,26 +75,32 @@ constinit const ::rr::ObjectType rr_object_Robot{
 
 const ::rr::ObjectType& RobotStub::rr_object_type() const { return rr_object_Robot; }
 
-::std::shared_ptr<JointStub> RobotStub::get_base() {
-  return rr_find_as<JointStub>(rr_members_Robot[0]);
+::std::shared_ptr<JointStub> RobotStub::get_base(const ::rr::CallOptions& options) {
+  return rr_find_as<JointStub>(rr_members_Robot[0], options);
 }
 
-::std::shared_ptr<JointStub> RobotStub::get_joint(::std::int32_t index) {
-  return rr_find_as<JointStub>(rr_members_Robot[1], index);
+::std::shared_ptr<JointStub> RobotStub::get_joint(::std::int32_t index,
+                                                  const ::rr::CallOptions& options) {
+  return rr_find_as<JointStub>(rr_members_Robot[1], options, index);
 }
 
-::std::shared_ptr<JointStub> RobotStub::get_joint_by_number(::std::int32_t index) {
-  return rr_find_as<JointStub>(rr_members_Robot[2], index);
+::std::shared_ptr<JointStub> RobotStub::get_joint_by_number(::std::int32_t index,
+                                                            const ::rr::CallOptions& options) {
+  return rr_find_as<JointStub>(rr_members_Robot[2], options, index);
 }
 
-::std::shared_ptr<JointStub> RobotStub::get_joint_by_name(const ::std::string& index) {
-  return rr_find_as<JointStub>(rr_members_Robot[3], index);
+::std::shared_ptr<JointStub> RobotStub::get_joint_by_name(const ::std::string& index,
+                                                          const ::rr::CallOptions& options) {
+  return rr_find_as<JointStub>(rr_members_Robot[3], options, index);
 }
 
-::std::shared_ptr<::rr::Stub> RobotStub::get_tool() { return rr_find(rr_members_Robot[4]); }
+::std::shared_ptr<::rr::Stub> RobotStub::get_tool(const ::rr::CallOptions& options) {
+  return rr_find(rr_members_Robot[4], options);
+}
 
-::std::shared_ptr<::rr::Stub> RobotStub::get_tools(const ::std::string& index) {
-  return rr_find(rr_members_Robot[5], index);
+::std::shared_ptr<::rr::Stub> RobotStub::get_tools(const ::std::string& index,
+                                                   const ::rr::CallOptions& options) {
+  return rr_find(rr_members_Robot[5], options, index);
 }
 
 const ::rr::ObjectType& RobotSkeleton::rr_object_type() const { return rr_object_Robot; }

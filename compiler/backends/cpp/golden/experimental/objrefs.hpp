@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
+static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace experimental::objrefs {
 
@@ -21,15 +21,27 @@ extern const ::rr::ObjectType rr_object_Joint;
 /// A Joint on another node.
 class JointStub : public virtual ::rr::Stub {
  public:
-  double get_angle() { return rr_get<double>(rr_members_Joint[0]); }
+  double get_angle(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_Joint[0], options);
+  }
+  template <class Token>
+  auto async_get_angle(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_Joint[0], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_angle(Token&& token) {
-    return rr_async_get<double>(rr_members_Joint[0], ::std::forward<Token>(token));
+    return async_get_angle(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_angle(double value) { rr_set(rr_members_Joint[0], &value); }
+  void set_angle(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Joint[0], options, &value);
+  }
+  template <class Token>
+  auto async_set_angle(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_Joint[0], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_angle(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_Joint[0], ::std::forward<Token>(token), value);
+    return async_set_angle(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
@@ -62,35 +74,70 @@ extern const ::rr::ObjectType rr_object_Robot;
 /// A Robot on another node.
 class RobotStub : public virtual ::rr::Stub {
  public:
-  ::std::shared_ptr<JointStub> get_base();
+  ::std::shared_ptr<JointStub> get_base(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_base(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<JointStub>(rr_members_Robot[0], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_base(Token&& token) {
-    return rr_async_find<JointStub>(rr_members_Robot[0], ::std::forward<Token>(token));
+    return async_get_base(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<JointStub> get_joint(::std::int32_t index);
+  ::std::shared_ptr<JointStub> get_joint(::std::int32_t index,
+                                         const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_joint(::std::int32_t index, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<JointStub>(rr_members_Robot[1], options, ::std::forward<Token>(token),
+                                    index);
+  }
   template <class Token>
   auto async_get_joint(::std::int32_t index, Token&& token) {
-    return rr_async_find<JointStub>(rr_members_Robot[1], ::std::forward<Token>(token), index);
+    return async_get_joint(index, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<JointStub> get_joint_by_number(::std::int32_t index);
+  ::std::shared_ptr<JointStub> get_joint_by_number(::std::int32_t index,
+                                                   const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_joint_by_number(::std::int32_t index, const ::rr::CallOptions& options,
+                                 Token&& token) {
+    return rr_async_find<JointStub>(rr_members_Robot[2], options, ::std::forward<Token>(token),
+                                    index);
+  }
   template <class Token>
   auto async_get_joint_by_number(::std::int32_t index, Token&& token) {
-    return rr_async_find<JointStub>(rr_members_Robot[2], ::std::forward<Token>(token), index);
+    return async_get_joint_by_number(index, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<JointStub> get_joint_by_name(const ::std::string& index);
+  ::std::shared_ptr<JointStub> get_joint_by_name(const ::std::string& index,
+                                                 const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_joint_by_name(const ::std::string& index, const ::rr::CallOptions& options,
+                               Token&& token) {
+    return rr_async_find<JointStub>(rr_members_Robot[3], options, ::std::forward<Token>(token),
+                                    index);
+  }
   template <class Token>
   auto async_get_joint_by_name(const ::std::string& index, Token&& token) {
-    return rr_async_find<JointStub>(rr_members_Robot[3], ::std::forward<Token>(token), index);
+    return async_get_joint_by_name(index, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<::rr::Stub> get_tool();
+  ::std::shared_ptr<::rr::Stub> get_tool(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_tool(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<::rr::Stub>(rr_members_Robot[4], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_tool(Token&& token) {
-    return rr_async_find<::rr::Stub>(rr_members_Robot[4], ::std::forward<Token>(token));
+    return async_get_tool(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<::rr::Stub> get_tools(const ::std::string& index);
+  ::std::shared_ptr<::rr::Stub> get_tools(const ::std::string& index,
+                                          const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_tools(const ::std::string& index, const ::rr::CallOptions& options,
+                       Token&& token) {
+    return rr_async_find<::rr::Stub>(rr_members_Robot[5], options, ::std::forward<Token>(token),
+                                     index);
+  }
   template <class Token>
   auto async_get_tools(const ::std::string& index, Token&& token) {
-    return rr_async_find<::rr::Stub>(rr_members_Robot[5], ::std::forward<Token>(token), index);
+    return async_get_tools(index, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
@@ -108,6 +155,25 @@ class RobotSkeleton : public virtual ::rr::Skeleton {
   void rr_dispatch(::std::size_t member, ::rr::Request& request) override;
   ::std::shared_ptr<::rr::Skeleton> rr_child(::std::size_t member,
                                              const ::rr::ObjectIndex& index) override;
+};
+
+/// A Robot whose functions and objrefs fail until they are overridden.
+class RobotDefault : public RobotSkeleton {
+ public:
+  ::std::shared_ptr<JointSkeleton> get_base() override { ::rr::throw_no_object("base"); }
+  ::std::shared_ptr<JointSkeleton> get_joint(::std::int32_t) override {
+    ::rr::throw_no_object("joint");
+  }
+  ::std::shared_ptr<JointSkeleton> get_joint_by_number(::std::int32_t) override {
+    ::rr::throw_no_object("joint_by_number");
+  }
+  ::std::shared_ptr<JointSkeleton> get_joint_by_name(const ::std::string&) override {
+    ::rr::throw_no_object("joint_by_name");
+  }
+  ::std::shared_ptr<::rr::Skeleton> get_tool() override { ::rr::throw_no_object("tool"); }
+  ::std::shared_ptr<::rr::Skeleton> get_tools(const ::std::string&) override {
+    ::rr::throw_no_object("tools");
+  }
 };
 
 extern const ::rr::Definition rr_definition;

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
+static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace experimental::pods {
 
@@ -55,77 +55,143 @@ extern const ::rr::ObjectType rr_object_Recorder;
 /// A Recorder on another node.
 class RecorderStub : public virtual ::rr::Stub {
  public:
-  Sample get_last() { return rr_get<Sample>(rr_members_Recorder[0]); }
+  Sample get_last(const ::rr::CallOptions& options = {}) {
+    return rr_get<Sample>(rr_members_Recorder[0], options);
+  }
+  template <class Token>
+  auto async_get_last(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<Sample>(rr_members_Recorder[0], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_last(Token&& token) {
-    return rr_async_get<Sample>(rr_members_Recorder[0], ::std::forward<Token>(token));
+    return async_get_last(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_last(const Sample& value) { rr_set(rr_members_Recorder[0], &value); }
+  void set_last(const Sample& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Recorder[0], options, &value);
+  }
+  template <class Token>
+  auto async_set_last(const Sample& value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<Sample>(rr_members_Recorder[0], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_last(const Sample& value, Token&& token) {
-    return rr_async_set<Sample>(rr_members_Recorder[0], ::std::forward<Token>(token), value);
+    return async_set_last(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::Array<Sample> get_history() { return rr_get<::rr::Array<Sample>>(rr_members_Recorder[1]); }
+  ::rr::Array<Sample> get_history(const ::rr::CallOptions& options = {}) {
+    return rr_get<::rr::Array<Sample>>(rr_members_Recorder[1], options);
+  }
+  template <class Token>
+  auto async_get_history(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::rr::Array<Sample>>(rr_members_Recorder[1], options,
+                                             ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_history(Token&& token) {
-    return rr_async_get<::rr::Array<Sample>>(rr_members_Recorder[1], ::std::forward<Token>(token));
+    return async_get_history(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_history(const ::rr::Array<Sample>& value) { rr_set(rr_members_Recorder[1], &value); }
+  void set_history(const ::rr::Array<Sample>& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Recorder[1], options, &value);
+  }
+  template <class Token>
+  auto async_set_history(const ::rr::Array<Sample>& value, const ::rr::CallOptions& options,
+                         Token&& token) {
+    return rr_async_set<::rr::Array<Sample>>(rr_members_Recorder[1], options,
+                                             ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_history(const ::rr::Array<Sample>& value, Token&& token) {
-    return rr_async_set<::rr::Array<Sample>>(rr_members_Recorder[1], ::std::forward<Token>(token),
-                                             value);
+    return async_set_history(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::array<Burst, 2> get_bursts() {
-    return rr_get<::std::array<Burst, 2>>(rr_members_Recorder[2]);
+  ::std::array<Burst, 2> get_bursts(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::array<Burst, 2>>(rr_members_Recorder[2], options);
+  }
+  template <class Token>
+  auto async_get_bursts(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::array<Burst, 2>>(rr_members_Recorder[2], options,
+                                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_bursts(Token&& token) {
-    return rr_async_get<::std::array<Burst, 2>>(rr_members_Recorder[2],
-                                                ::std::forward<Token>(token));
+    return async_get_bursts(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_bursts(const ::std::array<Burst, 2>& value) { rr_set(rr_members_Recorder[2], &value); }
+  void set_bursts(const ::std::array<Burst, 2>& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Recorder[2], options, &value);
+  }
   template <class Token>
-  auto async_set_bursts(const ::std::array<Burst, 2>& value, Token&& token) {
-    return rr_async_set<::std::array<Burst, 2>>(rr_members_Recorder[2],
+  auto async_set_bursts(const ::std::array<Burst, 2>& value, const ::rr::CallOptions& options,
+                        Token&& token) {
+    return rr_async_set<::std::array<Burst, 2>>(rr_members_Recorder[2], options,
                                                 ::std::forward<Token>(token), value);
   }
-  ::rr::MultiArray<Sample> get_matrix() {
-    return rr_get<::rr::MultiArray<Sample>>(rr_members_Recorder[3]);
+  template <class Token>
+  auto async_set_bursts(const ::std::array<Burst, 2>& value, Token&& token) {
+    return async_set_bursts(value, ::rr::CallOptions(), ::std::forward<Token>(token));
+  }
+  ::rr::MultiArray<Sample> get_matrix(const ::rr::CallOptions& options = {}) {
+    return rr_get<::rr::MultiArray<Sample>>(rr_members_Recorder[3], options);
+  }
+  template <class Token>
+  auto async_get_matrix(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::rr::MultiArray<Sample>>(rr_members_Recorder[3], options,
+                                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_matrix(Token&& token) {
-    return rr_async_get<::rr::MultiArray<Sample>>(rr_members_Recorder[3],
-                                                  ::std::forward<Token>(token));
+    return async_get_matrix(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_matrix(const ::rr::MultiArray<Sample>& value) { rr_set(rr_members_Recorder[3], &value); }
+  void set_matrix(const ::rr::MultiArray<Sample>& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Recorder[3], options, &value);
+  }
   template <class Token>
-  auto async_set_matrix(const ::rr::MultiArray<Sample>& value, Token&& token) {
-    return rr_async_set<::rr::MultiArray<Sample>>(rr_members_Recorder[3],
+  auto async_set_matrix(const ::rr::MultiArray<Sample>& value, const ::rr::CallOptions& options,
+                        Token&& token) {
+    return rr_async_set<::rr::MultiArray<Sample>>(rr_members_Recorder[3], options,
                                                   ::std::forward<Token>(token), value);
   }
-  ::std::optional<::std::vector<Sample>> get_marked() {
-    return rr_get<::std::optional<::std::vector<Sample>>>(rr_members_Recorder[4]);
+  template <class Token>
+  auto async_set_matrix(const ::rr::MultiArray<Sample>& value, Token&& token) {
+    return async_set_matrix(value, ::rr::CallOptions(), ::std::forward<Token>(token));
+  }
+  ::std::optional<::std::vector<Sample>> get_marked(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::optional<::std::vector<Sample>>>(rr_members_Recorder[4], options);
+  }
+  template <class Token>
+  auto async_get_marked(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::optional<::std::vector<Sample>>>(rr_members_Recorder[4], options,
+                                                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_marked(Token&& token) {
-    return rr_async_get<::std::optional<::std::vector<Sample>>>(rr_members_Recorder[4],
-                                                                ::std::forward<Token>(token));
+    return async_get_marked(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_marked(const ::std::optional<::std::vector<Sample>>& value) {
-    rr_set(rr_members_Recorder[4], &value);
+  void set_marked(const ::std::optional<::std::vector<Sample>>& value,
+                  const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Recorder[4], options, &value);
+  }
+  template <class Token>
+  auto async_set_marked(const ::std::optional<::std::vector<Sample>>& value,
+                        const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::std::optional<::std::vector<Sample>>>(
+        rr_members_Recorder[4], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_marked(const ::std::optional<::std::vector<Sample>>& value, Token&& token) {
-    return rr_async_set<::std::optional<::std::vector<Sample>>>(
-        rr_members_Recorder[4], ::std::forward<Token>(token), value);
+    return async_set_marked(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  Burst record(const Sample& from, const ::rr::Array<Sample>& until) {
-    return rr_call<Burst>(rr_members_Recorder[5], from, until);
+  Burst record(const Sample& from, const ::rr::Array<Sample>& until,
+               const ::rr::CallOptions& options = {}) {
+    return rr_call<Burst>(rr_members_Recorder[5], options, from, until);
+  }
+  template <class Token>
+  auto async_record(const Sample& from, const ::rr::Array<Sample>& until,
+                    const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<Burst>(rr_members_Recorder[5], options, ::std::forward<Token>(token), from,
+                                until);
   }
   template <class Token>
   auto async_record(const Sample& from, const ::rr::Array<Sample>& until, Token&& token) {
-    return rr_async_call<Burst>(rr_members_Recorder[5], ::std::forward<Token>(token), from, until);
+    return async_record(from, until, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };

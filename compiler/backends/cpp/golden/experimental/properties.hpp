@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
+static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace experimental::properties {
 
@@ -33,261 +33,497 @@ extern const ::rr::ObjectType rr_object_Board;
 /// A Board on another node.
 class BoardStub : public virtual ::rr::Stub {
  public:
-  double get_gain() { return rr_get<double>(rr_members_Board[0]); }
+  double get_gain(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_Board[0], options);
+  }
+  template <class Token>
+  auto async_get_gain(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_Board[0], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_gain(Token&& token) {
-    return rr_async_get<double>(rr_members_Board[0], ::std::forward<Token>(token));
+    return async_get_gain(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_gain(double value) { rr_set(rr_members_Board[0], &value); }
+  void set_gain(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[0], options, &value);
+  }
+  template <class Token>
+  auto async_set_gain(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_Board[0], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_gain(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_Board[0], ::std::forward<Token>(token), value);
+    return async_set_gain(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  bool get_enabled() { return rr_get<bool>(rr_members_Board[1]); }
+  bool get_enabled(const ::rr::CallOptions& options = {}) {
+    return rr_get<bool>(rr_members_Board[1], options);
+  }
+  template <class Token>
+  auto async_get_enabled(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<bool>(rr_members_Board[1], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_enabled(Token&& token) {
-    return rr_async_get<bool>(rr_members_Board[1], ::std::forward<Token>(token));
+    return async_get_enabled(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_enabled(bool value) { rr_set(rr_members_Board[1], &value); }
+  void set_enabled(bool value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[1], options, &value);
+  }
+  template <class Token>
+  auto async_set_enabled(bool value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<bool>(rr_members_Board[1], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_enabled(bool value, Token&& token) {
-    return rr_async_set<bool>(rr_members_Board[1], ::std::forward<Token>(token), value);
+    return async_set_enabled(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::string get_label() { return rr_get<::std::string>(rr_members_Board[2]); }
+  ::std::string get_label(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::string>(rr_members_Board[2], options);
+  }
+  template <class Token>
+  auto async_get_label(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::string>(rr_members_Board[2], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_label(Token&& token) {
-    return rr_async_get<::std::string>(rr_members_Board[2], ::std::forward<Token>(token));
+    return async_get_label(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_label(const ::std::string& value) { rr_set(rr_members_Board[2], &value); }
+  void set_label(const ::std::string& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[2], options, &value);
+  }
+  template <class Token>
+  auto async_set_label(const ::std::string& value, const ::rr::CallOptions& options,
+                       Token&& token) {
+    return rr_async_set<::std::string>(rr_members_Board[2], options, ::std::forward<Token>(token),
+                                       value);
+  }
   template <class Token>
   auto async_set_label(const ::std::string& value, Token&& token) {
-    return rr_async_set<::std::string>(rr_members_Board[2], ::std::forward<Token>(token), value);
+    return async_set_label(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::complex<double> get_response() {
-    return rr_get<::std::complex<double>>(rr_members_Board[3]);
+  ::std::complex<double> get_response(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::complex<double>>(rr_members_Board[3], options);
+  }
+  template <class Token>
+  auto async_get_response(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::complex<double>>(rr_members_Board[3], options,
+                                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_response(Token&& token) {
-    return rr_async_get<::std::complex<double>>(rr_members_Board[3], ::std::forward<Token>(token));
+    return async_get_response(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_response(::std::complex<double> value) { rr_set(rr_members_Board[3], &value); }
+  void set_response(::std::complex<double> value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[3], options, &value);
+  }
+  template <class Token>
+  auto async_set_response(::std::complex<double> value, const ::rr::CallOptions& options,
+                          Token&& token) {
+    return rr_async_set<::std::complex<double>>(rr_members_Board[3], options,
+                                                ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_response(::std::complex<double> value, Token&& token) {
-    return rr_async_set<::std::complex<double>>(rr_members_Board[3], ::std::forward<Token>(token),
-                                                value);
+    return async_set_response(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  Mode get_mode() { return rr_get<Mode>(rr_members_Board[4]); }
+  Mode get_mode(const ::rr::CallOptions& options = {}) {
+    return rr_get<Mode>(rr_members_Board[4], options);
+  }
+  template <class Token>
+  auto async_get_mode(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<Mode>(rr_members_Board[4], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_mode(Token&& token) {
-    return rr_async_get<Mode>(rr_members_Board[4], ::std::forward<Token>(token));
+    return async_get_mode(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_mode(Mode value) { rr_set(rr_members_Board[4], &value); }
+  void set_mode(Mode value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[4], options, &value);
+  }
+  template <class Token>
+  auto async_set_mode(Mode value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<Mode>(rr_members_Board[4], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_mode(Mode value, Token&& token) {
-    return rr_async_set<Mode>(rr_members_Board[4], ::std::forward<Token>(token), value);
+    return async_set_mode(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::Array<double> get_samples() { return rr_get<::rr::Array<double>>(rr_members_Board[5]); }
+  ::rr::Array<double> get_samples(const ::rr::CallOptions& options = {}) {
+    return rr_get<::rr::Array<double>>(rr_members_Board[5], options);
+  }
+  template <class Token>
+  auto async_get_samples(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::rr::Array<double>>(rr_members_Board[5], options,
+                                             ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_samples(Token&& token) {
-    return rr_async_get<::rr::Array<double>>(rr_members_Board[5], ::std::forward<Token>(token));
+    return async_get_samples(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_samples(const ::rr::Array<double>& value) { rr_set(rr_members_Board[5], &value); }
+  void set_samples(const ::rr::Array<double>& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[5], options, &value);
+  }
+  template <class Token>
+  auto async_set_samples(const ::rr::Array<double>& value, const ::rr::CallOptions& options,
+                         Token&& token) {
+    return rr_async_set<::rr::Array<double>>(rr_members_Board[5], options,
+                                             ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_samples(const ::rr::Array<double>& value, Token&& token) {
-    return rr_async_set<::rr::Array<double>>(rr_members_Board[5], ::std::forward<Token>(token),
-                                             value);
+    return async_set_samples(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::array<::std::uint8_t, 4> get_address() {
-    return rr_get<::std::array<::std::uint8_t, 4>>(rr_members_Board[6]);
+  ::std::array<::std::uint8_t, 4> get_address(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::array<::std::uint8_t, 4>>(rr_members_Board[6], options);
+  }
+  template <class Token>
+  auto async_get_address(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::array<::std::uint8_t, 4>>(rr_members_Board[6], options,
+                                                         ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_address(Token&& token) {
-    return rr_async_get<::std::array<::std::uint8_t, 4>>(rr_members_Board[6],
-                                                         ::std::forward<Token>(token));
+    return async_get_address(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_address(const ::std::array<::std::uint8_t, 4>& value) {
-    rr_set(rr_members_Board[6], &value);
+  void set_address(const ::std::array<::std::uint8_t, 4>& value,
+                   const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[6], options, &value);
+  }
+  template <class Token>
+  auto async_set_address(const ::std::array<::std::uint8_t, 4>& value,
+                         const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::std::array<::std::uint8_t, 4>>(rr_members_Board[6], options,
+                                                         ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_address(const ::std::array<::std::uint8_t, 4>& value, Token&& token) {
-    return rr_async_set<::std::array<::std::uint8_t, 4>>(rr_members_Board[6],
-                                                         ::std::forward<Token>(token), value);
+    return async_set_address(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::BoundedArray<::std::int16_t, 8> get_steps() {
-    return rr_get<::rr::BoundedArray<::std::int16_t, 8>>(rr_members_Board[7]);
+  ::rr::BoundedArray<::std::int16_t, 8> get_steps(const ::rr::CallOptions& options = {}) {
+    return rr_get<::rr::BoundedArray<::std::int16_t, 8>>(rr_members_Board[7], options);
+  }
+  template <class Token>
+  auto async_get_steps(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::rr::BoundedArray<::std::int16_t, 8>>(rr_members_Board[7], options,
+                                                               ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_steps(Token&& token) {
-    return rr_async_get<::rr::BoundedArray<::std::int16_t, 8>>(rr_members_Board[7],
-                                                               ::std::forward<Token>(token));
+    return async_get_steps(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_steps(const ::rr::BoundedArray<::std::int16_t, 8>& value) {
-    rr_set(rr_members_Board[7], &value);
+  void set_steps(const ::rr::BoundedArray<::std::int16_t, 8>& value,
+                 const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[7], options, &value);
+  }
+  template <class Token>
+  auto async_set_steps(const ::rr::BoundedArray<::std::int16_t, 8>& value,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::rr::BoundedArray<::std::int16_t, 8>>(rr_members_Board[7], options,
+                                                               ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_steps(const ::rr::BoundedArray<::std::int16_t, 8>& value, Token&& token) {
-    return rr_async_set<::rr::BoundedArray<::std::int16_t, 8>>(rr_members_Board[7],
-                                                               ::std::forward<Token>(token), value);
+    return async_set_steps(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::MultiArray<float> get_image() {
-    return rr_get<::rr::MultiArray<float>>(rr_members_Board[8]);
+  ::rr::MultiArray<float> get_image(const ::rr::CallOptions& options = {}) {
+    return rr_get<::rr::MultiArray<float>>(rr_members_Board[8], options);
+  }
+  template <class Token>
+  auto async_get_image(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::rr::MultiArray<float>>(rr_members_Board[8], options,
+                                                 ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_image(Token&& token) {
-    return rr_async_get<::rr::MultiArray<float>>(rr_members_Board[8], ::std::forward<Token>(token));
+    return async_get_image(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_image(const ::rr::MultiArray<float>& value) { rr_set(rr_members_Board[8], &value); }
+  void set_image(const ::rr::MultiArray<float>& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[8], options, &value);
+  }
+  template <class Token>
+  auto async_set_image(const ::rr::MultiArray<float>& value, const ::rr::CallOptions& options,
+                       Token&& token) {
+    return rr_async_set<::rr::MultiArray<float>>(rr_members_Board[8], options,
+                                                 ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_image(const ::rr::MultiArray<float>& value, Token&& token) {
-    return rr_async_set<::rr::MultiArray<float>>(rr_members_Board[8], ::std::forward<Token>(token),
-                                                 value);
+    return async_set_image(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::FixedMultiArray<double, 3, 3> get_rotation() {
-    return rr_get<::rr::FixedMultiArray<double, 3, 3>>(rr_members_Board[9]);
+  ::rr::FixedMultiArray<double, 3, 3> get_rotation(const ::rr::CallOptions& options = {}) {
+    return rr_get<::rr::FixedMultiArray<double, 3, 3>>(rr_members_Board[9], options);
+  }
+  template <class Token>
+  auto async_get_rotation(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::rr::FixedMultiArray<double, 3, 3>>(rr_members_Board[9], options,
+                                                             ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_rotation(Token&& token) {
-    return rr_async_get<::rr::FixedMultiArray<double, 3, 3>>(rr_members_Board[9],
-                                                             ::std::forward<Token>(token));
+    return async_get_rotation(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_rotation(const ::rr::FixedMultiArray<double, 3, 3>& value) {
-    rr_set(rr_members_Board[9], &value);
+  void set_rotation(const ::rr::FixedMultiArray<double, 3, 3>& value,
+                    const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[9], options, &value);
+  }
+  template <class Token>
+  auto async_set_rotation(const ::rr::FixedMultiArray<double, 3, 3>& value,
+                          const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::rr::FixedMultiArray<double, 3, 3>>(rr_members_Board[9], options,
+                                                             ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_rotation(const ::rr::FixedMultiArray<double, 3, 3>& value, Token&& token) {
-    return rr_async_set<::rr::FixedMultiArray<double, 3, 3>>(rr_members_Board[9],
-                                                             ::std::forward<Token>(token), value);
+    return async_set_rotation(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::optional<::std::vector<::std::string>> get_names() {
-    return rr_get<::std::optional<::std::vector<::std::string>>>(rr_members_Board[10]);
+  ::std::optional<::std::vector<::std::string>> get_names(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::optional<::std::vector<::std::string>>>(rr_members_Board[10], options);
+  }
+  template <class Token>
+  auto async_get_names(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::optional<::std::vector<::std::string>>>(
+        rr_members_Board[10], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_names(Token&& token) {
-    return rr_async_get<::std::optional<::std::vector<::std::string>>>(
-        rr_members_Board[10], ::std::forward<Token>(token));
+    return async_get_names(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_names(const ::std::optional<::std::vector<::std::string>>& value) {
-    rr_set(rr_members_Board[10], &value);
+  void set_names(const ::std::optional<::std::vector<::std::string>>& value,
+                 const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[10], options, &value);
+  }
+  template <class Token>
+  auto async_set_names(const ::std::optional<::std::vector<::std::string>>& value,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::std::optional<::std::vector<::std::string>>>(
+        rr_members_Board[10], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_names(const ::std::optional<::std::vector<::std::string>>& value, Token&& token) {
-    return rr_async_set<::std::optional<::std::vector<::std::string>>>(
-        rr_members_Board[10], ::std::forward<Token>(token), value);
+    return async_set_names(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::optional<::std::map<::std::int32_t, double>> get_by_number() {
-    return rr_get<::std::optional<::std::map<::std::int32_t, double>>>(rr_members_Board[11]);
+  ::std::optional<::std::map<::std::int32_t, double>> get_by_number(
+      const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::optional<::std::map<::std::int32_t, double>>>(rr_members_Board[11],
+                                                                       options);
+  }
+  template <class Token>
+  auto async_get_by_number(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::optional<::std::map<::std::int32_t, double>>>(
+        rr_members_Board[11], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_by_number(Token&& token) {
-    return rr_async_get<::std::optional<::std::map<::std::int32_t, double>>>(
-        rr_members_Board[11], ::std::forward<Token>(token));
+    return async_get_by_number(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_by_number(const ::std::optional<::std::map<::std::int32_t, double>>& value) {
-    rr_set(rr_members_Board[11], &value);
+  void set_by_number(const ::std::optional<::std::map<::std::int32_t, double>>& value,
+                     const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[11], options, &value);
+  }
+  template <class Token>
+  auto async_set_by_number(const ::std::optional<::std::map<::std::int32_t, double>>& value,
+                           const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::std::optional<::std::map<::std::int32_t, double>>>(
+        rr_members_Board[11], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_by_number(const ::std::optional<::std::map<::std::int32_t, double>>& value,
                            Token&& token) {
-    return rr_async_set<::std::optional<::std::map<::std::int32_t, double>>>(
-        rr_members_Board[11], ::std::forward<Token>(token), value);
+    return async_set_by_number(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>> get_by_name() {
+  ::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>> get_by_name(
+      const ::rr::CallOptions& options = {}) {
     return rr_get<::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>>>(
-        rr_members_Board[12]);
+        rr_members_Board[12], options);
+  }
+  template <class Token>
+  auto async_get_by_name(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>>>(
+        rr_members_Board[12], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_by_name(Token&& token) {
-    return rr_async_get<::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>>>(
-        rr_members_Board[12], ::std::forward<Token>(token));
+    return async_get_by_name(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_by_name(
-      const ::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>>& value) {
-    rr_set(rr_members_Board[12], &value);
+      const ::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>>& value,
+      const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[12], options, &value);
+  }
+  template <class Token>
+  auto async_set_by_name(
+      const ::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>>& value,
+      const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>>>(
+        rr_members_Board[12], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_by_name(
       const ::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>>& value,
       Token&& token) {
-    return rr_async_set<::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>>>(
-        rr_members_Board[12], ::std::forward<Token>(token), value);
+    return async_set_by_name(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::VarValue get_anything() { return rr_get<::rr::VarValue>(rr_members_Board[13]); }
+  ::rr::VarValue get_anything(const ::rr::CallOptions& options = {}) {
+    return rr_get<::rr::VarValue>(rr_members_Board[13], options);
+  }
+  template <class Token>
+  auto async_get_anything(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::rr::VarValue>(rr_members_Board[13], options,
+                                        ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_anything(Token&& token) {
-    return rr_async_get<::rr::VarValue>(rr_members_Board[13], ::std::forward<Token>(token));
+    return async_get_anything(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_anything(const ::rr::VarValue& value) { rr_set(rr_members_Board[13], &value); }
+  void set_anything(const ::rr::VarValue& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[13], options, &value);
+  }
+  template <class Token>
+  auto async_set_anything(const ::rr::VarValue& value, const ::rr::CallOptions& options,
+                          Token&& token) {
+    return rr_async_set<::rr::VarValue>(rr_members_Board[13], options, ::std::forward<Token>(token),
+                                        value);
+  }
   template <class Token>
   auto async_set_anything(const ::rr::VarValue& value, Token&& token) {
-    return rr_async_set<::rr::VarValue>(rr_members_Board[13], ::std::forward<Token>(token), value);
+    return async_set_anything(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::optional<::std::map<::std::string, ::rr::VarValue>> get_settings() {
-    return rr_get<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(rr_members_Board[14]);
+  ::std::optional<::std::map<::std::string, ::rr::VarValue>> get_settings(
+      const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(rr_members_Board[14],
+                                                                              options);
+  }
+  template <class Token>
+  auto async_get_settings(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(
+        rr_members_Board[14], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_settings(Token&& token) {
-    return rr_async_get<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(
-        rr_members_Board[14], ::std::forward<Token>(token));
+    return async_get_settings(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_settings(const ::std::optional<::std::map<::std::string, ::rr::VarValue>>& value) {
-    rr_set(rr_members_Board[14], &value);
+  void set_settings(const ::std::optional<::std::map<::std::string, ::rr::VarValue>>& value,
+                    const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[14], options, &value);
+  }
+  template <class Token>
+  auto async_set_settings(const ::std::optional<::std::map<::std::string, ::rr::VarValue>>& value,
+                          const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(
+        rr_members_Board[14], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_settings(const ::std::optional<::std::map<::std::string, ::rr::VarValue>>& value,
                           Token&& token) {
-    return rr_async_set<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(
-        rr_members_Board[14], ::std::forward<Token>(token), value);
+    return async_set_settings(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::int32_t get_serial_number() { return rr_get<::std::int32_t>(rr_members_Board[15]); }
+  ::std::int32_t get_serial_number(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::int32_t>(rr_members_Board[15], options);
+  }
+  template <class Token>
+  auto async_get_serial_number(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::int32_t>(rr_members_Board[15], options,
+                                        ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_serial_number(Token&& token) {
-    return rr_async_get<::std::int32_t>(rr_members_Board[15], ::std::forward<Token>(token));
+    return async_get_serial_number(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_password(const ::std::string& value) { rr_set(rr_members_Board[16], &value); }
+  void set_password(const ::std::string& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[16], options, &value);
+  }
+  template <class Token>
+  auto async_set_password(const ::std::string& value, const ::rr::CallOptions& options,
+                          Token&& token) {
+    return rr_async_set<::std::string>(rr_members_Board[16], options, ::std::forward<Token>(token),
+                                       value);
+  }
   template <class Token>
   auto async_set_password(const ::std::string& value, Token&& token) {
-    return rr_async_set<::std::string>(rr_members_Board[16], ::std::forward<Token>(token), value);
+    return async_set_password(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_shared() { return rr_get<double>(rr_members_Board[17]); }
+  double get_shared(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_Board[17], options);
+  }
+  template <class Token>
+  auto async_get_shared(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_Board[17], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_shared(Token&& token) {
-    return rr_async_get<double>(rr_members_Board[17], ::std::forward<Token>(token));
+    return async_get_shared(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_shared(double value) { rr_set(rr_members_Board[17], &value); }
+  void set_shared(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[17], options, &value);
+  }
+  template <class Token>
+  auto async_set_shared(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_Board[17], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_shared(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_Board[17], ::std::forward<Token>(token), value);
+    return async_set_shared(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::int32_t get_page() { return rr_get<::std::int32_t>(rr_members_Board[18]); }
+  ::std::int32_t get_page(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::int32_t>(rr_members_Board[18], options);
+  }
+  template <class Token>
+  auto async_get_page(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::int32_t>(rr_members_Board[18], options,
+                                        ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_page(Token&& token) {
-    return rr_async_get<::std::int32_t>(rr_members_Board[18], ::std::forward<Token>(token));
+    return async_get_page(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_page(::std::int32_t value) { rr_set(rr_members_Board[18], &value); }
+  void set_page(::std::int32_t value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[18], options, &value);
+  }
+  template <class Token>
+  auto async_set_page(::std::int32_t value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::std::int32_t>(rr_members_Board[18], options, ::std::forward<Token>(token),
+                                        value);
+  }
   template <class Token>
   auto async_set_page(::std::int32_t value, Token&& token) {
-    return rr_async_set<::std::int32_t>(rr_members_Board[18], ::std::forward<Token>(token), value);
+    return async_set_page(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::optional<::std::vector<::std::string>> get_notes() {
-    return rr_get<::std::optional<::std::vector<::std::string>>>(rr_members_Board[19]);
+  ::std::optional<::std::vector<::std::string>> get_notes(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::optional<::std::vector<::std::string>>>(rr_members_Board[19], options);
+  }
+  template <class Token>
+  auto async_get_notes(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::optional<::std::vector<::std::string>>>(
+        rr_members_Board[19], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_notes(Token&& token) {
-    return rr_async_get<::std::optional<::std::vector<::std::string>>>(
-        rr_members_Board[19], ::std::forward<Token>(token));
+    return async_get_notes(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_notes(const ::std::optional<::std::vector<::std::string>>& value) {
-    rr_set(rr_members_Board[19], &value);
+  void set_notes(const ::std::optional<::std::vector<::std::string>>& value,
+                 const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Board[19], options, &value);
+  }
+  template <class Token>
+  auto async_set_notes(const ::std::optional<::std::vector<::std::string>>& value,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::std::optional<::std::vector<::std::string>>>(
+        rr_members_Board[19], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_notes(const ::std::optional<::std::vector<::std::string>>& value, Token&& token) {
-    return rr_async_set<::std::optional<::std::vector<::std::string>>>(
-        rr_members_Board[19], ::std::forward<Token>(token), value);
+    return async_set_notes(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  Mode get_view() { return rr_get<Mode>(rr_members_Board[20]); }
+  Mode get_view(const ::rr::CallOptions& options = {}) {
+    return rr_get<Mode>(rr_members_Board[20], options);
+  }
+  template <class Token>
+  auto async_get_view(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<Mode>(rr_members_Board[20], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_view(Token&& token) {
-    return rr_async_get<Mode>(rr_members_Board[20], ::std::forward<Token>(token));
+    return async_get_view(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };

@@ -2952,244 +2952,248 @@ constinit const ::rr::ObjectType rr_object_class{
 
 const ::rr::ObjectType& classStub::rr_object_type() const { return rr_object_class; }
 
-::std::shared_ptr<newStub> classStub::get_goto() {
-  return rr_find_as<newStub>(rr_members_class[40]);
+::std::shared_ptr<newStub> classStub::get_goto(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[40], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_if() { return rr_find_as<newStub>(rr_members_class[41]); }
-
-::std::shared_ptr<newStub> classStub::get_inline() {
-  return rr_find_as<newStub>(rr_members_class[42]);
+::std::shared_ptr<newStub> classStub::get_if(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[41], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_int() {
-  return rr_find_as<newStub>(rr_members_class[43]);
+::std::shared_ptr<newStub> classStub::get_inline(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[42], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_long() {
-  return rr_find_as<newStub>(rr_members_class[44]);
+::std::shared_ptr<newStub> classStub::get_int(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[43], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_mutable() {
-  return rr_find_as<newStub>(rr_members_class[45]);
+::std::shared_ptr<newStub> classStub::get_long(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[44], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_namespace() {
-  return rr_find_as<newStub>(rr_members_class[46]);
+::std::shared_ptr<newStub> classStub::get_mutable(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[45], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_new() {
-  return rr_find_as<newStub>(rr_members_class[47]);
+::std::shared_ptr<newStub> classStub::get_namespace(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[46], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_noexcept() {
-  return rr_find_as<newStub>(rr_members_class[48]);
+::std::shared_ptr<newStub> classStub::get_new(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[47], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_not() {
-  return rr_find_as<newStub>(rr_members_class[49]);
+::std::shared_ptr<newStub> classStub::get_noexcept(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[48], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_not_eq() {
-  return rr_find_as<newStub>(rr_members_class[50]);
+::std::shared_ptr<newStub> classStub::get_not(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[49], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_nullptr() {
-  return rr_find_as<newStub>(rr_members_class[51]);
+::std::shared_ptr<newStub> classStub::get_not_eq(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[50], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_operator() {
-  return rr_find_as<newStub>(rr_members_class[52]);
+::std::shared_ptr<newStub> classStub::get_nullptr(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[51], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_or() { return rr_find_as<newStub>(rr_members_class[53]); }
-
-::std::shared_ptr<newStub> classStub::get_or_eq() {
-  return rr_find_as<newStub>(rr_members_class[54]);
+::std::shared_ptr<newStub> classStub::get_operator(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[52], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_private() {
-  return rr_find_as<newStub>(rr_members_class[55]);
+::std::shared_ptr<newStub> classStub::get_or(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[53], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_protected() {
-  return rr_find_as<newStub>(rr_members_class[56]);
+::std::shared_ptr<newStub> classStub::get_or_eq(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[54], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_public() {
-  return rr_find_as<newStub>(rr_members_class[57]);
+::std::shared_ptr<newStub> classStub::get_private(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[55], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_register() {
-  return rr_find_as<newStub>(rr_members_class[58]);
+::std::shared_ptr<newStub> classStub::get_protected(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[56], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_reinterpret_cast() {
-  return rr_find_as<newStub>(rr_members_class[59]);
+::std::shared_ptr<newStub> classStub::get_public(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[57], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_requires() {
-  return rr_find_as<newStub>(rr_members_class[60]);
+::std::shared_ptr<newStub> classStub::get_register(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[58], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_return() {
-  return rr_find_as<newStub>(rr_members_class[61]);
+::std::shared_ptr<newStub> classStub::get_reinterpret_cast(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[59], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_short() {
-  return rr_find_as<newStub>(rr_members_class[62]);
+::std::shared_ptr<newStub> classStub::get_requires(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[60], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_signed() {
-  return rr_find_as<newStub>(rr_members_class[63]);
+::std::shared_ptr<newStub> classStub::get_return(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[61], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_sizeof() {
-  return rr_find_as<newStub>(rr_members_class[64]);
+::std::shared_ptr<newStub> classStub::get_short(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[62], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_static() {
-  return rr_find_as<newStub>(rr_members_class[65]);
+::std::shared_ptr<newStub> classStub::get_signed(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[63], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_static_assert() {
-  return rr_find_as<newStub>(rr_members_class[66]);
+::std::shared_ptr<newStub> classStub::get_sizeof(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[64], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_static_cast() {
-  return rr_find_as<newStub>(rr_members_class[67]);
+::std::shared_ptr<newStub> classStub::get_static(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[65], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_switch() {
-  return rr_find_as<newStub>(rr_members_class[68]);
+::std::shared_ptr<newStub> classStub::get_static_assert(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[66], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_template() {
-  return rr_find_as<newStub>(rr_members_class[69]);
+::std::shared_ptr<newStub> classStub::get_static_cast(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[67], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_thread_local() {
-  return rr_find_as<newStub>(rr_members_class[70]);
+::std::shared_ptr<newStub> classStub::get_switch(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[68], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_throw() {
-  return rr_find_as<newStub>(rr_members_class[71]);
+::std::shared_ptr<newStub> classStub::get_template(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[69], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_true() {
-  return rr_find_as<newStub>(rr_members_class[72]);
+::std::shared_ptr<newStub> classStub::get_thread_local(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[70], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_try() {
-  return rr_find_as<newStub>(rr_members_class[73]);
+::std::shared_ptr<newStub> classStub::get_throw(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[71], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_typedef() {
-  return rr_find_as<newStub>(rr_members_class[74]);
+::std::shared_ptr<newStub> classStub::get_true(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[72], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_typeid() {
-  return rr_find_as<newStub>(rr_members_class[75]);
+::std::shared_ptr<newStub> classStub::get_try(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[73], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_typename() {
-  return rr_find_as<newStub>(rr_members_class[76]);
+::std::shared_ptr<newStub> classStub::get_typedef(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[74], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_union() {
-  return rr_find_as<newStub>(rr_members_class[77]);
+::std::shared_ptr<newStub> classStub::get_typeid(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[75], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_unsigned() {
-  return rr_find_as<newStub>(rr_members_class[78]);
+::std::shared_ptr<newStub> classStub::get_typename(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[76], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_virtual() {
-  return rr_find_as<newStub>(rr_members_class[79]);
+::std::shared_ptr<newStub> classStub::get_union(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[77], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_volatile() {
-  return rr_find_as<newStub>(rr_members_class[80]);
+::std::shared_ptr<newStub> classStub::get_unsigned(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[78], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_wchar_t() {
-  return rr_find_as<newStub>(rr_members_class[81]);
+::std::shared_ptr<newStub> classStub::get_virtual(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[79], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_while() {
-  return rr_find_as<newStub>(rr_members_class[82]);
+::std::shared_ptr<newStub> classStub::get_volatile(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[80], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_xor() {
-  return rr_find_as<newStub>(rr_members_class[83]);
+::std::shared_ptr<newStub> classStub::get_wchar_t(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[81], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_xor_eq() {
-  return rr_find_as<newStub>(rr_members_class[84]);
+::std::shared_ptr<newStub> classStub::get_while(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[82], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_assert() {
-  return rr_find_as<newStub>(rr_members_class[85]);
+::std::shared_ptr<newStub> classStub::get_xor(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[83], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_errno() {
-  return rr_find_as<newStub>(rr_members_class[86]);
+::std::shared_ptr<newStub> classStub::get_xor_eq(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[84], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_linux() {
-  return rr_find_as<newStub>(rr_members_class[87]);
+::std::shared_ptr<newStub> classStub::get_assert(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[85], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_unix() {
-  return rr_find_as<newStub>(rr_members_class[88]);
+::std::shared_ptr<newStub> classStub::get_errno(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[86], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_major() {
-  return rr_find_as<newStub>(rr_members_class[89]);
+::std::shared_ptr<newStub> classStub::get_linux(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[87], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_minor() {
-  return rr_find_as<newStub>(rr_members_class[90]);
+::std::shared_ptr<newStub> classStub::get_unix(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[88], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_EOF() {
-  return rr_find_as<newStub>(rr_members_class[91]);
+::std::shared_ptr<newStub> classStub::get_major(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[89], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_NULL() {
-  return rr_find_as<newStub>(rr_members_class[92]);
+::std::shared_ptr<newStub> classStub::get_minor(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[90], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_INFINITY() {
-  return rr_find_as<newStub>(rr_members_class[93]);
+::std::shared_ptr<newStub> classStub::get_EOF(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[91], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_NAN() {
-  return rr_find_as<newStub>(rr_members_class[94]);
+::std::shared_ptr<newStub> classStub::get_NULL(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[92], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_RAND_MAX() {
-  return rr_find_as<newStub>(rr_members_class[95]);
+::std::shared_ptr<newStub> classStub::get_INFINITY(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[93], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_BUFSIZ() {
-  return rr_find_as<newStub>(rr_members_class[96]);
+::std::shared_ptr<newStub> classStub::get_NAN(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[94], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_SIGINT() {
-  return rr_find_as<newStub>(rr_members_class[97]);
+::std::shared_ptr<newStub> classStub::get_RAND_MAX(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[95], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_final() {
-  return rr_find_as<newStub>(rr_members_class[98]);
+::std::shared_ptr<newStub> classStub::get_BUFSIZ(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[96], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_override() {
-  return rr_find_as<newStub>(rr_members_class[99]);
+::std::shared_ptr<newStub> classStub::get_SIGINT(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[97], options);
 }
 
-::std::shared_ptr<newStub> classStub::get_module() {
-  return rr_find_as<newStub>(rr_members_class[100]);
+::std::shared_ptr<newStub> classStub::get_final(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[98], options);
+}
+
+::std::shared_ptr<newStub> classStub::get_override(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[99], options);
+}
+
+::std::shared_ptr<newStub> classStub::get_module(const ::rr::CallOptions& options) {
+  return rr_find_as<newStub>(rr_members_class[100], options);
 }
 
 const ::rr::ObjectType& classSkeleton::rr_object_type() const { return rr_object_class; }

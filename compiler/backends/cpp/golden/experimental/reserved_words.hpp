@@ -15,7 +15,7 @@
 #include <string>
 #include <utility>
 
-static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
+static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace experimental::reserved_words {
 
@@ -394,1015 +394,2318 @@ extern const ::rr::ObjectType rr_object_delete;
 /// A delete on another node.
 class deleteStub : public virtual ::rr::Stub {
  public:
-  double get_alignas() { return rr_get<double>(rr_members_delete[0]); }
+  double get_alignas(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[0], options);
+  }
+  template <class Token>
+  auto async_get_alignas(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[0], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_alignas(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[0], ::std::forward<Token>(token));
+    return async_get_alignas(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_alignas(double value) { rr_set(rr_members_delete[0], &value); }
+  void set_alignas(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[0], options, &value);
+  }
+  template <class Token>
+  auto async_set_alignas(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[0], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_alignas(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[0], ::std::forward<Token>(token), value);
+    return async_set_alignas(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_alignof() { return rr_get<double>(rr_members_delete[1]); }
+  double get_alignof(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[1], options);
+  }
+  template <class Token>
+  auto async_get_alignof(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[1], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_alignof(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[1], ::std::forward<Token>(token));
+    return async_get_alignof(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_alignof(double value) { rr_set(rr_members_delete[1], &value); }
+  void set_alignof(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[1], options, &value);
+  }
+  template <class Token>
+  auto async_set_alignof(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[1], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_alignof(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[1], ::std::forward<Token>(token), value);
+    return async_set_alignof(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_and() { return rr_get<double>(rr_members_delete[2]); }
+  double get_and(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[2], options);
+  }
+  template <class Token>
+  auto async_get_and(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[2], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_and(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[2], ::std::forward<Token>(token));
+    return async_get_and(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_and(double value) { rr_set(rr_members_delete[2], &value); }
+  void set_and(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[2], options, &value);
+  }
+  template <class Token>
+  auto async_set_and(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[2], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_and(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[2], ::std::forward<Token>(token), value);
+    return async_set_and(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_and_eq() { return rr_get<double>(rr_members_delete[3]); }
+  double get_and_eq(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[3], options);
+  }
+  template <class Token>
+  auto async_get_and_eq(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[3], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_and_eq(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[3], ::std::forward<Token>(token));
+    return async_get_and_eq(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_and_eq(double value) { rr_set(rr_members_delete[3], &value); }
+  void set_and_eq(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[3], options, &value);
+  }
+  template <class Token>
+  auto async_set_and_eq(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[3], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_and_eq(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[3], ::std::forward<Token>(token), value);
+    return async_set_and_eq(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_asm() { return rr_get<double>(rr_members_delete[4]); }
+  double get_asm(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[4], options);
+  }
+  template <class Token>
+  auto async_get_asm(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[4], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_asm(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[4], ::std::forward<Token>(token));
+    return async_get_asm(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_asm(double value) { rr_set(rr_members_delete[4], &value); }
+  void set_asm(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[4], options, &value);
+  }
+  template <class Token>
+  auto async_set_asm(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[4], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_asm(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[4], ::std::forward<Token>(token), value);
+    return async_set_asm(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_auto() { return rr_get<double>(rr_members_delete[5]); }
+  double get_auto(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[5], options);
+  }
+  template <class Token>
+  auto async_get_auto(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[5], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_auto(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[5], ::std::forward<Token>(token));
+    return async_get_auto(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_auto(double value) { rr_set(rr_members_delete[5], &value); }
+  void set_auto(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[5], options, &value);
+  }
+  template <class Token>
+  auto async_set_auto(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[5], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_auto(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[5], ::std::forward<Token>(token), value);
+    return async_set_auto(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_bitand() { return rr_get<double>(rr_members_delete[6]); }
+  double get_bitand(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[6], options);
+  }
+  template <class Token>
+  auto async_get_bitand(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[6], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_bitand(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[6], ::std::forward<Token>(token));
+    return async_get_bitand(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_bitand(double value) { rr_set(rr_members_delete[6], &value); }
+  void set_bitand(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[6], options, &value);
+  }
+  template <class Token>
+  auto async_set_bitand(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[6], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_bitand(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[6], ::std::forward<Token>(token), value);
+    return async_set_bitand(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_bitor() { return rr_get<double>(rr_members_delete[7]); }
+  double get_bitor(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[7], options);
+  }
+  template <class Token>
+  auto async_get_bitor(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[7], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_bitor(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[7], ::std::forward<Token>(token));
+    return async_get_bitor(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_bitor(double value) { rr_set(rr_members_delete[7], &value); }
+  void set_bitor(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[7], options, &value);
+  }
+  template <class Token>
+  auto async_set_bitor(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[7], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_bitor(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[7], ::std::forward<Token>(token), value);
+    return async_set_bitor(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_break() { return rr_get<double>(rr_members_delete[8]); }
+  double get_break(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[8], options);
+  }
+  template <class Token>
+  auto async_get_break(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[8], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_break(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[8], ::std::forward<Token>(token));
+    return async_get_break(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_break(double value) { rr_set(rr_members_delete[8], &value); }
+  void set_break(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[8], options, &value);
+  }
+  template <class Token>
+  auto async_set_break(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[8], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_break(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[8], ::std::forward<Token>(token), value);
+    return async_set_break(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_case() { return rr_get<double>(rr_members_delete[9]); }
+  double get_case(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[9], options);
+  }
+  template <class Token>
+  auto async_get_case(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[9], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_case(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[9], ::std::forward<Token>(token));
+    return async_get_case(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_case(double value) { rr_set(rr_members_delete[9], &value); }
+  void set_case(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[9], options, &value);
+  }
+  template <class Token>
+  auto async_set_case(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[9], options, ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_case(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[9], ::std::forward<Token>(token), value);
+    return async_set_case(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_catch() { return rr_get<double>(rr_members_delete[10]); }
+  double get_catch(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[10], options);
+  }
+  template <class Token>
+  auto async_get_catch(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[10], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_catch(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[10], ::std::forward<Token>(token));
+    return async_get_catch(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_catch(double value) { rr_set(rr_members_delete[10], &value); }
+  void set_catch(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[10], options, &value);
+  }
+  template <class Token>
+  auto async_set_catch(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[10], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_catch(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[10], ::std::forward<Token>(token), value);
+    return async_set_catch(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_char() { return rr_get<double>(rr_members_delete[11]); }
+  double get_char(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[11], options);
+  }
+  template <class Token>
+  auto async_get_char(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[11], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_char(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[11], ::std::forward<Token>(token));
+    return async_get_char(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_char(double value) { rr_set(rr_members_delete[11], &value); }
+  void set_char(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[11], options, &value);
+  }
+  template <class Token>
+  auto async_set_char(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[11], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_char(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[11], ::std::forward<Token>(token), value);
+    return async_set_char(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_char16_t() { return rr_get<double>(rr_members_delete[12]); }
+  double get_char16_t(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[12], options);
+  }
+  template <class Token>
+  auto async_get_char16_t(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[12], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_char16_t(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[12], ::std::forward<Token>(token));
+    return async_get_char16_t(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_char16_t(double value) { rr_set(rr_members_delete[12], &value); }
+  void set_char16_t(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[12], options, &value);
+  }
+  template <class Token>
+  auto async_set_char16_t(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[12], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_char16_t(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[12], ::std::forward<Token>(token), value);
+    return async_set_char16_t(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_char32_t() { return rr_get<double>(rr_members_delete[13]); }
+  double get_char32_t(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[13], options);
+  }
+  template <class Token>
+  auto async_get_char32_t(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[13], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_char32_t(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[13], ::std::forward<Token>(token));
+    return async_get_char32_t(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_char32_t(double value) { rr_set(rr_members_delete[13], &value); }
+  void set_char32_t(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[13], options, &value);
+  }
+  template <class Token>
+  auto async_set_char32_t(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[13], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_char32_t(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[13], ::std::forward<Token>(token), value);
+    return async_set_char32_t(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_char8_t() { return rr_get<double>(rr_members_delete[14]); }
+  double get_char8_t(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[14], options);
+  }
+  template <class Token>
+  auto async_get_char8_t(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[14], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_char8_t(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[14], ::std::forward<Token>(token));
+    return async_get_char8_t(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_char8_t(double value) { rr_set(rr_members_delete[14], &value); }
+  void set_char8_t(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[14], options, &value);
+  }
+  template <class Token>
+  auto async_set_char8_t(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[14], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_char8_t(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[14], ::std::forward<Token>(token), value);
+    return async_set_char8_t(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_class() { return rr_get<double>(rr_members_delete[15]); }
+  double get_class(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[15], options);
+  }
+  template <class Token>
+  auto async_get_class(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[15], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_class(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[15], ::std::forward<Token>(token));
+    return async_get_class(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_class(double value) { rr_set(rr_members_delete[15], &value); }
+  void set_class(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[15], options, &value);
+  }
+  template <class Token>
+  auto async_set_class(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[15], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_class(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[15], ::std::forward<Token>(token), value);
+    return async_set_class(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_co_await() { return rr_get<double>(rr_members_delete[16]); }
+  double get_co_await(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[16], options);
+  }
+  template <class Token>
+  auto async_get_co_await(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[16], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_co_await(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[16], ::std::forward<Token>(token));
+    return async_get_co_await(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_co_await(double value) { rr_set(rr_members_delete[16], &value); }
+  void set_co_await(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[16], options, &value);
+  }
+  template <class Token>
+  auto async_set_co_await(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[16], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_co_await(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[16], ::std::forward<Token>(token), value);
+    return async_set_co_await(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_co_return() { return rr_get<double>(rr_members_delete[17]); }
+  double get_co_return(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[17], options);
+  }
+  template <class Token>
+  auto async_get_co_return(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[17], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_co_return(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[17], ::std::forward<Token>(token));
+    return async_get_co_return(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_co_return(double value) { rr_set(rr_members_delete[17], &value); }
+  void set_co_return(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[17], options, &value);
+  }
+  template <class Token>
+  auto async_set_co_return(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[17], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_co_return(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[17], ::std::forward<Token>(token), value);
+    return async_set_co_return(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_co_yield() { return rr_get<double>(rr_members_delete[18]); }
+  double get_co_yield(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[18], options);
+  }
+  template <class Token>
+  auto async_get_co_yield(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[18], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_co_yield(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[18], ::std::forward<Token>(token));
+    return async_get_co_yield(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_co_yield(double value) { rr_set(rr_members_delete[18], &value); }
+  void set_co_yield(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[18], options, &value);
+  }
+  template <class Token>
+  auto async_set_co_yield(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[18], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_co_yield(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[18], ::std::forward<Token>(token), value);
+    return async_set_co_yield(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_compl() { return rr_get<double>(rr_members_delete[19]); }
+  double get_compl(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[19], options);
+  }
+  template <class Token>
+  auto async_get_compl(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[19], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_compl(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[19], ::std::forward<Token>(token));
+    return async_get_compl(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_compl(double value) { rr_set(rr_members_delete[19], &value); }
+  void set_compl(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[19], options, &value);
+  }
+  template <class Token>
+  auto async_set_compl(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[19], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_compl(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[19], ::std::forward<Token>(token), value);
+    return async_set_compl(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_concept() { return rr_get<double>(rr_members_delete[20]); }
+  double get_concept(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[20], options);
+  }
+  template <class Token>
+  auto async_get_concept(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[20], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_concept(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[20], ::std::forward<Token>(token));
+    return async_get_concept(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_concept(double value) { rr_set(rr_members_delete[20], &value); }
+  void set_concept(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[20], options, &value);
+  }
+  template <class Token>
+  auto async_set_concept(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[20], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_concept(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[20], ::std::forward<Token>(token), value);
+    return async_set_concept(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_const() { return rr_get<double>(rr_members_delete[21]); }
+  double get_const(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[21], options);
+  }
+  template <class Token>
+  auto async_get_const(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[21], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_const(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[21], ::std::forward<Token>(token));
+    return async_get_const(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_const(double value) { rr_set(rr_members_delete[21], &value); }
+  void set_const(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[21], options, &value);
+  }
+  template <class Token>
+  auto async_set_const(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[21], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_const(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[21], ::std::forward<Token>(token), value);
+    return async_set_const(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_const_cast() { return rr_get<double>(rr_members_delete[22]); }
+  double get_const_cast(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[22], options);
+  }
+  template <class Token>
+  auto async_get_const_cast(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[22], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_const_cast(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[22], ::std::forward<Token>(token));
+    return async_get_const_cast(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_const_cast(double value) { rr_set(rr_members_delete[22], &value); }
+  void set_const_cast(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[22], options, &value);
+  }
+  template <class Token>
+  auto async_set_const_cast(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[22], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_const_cast(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[22], ::std::forward<Token>(token), value);
+    return async_set_const_cast(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_consteval() { return rr_get<double>(rr_members_delete[23]); }
+  double get_consteval(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[23], options);
+  }
+  template <class Token>
+  auto async_get_consteval(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[23], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_consteval(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[23], ::std::forward<Token>(token));
+    return async_get_consteval(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_consteval(double value) { rr_set(rr_members_delete[23], &value); }
+  void set_consteval(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[23], options, &value);
+  }
+  template <class Token>
+  auto async_set_consteval(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[23], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_consteval(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[23], ::std::forward<Token>(token), value);
+    return async_set_consteval(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_constexpr() { return rr_get<double>(rr_members_delete[24]); }
+  double get_constexpr(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[24], options);
+  }
+  template <class Token>
+  auto async_get_constexpr(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[24], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_constexpr(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[24], ::std::forward<Token>(token));
+    return async_get_constexpr(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_constexpr(double value) { rr_set(rr_members_delete[24], &value); }
+  void set_constexpr(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[24], options, &value);
+  }
+  template <class Token>
+  auto async_set_constexpr(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[24], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_constexpr(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[24], ::std::forward<Token>(token), value);
+    return async_set_constexpr(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_constinit() { return rr_get<double>(rr_members_delete[25]); }
+  double get_constinit(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[25], options);
+  }
+  template <class Token>
+  auto async_get_constinit(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[25], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_constinit(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[25], ::std::forward<Token>(token));
+    return async_get_constinit(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_constinit(double value) { rr_set(rr_members_delete[25], &value); }
+  void set_constinit(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[25], options, &value);
+  }
+  template <class Token>
+  auto async_set_constinit(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[25], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_constinit(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[25], ::std::forward<Token>(token), value);
+    return async_set_constinit(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_continue() { return rr_get<double>(rr_members_delete[26]); }
+  double get_continue(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[26], options);
+  }
+  template <class Token>
+  auto async_get_continue(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[26], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_continue(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[26], ::std::forward<Token>(token));
+    return async_get_continue(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_continue(double value) { rr_set(rr_members_delete[26], &value); }
+  void set_continue(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[26], options, &value);
+  }
+  template <class Token>
+  auto async_set_continue(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[26], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_continue(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[26], ::std::forward<Token>(token), value);
+    return async_set_continue(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_decltype() { return rr_get<double>(rr_members_delete[27]); }
+  double get_decltype(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[27], options);
+  }
+  template <class Token>
+  auto async_get_decltype(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[27], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_decltype(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[27], ::std::forward<Token>(token));
+    return async_get_decltype(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_decltype(double value) { rr_set(rr_members_delete[27], &value); }
+  void set_decltype(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[27], options, &value);
+  }
+  template <class Token>
+  auto async_set_decltype(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[27], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_decltype(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[27], ::std::forward<Token>(token), value);
+    return async_set_decltype(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_default() { return rr_get<double>(rr_members_delete[28]); }
+  double get_default(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[28], options);
+  }
+  template <class Token>
+  auto async_get_default(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[28], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_default(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[28], ::std::forward<Token>(token));
+    return async_get_default(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_default(double value) { rr_set(rr_members_delete[28], &value); }
+  void set_default(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[28], options, &value);
+  }
+  template <class Token>
+  auto async_set_default(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[28], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_default(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[28], ::std::forward<Token>(token), value);
+    return async_set_default(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_delete() { return rr_get<double>(rr_members_delete[29]); }
+  double get_delete(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[29], options);
+  }
+  template <class Token>
+  auto async_get_delete(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[29], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_delete(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[29], ::std::forward<Token>(token));
+    return async_get_delete(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_delete(double value) { rr_set(rr_members_delete[29], &value); }
+  void set_delete(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[29], options, &value);
+  }
+  template <class Token>
+  auto async_set_delete(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[29], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_delete(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[29], ::std::forward<Token>(token), value);
+    return async_set_delete(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_do() { return rr_get<double>(rr_members_delete[30]); }
+  double get_do(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[30], options);
+  }
+  template <class Token>
+  auto async_get_do(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[30], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_do(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[30], ::std::forward<Token>(token));
+    return async_get_do(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_do(double value) { rr_set(rr_members_delete[30], &value); }
+  void set_do(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[30], options, &value);
+  }
+  template <class Token>
+  auto async_set_do(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[30], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_do(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[30], ::std::forward<Token>(token), value);
+    return async_set_do(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_dynamic_cast() { return rr_get<double>(rr_members_delete[31]); }
+  double get_dynamic_cast(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[31], options);
+  }
+  template <class Token>
+  auto async_get_dynamic_cast(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[31], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_dynamic_cast(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[31], ::std::forward<Token>(token));
+    return async_get_dynamic_cast(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_dynamic_cast(double value) { rr_set(rr_members_delete[31], &value); }
+  void set_dynamic_cast(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[31], options, &value);
+  }
+  template <class Token>
+  auto async_set_dynamic_cast(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[31], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_dynamic_cast(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[31], ::std::forward<Token>(token), value);
+    return async_set_dynamic_cast(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_else() { return rr_get<double>(rr_members_delete[32]); }
+  double get_else(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[32], options);
+  }
+  template <class Token>
+  auto async_get_else(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[32], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_else(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[32], ::std::forward<Token>(token));
+    return async_get_else(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_else(double value) { rr_set(rr_members_delete[32], &value); }
+  void set_else(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[32], options, &value);
+  }
+  template <class Token>
+  auto async_set_else(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[32], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_else(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[32], ::std::forward<Token>(token), value);
+    return async_set_else(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_explicit() { return rr_get<double>(rr_members_delete[33]); }
+  double get_explicit(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[33], options);
+  }
+  template <class Token>
+  auto async_get_explicit(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[33], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_explicit(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[33], ::std::forward<Token>(token));
+    return async_get_explicit(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_explicit(double value) { rr_set(rr_members_delete[33], &value); }
+  void set_explicit(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[33], options, &value);
+  }
+  template <class Token>
+  auto async_set_explicit(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[33], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_explicit(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[33], ::std::forward<Token>(token), value);
+    return async_set_explicit(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_export() { return rr_get<double>(rr_members_delete[34]); }
+  double get_export(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[34], options);
+  }
+  template <class Token>
+  auto async_get_export(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[34], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_export(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[34], ::std::forward<Token>(token));
+    return async_get_export(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_export(double value) { rr_set(rr_members_delete[34], &value); }
+  void set_export(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[34], options, &value);
+  }
+  template <class Token>
+  auto async_set_export(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[34], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_export(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[34], ::std::forward<Token>(token), value);
+    return async_set_export(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_extern() { return rr_get<double>(rr_members_delete[35]); }
+  double get_extern(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[35], options);
+  }
+  template <class Token>
+  auto async_get_extern(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[35], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_extern(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[35], ::std::forward<Token>(token));
+    return async_get_extern(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_extern(double value) { rr_set(rr_members_delete[35], &value); }
+  void set_extern(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[35], options, &value);
+  }
+  template <class Token>
+  auto async_set_extern(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[35], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_extern(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[35], ::std::forward<Token>(token), value);
+    return async_set_extern(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_false() { return rr_get<double>(rr_members_delete[36]); }
+  double get_false(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[36], options);
+  }
+  template <class Token>
+  auto async_get_false(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[36], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_false(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[36], ::std::forward<Token>(token));
+    return async_get_false(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_false(double value) { rr_set(rr_members_delete[36], &value); }
+  void set_false(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[36], options, &value);
+  }
+  template <class Token>
+  auto async_set_false(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[36], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_false(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[36], ::std::forward<Token>(token), value);
+    return async_set_false(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_float() { return rr_get<double>(rr_members_delete[37]); }
+  double get_float(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[37], options);
+  }
+  template <class Token>
+  auto async_get_float(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[37], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_float(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[37], ::std::forward<Token>(token));
+    return async_get_float(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_float(double value) { rr_set(rr_members_delete[37], &value); }
+  void set_float(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[37], options, &value);
+  }
+  template <class Token>
+  auto async_set_float(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[37], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_float(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[37], ::std::forward<Token>(token), value);
+    return async_set_float(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_for() { return rr_get<double>(rr_members_delete[38]); }
+  double get_for(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[38], options);
+  }
+  template <class Token>
+  auto async_get_for(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[38], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_for(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[38], ::std::forward<Token>(token));
+    return async_get_for(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_for(double value) { rr_set(rr_members_delete[38], &value); }
+  void set_for(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[38], options, &value);
+  }
+  template <class Token>
+  auto async_set_for(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[38], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_for(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[38], ::std::forward<Token>(token), value);
+    return async_set_for(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_friend() { return rr_get<double>(rr_members_delete[39]); }
+  double get_friend(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[39], options);
+  }
+  template <class Token>
+  auto async_get_friend(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[39], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_friend(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[39], ::std::forward<Token>(token));
+    return async_get_friend(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_friend(double value) { rr_set(rr_members_delete[39], &value); }
+  void set_friend(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[39], options, &value);
+  }
+  template <class Token>
+  auto async_set_friend(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[39], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_friend(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[39], ::std::forward<Token>(token), value);
+    return async_set_friend(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_goto() { return rr_get<double>(rr_members_delete[40]); }
+  double get_goto(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[40], options);
+  }
+  template <class Token>
+  auto async_get_goto(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[40], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_goto(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[40], ::std::forward<Token>(token));
+    return async_get_goto(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_goto(double value) { rr_set(rr_members_delete[40], &value); }
+  void set_goto(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[40], options, &value);
+  }
+  template <class Token>
+  auto async_set_goto(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[40], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_goto(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[40], ::std::forward<Token>(token), value);
+    return async_set_goto(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_if() { return rr_get<double>(rr_members_delete[41]); }
+  double get_if(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[41], options);
+  }
+  template <class Token>
+  auto async_get_if(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[41], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_if(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[41], ::std::forward<Token>(token));
+    return async_get_if(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_if(double value) { rr_set(rr_members_delete[41], &value); }
+  void set_if(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[41], options, &value);
+  }
+  template <class Token>
+  auto async_set_if(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[41], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_if(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[41], ::std::forward<Token>(token), value);
+    return async_set_if(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_inline() { return rr_get<double>(rr_members_delete[42]); }
+  double get_inline(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[42], options);
+  }
+  template <class Token>
+  auto async_get_inline(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[42], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_inline(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[42], ::std::forward<Token>(token));
+    return async_get_inline(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_inline(double value) { rr_set(rr_members_delete[42], &value); }
+  void set_inline(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[42], options, &value);
+  }
+  template <class Token>
+  auto async_set_inline(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[42], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_inline(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[42], ::std::forward<Token>(token), value);
+    return async_set_inline(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_int() { return rr_get<double>(rr_members_delete[43]); }
+  double get_int(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[43], options);
+  }
+  template <class Token>
+  auto async_get_int(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[43], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_int(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[43], ::std::forward<Token>(token));
+    return async_get_int(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_int(double value) { rr_set(rr_members_delete[43], &value); }
+  void set_int(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[43], options, &value);
+  }
+  template <class Token>
+  auto async_set_int(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[43], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_int(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[43], ::std::forward<Token>(token), value);
+    return async_set_int(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_long() { return rr_get<double>(rr_members_delete[44]); }
+  double get_long(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[44], options);
+  }
+  template <class Token>
+  auto async_get_long(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[44], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_long(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[44], ::std::forward<Token>(token));
+    return async_get_long(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_long(double value) { rr_set(rr_members_delete[44], &value); }
+  void set_long(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[44], options, &value);
+  }
+  template <class Token>
+  auto async_set_long(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[44], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_long(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[44], ::std::forward<Token>(token), value);
+    return async_set_long(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_mutable() { return rr_get<double>(rr_members_delete[45]); }
+  double get_mutable(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[45], options);
+  }
+  template <class Token>
+  auto async_get_mutable(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[45], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_mutable(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[45], ::std::forward<Token>(token));
+    return async_get_mutable(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_mutable(double value) { rr_set(rr_members_delete[45], &value); }
+  void set_mutable(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[45], options, &value);
+  }
+  template <class Token>
+  auto async_set_mutable(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[45], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_mutable(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[45], ::std::forward<Token>(token), value);
+    return async_set_mutable(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_namespace() { return rr_get<double>(rr_members_delete[46]); }
+  double get_namespace(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[46], options);
+  }
+  template <class Token>
+  auto async_get_namespace(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[46], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_namespace(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[46], ::std::forward<Token>(token));
+    return async_get_namespace(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_namespace(double value) { rr_set(rr_members_delete[46], &value); }
+  void set_namespace(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[46], options, &value);
+  }
+  template <class Token>
+  auto async_set_namespace(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[46], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_namespace(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[46], ::std::forward<Token>(token), value);
+    return async_set_namespace(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_new() { return rr_get<double>(rr_members_delete[47]); }
+  double get_new(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[47], options);
+  }
+  template <class Token>
+  auto async_get_new(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[47], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_new(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[47], ::std::forward<Token>(token));
+    return async_get_new(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_new(double value) { rr_set(rr_members_delete[47], &value); }
+  void set_new(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[47], options, &value);
+  }
+  template <class Token>
+  auto async_set_new(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[47], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_new(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[47], ::std::forward<Token>(token), value);
+    return async_set_new(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_noexcept() { return rr_get<double>(rr_members_delete[48]); }
+  double get_noexcept(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[48], options);
+  }
+  template <class Token>
+  auto async_get_noexcept(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[48], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_noexcept(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[48], ::std::forward<Token>(token));
+    return async_get_noexcept(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_noexcept(double value) { rr_set(rr_members_delete[48], &value); }
+  void set_noexcept(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[48], options, &value);
+  }
+  template <class Token>
+  auto async_set_noexcept(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[48], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_noexcept(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[48], ::std::forward<Token>(token), value);
+    return async_set_noexcept(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_not() { return rr_get<double>(rr_members_delete[49]); }
+  double get_not(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[49], options);
+  }
+  template <class Token>
+  auto async_get_not(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[49], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_not(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[49], ::std::forward<Token>(token));
+    return async_get_not(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_not(double value) { rr_set(rr_members_delete[49], &value); }
+  void set_not(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[49], options, &value);
+  }
+  template <class Token>
+  auto async_set_not(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[49], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_not(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[49], ::std::forward<Token>(token), value);
+    return async_set_not(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_not_eq() { return rr_get<double>(rr_members_delete[50]); }
+  double get_not_eq(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[50], options);
+  }
+  template <class Token>
+  auto async_get_not_eq(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[50], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_not_eq(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[50], ::std::forward<Token>(token));
+    return async_get_not_eq(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_not_eq(double value) { rr_set(rr_members_delete[50], &value); }
+  void set_not_eq(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[50], options, &value);
+  }
+  template <class Token>
+  auto async_set_not_eq(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[50], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_not_eq(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[50], ::std::forward<Token>(token), value);
+    return async_set_not_eq(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_nullptr() { return rr_get<double>(rr_members_delete[51]); }
+  double get_nullptr(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[51], options);
+  }
+  template <class Token>
+  auto async_get_nullptr(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[51], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_nullptr(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[51], ::std::forward<Token>(token));
+    return async_get_nullptr(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_nullptr(double value) { rr_set(rr_members_delete[51], &value); }
+  void set_nullptr(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[51], options, &value);
+  }
+  template <class Token>
+  auto async_set_nullptr(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[51], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_nullptr(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[51], ::std::forward<Token>(token), value);
+    return async_set_nullptr(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_operator() { return rr_get<double>(rr_members_delete[52]); }
+  double get_operator(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[52], options);
+  }
+  template <class Token>
+  auto async_get_operator(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[52], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_operator(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[52], ::std::forward<Token>(token));
+    return async_get_operator(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_operator(double value) { rr_set(rr_members_delete[52], &value); }
+  void set_operator(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[52], options, &value);
+  }
+  template <class Token>
+  auto async_set_operator(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[52], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_operator(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[52], ::std::forward<Token>(token), value);
+    return async_set_operator(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_or() { return rr_get<double>(rr_members_delete[53]); }
+  double get_or(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[53], options);
+  }
+  template <class Token>
+  auto async_get_or(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[53], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_or(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[53], ::std::forward<Token>(token));
+    return async_get_or(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_or(double value) { rr_set(rr_members_delete[53], &value); }
+  void set_or(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[53], options, &value);
+  }
+  template <class Token>
+  auto async_set_or(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[53], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_or(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[53], ::std::forward<Token>(token), value);
+    return async_set_or(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_or_eq() { return rr_get<double>(rr_members_delete[54]); }
+  double get_or_eq(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[54], options);
+  }
+  template <class Token>
+  auto async_get_or_eq(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[54], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_or_eq(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[54], ::std::forward<Token>(token));
+    return async_get_or_eq(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_or_eq(double value) { rr_set(rr_members_delete[54], &value); }
+  void set_or_eq(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[54], options, &value);
+  }
+  template <class Token>
+  auto async_set_or_eq(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[54], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_or_eq(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[54], ::std::forward<Token>(token), value);
+    return async_set_or_eq(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_private() { return rr_get<double>(rr_members_delete[55]); }
+  double get_private(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[55], options);
+  }
+  template <class Token>
+  auto async_get_private(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[55], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_private(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[55], ::std::forward<Token>(token));
+    return async_get_private(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_private(double value) { rr_set(rr_members_delete[55], &value); }
+  void set_private(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[55], options, &value);
+  }
+  template <class Token>
+  auto async_set_private(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[55], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_private(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[55], ::std::forward<Token>(token), value);
+    return async_set_private(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_protected() { return rr_get<double>(rr_members_delete[56]); }
+  double get_protected(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[56], options);
+  }
+  template <class Token>
+  auto async_get_protected(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[56], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_protected(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[56], ::std::forward<Token>(token));
+    return async_get_protected(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_protected(double value) { rr_set(rr_members_delete[56], &value); }
+  void set_protected(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[56], options, &value);
+  }
+  template <class Token>
+  auto async_set_protected(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[56], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_protected(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[56], ::std::forward<Token>(token), value);
+    return async_set_protected(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_public() { return rr_get<double>(rr_members_delete[57]); }
+  double get_public(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[57], options);
+  }
+  template <class Token>
+  auto async_get_public(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[57], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_public(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[57], ::std::forward<Token>(token));
+    return async_get_public(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_public(double value) { rr_set(rr_members_delete[57], &value); }
+  void set_public(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[57], options, &value);
+  }
+  template <class Token>
+  auto async_set_public(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[57], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_public(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[57], ::std::forward<Token>(token), value);
+    return async_set_public(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_register() { return rr_get<double>(rr_members_delete[58]); }
+  double get_register(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[58], options);
+  }
+  template <class Token>
+  auto async_get_register(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[58], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_register(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[58], ::std::forward<Token>(token));
+    return async_get_register(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_register(double value) { rr_set(rr_members_delete[58], &value); }
+  void set_register(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[58], options, &value);
+  }
+  template <class Token>
+  auto async_set_register(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[58], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_register(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[58], ::std::forward<Token>(token), value);
+    return async_set_register(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_reinterpret_cast() { return rr_get<double>(rr_members_delete[59]); }
+  double get_reinterpret_cast(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[59], options);
+  }
+  template <class Token>
+  auto async_get_reinterpret_cast(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[59], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_reinterpret_cast(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[59], ::std::forward<Token>(token));
+    return async_get_reinterpret_cast(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_reinterpret_cast(double value) { rr_set(rr_members_delete[59], &value); }
+  void set_reinterpret_cast(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[59], options, &value);
+  }
+  template <class Token>
+  auto async_set_reinterpret_cast(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[59], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_reinterpret_cast(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[59], ::std::forward<Token>(token), value);
+    return async_set_reinterpret_cast(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_requires() { return rr_get<double>(rr_members_delete[60]); }
+  double get_requires(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[60], options);
+  }
+  template <class Token>
+  auto async_get_requires(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[60], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_requires(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[60], ::std::forward<Token>(token));
+    return async_get_requires(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_requires(double value) { rr_set(rr_members_delete[60], &value); }
+  void set_requires(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[60], options, &value);
+  }
+  template <class Token>
+  auto async_set_requires(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[60], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_requires(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[60], ::std::forward<Token>(token), value);
+    return async_set_requires(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_return() { return rr_get<double>(rr_members_delete[61]); }
+  double get_return(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[61], options);
+  }
+  template <class Token>
+  auto async_get_return(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[61], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_return(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[61], ::std::forward<Token>(token));
+    return async_get_return(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_return(double value) { rr_set(rr_members_delete[61], &value); }
+  void set_return(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[61], options, &value);
+  }
+  template <class Token>
+  auto async_set_return(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[61], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_return(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[61], ::std::forward<Token>(token), value);
+    return async_set_return(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_short() { return rr_get<double>(rr_members_delete[62]); }
+  double get_short(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[62], options);
+  }
+  template <class Token>
+  auto async_get_short(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[62], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_short(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[62], ::std::forward<Token>(token));
+    return async_get_short(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_short(double value) { rr_set(rr_members_delete[62], &value); }
+  void set_short(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[62], options, &value);
+  }
+  template <class Token>
+  auto async_set_short(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[62], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_short(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[62], ::std::forward<Token>(token), value);
+    return async_set_short(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_signed() { return rr_get<double>(rr_members_delete[63]); }
+  double get_signed(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[63], options);
+  }
+  template <class Token>
+  auto async_get_signed(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[63], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_signed(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[63], ::std::forward<Token>(token));
+    return async_get_signed(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_signed(double value) { rr_set(rr_members_delete[63], &value); }
+  void set_signed(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[63], options, &value);
+  }
+  template <class Token>
+  auto async_set_signed(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[63], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_signed(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[63], ::std::forward<Token>(token), value);
+    return async_set_signed(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_sizeof() { return rr_get<double>(rr_members_delete[64]); }
+  double get_sizeof(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[64], options);
+  }
+  template <class Token>
+  auto async_get_sizeof(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[64], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_sizeof(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[64], ::std::forward<Token>(token));
+    return async_get_sizeof(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_sizeof(double value) { rr_set(rr_members_delete[64], &value); }
+  void set_sizeof(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[64], options, &value);
+  }
+  template <class Token>
+  auto async_set_sizeof(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[64], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_sizeof(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[64], ::std::forward<Token>(token), value);
+    return async_set_sizeof(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_static() { return rr_get<double>(rr_members_delete[65]); }
+  double get_static(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[65], options);
+  }
+  template <class Token>
+  auto async_get_static(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[65], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_static(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[65], ::std::forward<Token>(token));
+    return async_get_static(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_static(double value) { rr_set(rr_members_delete[65], &value); }
+  void set_static(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[65], options, &value);
+  }
+  template <class Token>
+  auto async_set_static(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[65], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_static(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[65], ::std::forward<Token>(token), value);
+    return async_set_static(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_static_assert() { return rr_get<double>(rr_members_delete[66]); }
+  double get_static_assert(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[66], options);
+  }
+  template <class Token>
+  auto async_get_static_assert(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[66], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_static_assert(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[66], ::std::forward<Token>(token));
+    return async_get_static_assert(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_static_assert(double value) { rr_set(rr_members_delete[66], &value); }
+  void set_static_assert(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[66], options, &value);
+  }
+  template <class Token>
+  auto async_set_static_assert(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[66], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_static_assert(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[66], ::std::forward<Token>(token), value);
+    return async_set_static_assert(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_static_cast() { return rr_get<double>(rr_members_delete[67]); }
+  double get_static_cast(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[67], options);
+  }
+  template <class Token>
+  auto async_get_static_cast(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[67], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_static_cast(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[67], ::std::forward<Token>(token));
+    return async_get_static_cast(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_static_cast(double value) { rr_set(rr_members_delete[67], &value); }
+  void set_static_cast(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[67], options, &value);
+  }
+  template <class Token>
+  auto async_set_static_cast(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[67], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_static_cast(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[67], ::std::forward<Token>(token), value);
+    return async_set_static_cast(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_switch() { return rr_get<double>(rr_members_delete[68]); }
+  double get_switch(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[68], options);
+  }
+  template <class Token>
+  auto async_get_switch(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[68], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_switch(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[68], ::std::forward<Token>(token));
+    return async_get_switch(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_switch(double value) { rr_set(rr_members_delete[68], &value); }
+  void set_switch(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[68], options, &value);
+  }
+  template <class Token>
+  auto async_set_switch(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[68], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_switch(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[68], ::std::forward<Token>(token), value);
+    return async_set_switch(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_template() { return rr_get<double>(rr_members_delete[69]); }
+  double get_template(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[69], options);
+  }
+  template <class Token>
+  auto async_get_template(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[69], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_template(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[69], ::std::forward<Token>(token));
+    return async_get_template(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_template(double value) { rr_set(rr_members_delete[69], &value); }
+  void set_template(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[69], options, &value);
+  }
+  template <class Token>
+  auto async_set_template(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[69], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_template(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[69], ::std::forward<Token>(token), value);
+    return async_set_template(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_thread_local() { return rr_get<double>(rr_members_delete[70]); }
+  double get_thread_local(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[70], options);
+  }
+  template <class Token>
+  auto async_get_thread_local(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[70], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_thread_local(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[70], ::std::forward<Token>(token));
+    return async_get_thread_local(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_thread_local(double value) { rr_set(rr_members_delete[70], &value); }
+  void set_thread_local(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[70], options, &value);
+  }
+  template <class Token>
+  auto async_set_thread_local(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[70], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_thread_local(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[70], ::std::forward<Token>(token), value);
+    return async_set_thread_local(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_throw() { return rr_get<double>(rr_members_delete[71]); }
+  double get_throw(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[71], options);
+  }
+  template <class Token>
+  auto async_get_throw(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[71], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_throw(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[71], ::std::forward<Token>(token));
+    return async_get_throw(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_throw(double value) { rr_set(rr_members_delete[71], &value); }
+  void set_throw(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[71], options, &value);
+  }
+  template <class Token>
+  auto async_set_throw(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[71], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_throw(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[71], ::std::forward<Token>(token), value);
+    return async_set_throw(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_true() { return rr_get<double>(rr_members_delete[72]); }
+  double get_true(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[72], options);
+  }
+  template <class Token>
+  auto async_get_true(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[72], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_true(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[72], ::std::forward<Token>(token));
+    return async_get_true(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_true(double value) { rr_set(rr_members_delete[72], &value); }
+  void set_true(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[72], options, &value);
+  }
+  template <class Token>
+  auto async_set_true(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[72], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_true(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[72], ::std::forward<Token>(token), value);
+    return async_set_true(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_try() { return rr_get<double>(rr_members_delete[73]); }
+  double get_try(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[73], options);
+  }
+  template <class Token>
+  auto async_get_try(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[73], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_try(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[73], ::std::forward<Token>(token));
+    return async_get_try(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_try(double value) { rr_set(rr_members_delete[73], &value); }
+  void set_try(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[73], options, &value);
+  }
+  template <class Token>
+  auto async_set_try(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[73], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_try(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[73], ::std::forward<Token>(token), value);
+    return async_set_try(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_typedef() { return rr_get<double>(rr_members_delete[74]); }
+  double get_typedef(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[74], options);
+  }
+  template <class Token>
+  auto async_get_typedef(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[74], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_typedef(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[74], ::std::forward<Token>(token));
+    return async_get_typedef(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_typedef(double value) { rr_set(rr_members_delete[74], &value); }
+  void set_typedef(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[74], options, &value);
+  }
+  template <class Token>
+  auto async_set_typedef(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[74], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_typedef(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[74], ::std::forward<Token>(token), value);
+    return async_set_typedef(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_typeid() { return rr_get<double>(rr_members_delete[75]); }
+  double get_typeid(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[75], options);
+  }
+  template <class Token>
+  auto async_get_typeid(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[75], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_typeid(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[75], ::std::forward<Token>(token));
+    return async_get_typeid(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_typeid(double value) { rr_set(rr_members_delete[75], &value); }
+  void set_typeid(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[75], options, &value);
+  }
+  template <class Token>
+  auto async_set_typeid(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[75], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_typeid(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[75], ::std::forward<Token>(token), value);
+    return async_set_typeid(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_typename() { return rr_get<double>(rr_members_delete[76]); }
+  double get_typename(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[76], options);
+  }
+  template <class Token>
+  auto async_get_typename(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[76], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_typename(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[76], ::std::forward<Token>(token));
+    return async_get_typename(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_typename(double value) { rr_set(rr_members_delete[76], &value); }
+  void set_typename(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[76], options, &value);
+  }
+  template <class Token>
+  auto async_set_typename(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[76], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_typename(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[76], ::std::forward<Token>(token), value);
+    return async_set_typename(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_union() { return rr_get<double>(rr_members_delete[77]); }
+  double get_union(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[77], options);
+  }
+  template <class Token>
+  auto async_get_union(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[77], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_union(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[77], ::std::forward<Token>(token));
+    return async_get_union(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_union(double value) { rr_set(rr_members_delete[77], &value); }
+  void set_union(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[77], options, &value);
+  }
+  template <class Token>
+  auto async_set_union(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[77], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_union(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[77], ::std::forward<Token>(token), value);
+    return async_set_union(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_unsigned() { return rr_get<double>(rr_members_delete[78]); }
+  double get_unsigned(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[78], options);
+  }
+  template <class Token>
+  auto async_get_unsigned(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[78], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_unsigned(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[78], ::std::forward<Token>(token));
+    return async_get_unsigned(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_unsigned(double value) { rr_set(rr_members_delete[78], &value); }
+  void set_unsigned(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[78], options, &value);
+  }
+  template <class Token>
+  auto async_set_unsigned(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[78], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_unsigned(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[78], ::std::forward<Token>(token), value);
+    return async_set_unsigned(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_virtual() { return rr_get<double>(rr_members_delete[79]); }
+  double get_virtual(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[79], options);
+  }
+  template <class Token>
+  auto async_get_virtual(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[79], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_virtual(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[79], ::std::forward<Token>(token));
+    return async_get_virtual(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_virtual(double value) { rr_set(rr_members_delete[79], &value); }
+  void set_virtual(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[79], options, &value);
+  }
+  template <class Token>
+  auto async_set_virtual(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[79], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_virtual(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[79], ::std::forward<Token>(token), value);
+    return async_set_virtual(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_volatile() { return rr_get<double>(rr_members_delete[80]); }
+  double get_volatile(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[80], options);
+  }
+  template <class Token>
+  auto async_get_volatile(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[80], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_volatile(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[80], ::std::forward<Token>(token));
+    return async_get_volatile(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_volatile(double value) { rr_set(rr_members_delete[80], &value); }
+  void set_volatile(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[80], options, &value);
+  }
+  template <class Token>
+  auto async_set_volatile(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[80], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_volatile(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[80], ::std::forward<Token>(token), value);
+    return async_set_volatile(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_wchar_t() { return rr_get<double>(rr_members_delete[81]); }
+  double get_wchar_t(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[81], options);
+  }
+  template <class Token>
+  auto async_get_wchar_t(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[81], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_wchar_t(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[81], ::std::forward<Token>(token));
+    return async_get_wchar_t(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_wchar_t(double value) { rr_set(rr_members_delete[81], &value); }
+  void set_wchar_t(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[81], options, &value);
+  }
+  template <class Token>
+  auto async_set_wchar_t(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[81], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_wchar_t(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[81], ::std::forward<Token>(token), value);
+    return async_set_wchar_t(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_while() { return rr_get<double>(rr_members_delete[82]); }
+  double get_while(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[82], options);
+  }
+  template <class Token>
+  auto async_get_while(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[82], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_while(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[82], ::std::forward<Token>(token));
+    return async_get_while(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_while(double value) { rr_set(rr_members_delete[82], &value); }
+  void set_while(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[82], options, &value);
+  }
+  template <class Token>
+  auto async_set_while(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[82], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_while(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[82], ::std::forward<Token>(token), value);
+    return async_set_while(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_xor() { return rr_get<double>(rr_members_delete[83]); }
+  double get_xor(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[83], options);
+  }
+  template <class Token>
+  auto async_get_xor(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[83], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_xor(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[83], ::std::forward<Token>(token));
+    return async_get_xor(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_xor(double value) { rr_set(rr_members_delete[83], &value); }
+  void set_xor(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[83], options, &value);
+  }
+  template <class Token>
+  auto async_set_xor(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[83], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_xor(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[83], ::std::forward<Token>(token), value);
+    return async_set_xor(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_xor_eq() { return rr_get<double>(rr_members_delete[84]); }
+  double get_xor_eq(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[84], options);
+  }
+  template <class Token>
+  auto async_get_xor_eq(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[84], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_xor_eq(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[84], ::std::forward<Token>(token));
+    return async_get_xor_eq(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_xor_eq(double value) { rr_set(rr_members_delete[84], &value); }
+  void set_xor_eq(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[84], options, &value);
+  }
+  template <class Token>
+  auto async_set_xor_eq(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[84], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_xor_eq(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[84], ::std::forward<Token>(token), value);
+    return async_set_xor_eq(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_assert() { return rr_get<double>(rr_members_delete[85]); }
+  double get_assert(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[85], options);
+  }
+  template <class Token>
+  auto async_get_assert(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[85], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_assert(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[85], ::std::forward<Token>(token));
+    return async_get_assert(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_assert(double value) { rr_set(rr_members_delete[85], &value); }
+  void set_assert(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[85], options, &value);
+  }
+  template <class Token>
+  auto async_set_assert(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[85], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_assert(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[85], ::std::forward<Token>(token), value);
+    return async_set_assert(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_errno() { return rr_get<double>(rr_members_delete[86]); }
+  double get_errno(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[86], options);
+  }
+  template <class Token>
+  auto async_get_errno(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[86], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_errno(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[86], ::std::forward<Token>(token));
+    return async_get_errno(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_errno(double value) { rr_set(rr_members_delete[86], &value); }
+  void set_errno(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[86], options, &value);
+  }
+  template <class Token>
+  auto async_set_errno(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[86], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_errno(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[86], ::std::forward<Token>(token), value);
+    return async_set_errno(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_linux() { return rr_get<double>(rr_members_delete[87]); }
+  double get_linux(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[87], options);
+  }
+  template <class Token>
+  auto async_get_linux(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[87], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_linux(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[87], ::std::forward<Token>(token));
+    return async_get_linux(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_linux(double value) { rr_set(rr_members_delete[87], &value); }
+  void set_linux(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[87], options, &value);
+  }
+  template <class Token>
+  auto async_set_linux(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[87], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_linux(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[87], ::std::forward<Token>(token), value);
+    return async_set_linux(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_unix() { return rr_get<double>(rr_members_delete[88]); }
+  double get_unix(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[88], options);
+  }
+  template <class Token>
+  auto async_get_unix(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[88], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_unix(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[88], ::std::forward<Token>(token));
+    return async_get_unix(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_unix(double value) { rr_set(rr_members_delete[88], &value); }
+  void set_unix(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[88], options, &value);
+  }
+  template <class Token>
+  auto async_set_unix(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[88], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_unix(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[88], ::std::forward<Token>(token), value);
+    return async_set_unix(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_major() { return rr_get<double>(rr_members_delete[89]); }
+  double get_major(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[89], options);
+  }
+  template <class Token>
+  auto async_get_major(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[89], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_major(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[89], ::std::forward<Token>(token));
+    return async_get_major(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_major(double value) { rr_set(rr_members_delete[89], &value); }
+  void set_major(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[89], options, &value);
+  }
+  template <class Token>
+  auto async_set_major(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[89], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_major(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[89], ::std::forward<Token>(token), value);
+    return async_set_major(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_minor() { return rr_get<double>(rr_members_delete[90]); }
+  double get_minor(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[90], options);
+  }
+  template <class Token>
+  auto async_get_minor(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[90], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_minor(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[90], ::std::forward<Token>(token));
+    return async_get_minor(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_minor(double value) { rr_set(rr_members_delete[90], &value); }
+  void set_minor(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[90], options, &value);
+  }
+  template <class Token>
+  auto async_set_minor(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[90], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_minor(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[90], ::std::forward<Token>(token), value);
+    return async_set_minor(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_EOF() { return rr_get<double>(rr_members_delete[91]); }
+  double get_EOF(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[91], options);
+  }
+  template <class Token>
+  auto async_get_EOF(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[91], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_EOF(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[91], ::std::forward<Token>(token));
+    return async_get_EOF(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_EOF(double value) { rr_set(rr_members_delete[91], &value); }
+  void set_EOF(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[91], options, &value);
+  }
+  template <class Token>
+  auto async_set_EOF(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[91], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_EOF(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[91], ::std::forward<Token>(token), value);
+    return async_set_EOF(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_NULL() { return rr_get<double>(rr_members_delete[92]); }
+  double get_NULL(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[92], options);
+  }
+  template <class Token>
+  auto async_get_NULL(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[92], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_NULL(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[92], ::std::forward<Token>(token));
+    return async_get_NULL(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_NULL(double value) { rr_set(rr_members_delete[92], &value); }
+  void set_NULL(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[92], options, &value);
+  }
+  template <class Token>
+  auto async_set_NULL(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[92], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_NULL(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[92], ::std::forward<Token>(token), value);
+    return async_set_NULL(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_INFINITY() { return rr_get<double>(rr_members_delete[93]); }
+  double get_INFINITY(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[93], options);
+  }
+  template <class Token>
+  auto async_get_INFINITY(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[93], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_INFINITY(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[93], ::std::forward<Token>(token));
+    return async_get_INFINITY(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_INFINITY(double value) { rr_set(rr_members_delete[93], &value); }
+  void set_INFINITY(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[93], options, &value);
+  }
+  template <class Token>
+  auto async_set_INFINITY(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[93], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_INFINITY(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[93], ::std::forward<Token>(token), value);
+    return async_set_INFINITY(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_NAN() { return rr_get<double>(rr_members_delete[94]); }
+  double get_NAN(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[94], options);
+  }
+  template <class Token>
+  auto async_get_NAN(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[94], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_NAN(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[94], ::std::forward<Token>(token));
+    return async_get_NAN(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_NAN(double value) { rr_set(rr_members_delete[94], &value); }
+  void set_NAN(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[94], options, &value);
+  }
+  template <class Token>
+  auto async_set_NAN(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[94], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_NAN(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[94], ::std::forward<Token>(token), value);
+    return async_set_NAN(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_RAND_MAX() { return rr_get<double>(rr_members_delete[95]); }
+  double get_RAND_MAX(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[95], options);
+  }
+  template <class Token>
+  auto async_get_RAND_MAX(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[95], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_RAND_MAX(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[95], ::std::forward<Token>(token));
+    return async_get_RAND_MAX(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_RAND_MAX(double value) { rr_set(rr_members_delete[95], &value); }
+  void set_RAND_MAX(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[95], options, &value);
+  }
+  template <class Token>
+  auto async_set_RAND_MAX(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[95], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_RAND_MAX(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[95], ::std::forward<Token>(token), value);
+    return async_set_RAND_MAX(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_BUFSIZ() { return rr_get<double>(rr_members_delete[96]); }
+  double get_BUFSIZ(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[96], options);
+  }
+  template <class Token>
+  auto async_get_BUFSIZ(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[96], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_BUFSIZ(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[96], ::std::forward<Token>(token));
+    return async_get_BUFSIZ(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_BUFSIZ(double value) { rr_set(rr_members_delete[96], &value); }
+  void set_BUFSIZ(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[96], options, &value);
+  }
+  template <class Token>
+  auto async_set_BUFSIZ(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[96], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_BUFSIZ(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[96], ::std::forward<Token>(token), value);
+    return async_set_BUFSIZ(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_SIGINT() { return rr_get<double>(rr_members_delete[97]); }
+  double get_SIGINT(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[97], options);
+  }
+  template <class Token>
+  auto async_get_SIGINT(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[97], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_SIGINT(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[97], ::std::forward<Token>(token));
+    return async_get_SIGINT(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_SIGINT(double value) { rr_set(rr_members_delete[97], &value); }
+  void set_SIGINT(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[97], options, &value);
+  }
+  template <class Token>
+  auto async_set_SIGINT(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[97], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_SIGINT(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[97], ::std::forward<Token>(token), value);
+    return async_set_SIGINT(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_final() { return rr_get<double>(rr_members_delete[98]); }
+  double get_final(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[98], options);
+  }
+  template <class Token>
+  auto async_get_final(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[98], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_final(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[98], ::std::forward<Token>(token));
+    return async_get_final(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_final(double value) { rr_set(rr_members_delete[98], &value); }
+  void set_final(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[98], options, &value);
+  }
+  template <class Token>
+  auto async_set_final(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[98], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_final(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[98], ::std::forward<Token>(token), value);
+    return async_set_final(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_override() { return rr_get<double>(rr_members_delete[99]); }
+  double get_override(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[99], options);
+  }
+  template <class Token>
+  auto async_get_override(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[99], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_override(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[99], ::std::forward<Token>(token));
+    return async_get_override(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_override(double value) { rr_set(rr_members_delete[99], &value); }
+  void set_override(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[99], options, &value);
+  }
+  template <class Token>
+  auto async_set_override(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[99], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_override(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[99], ::std::forward<Token>(token), value);
+    return async_set_override(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  double get_module() { return rr_get<double>(rr_members_delete[100]); }
+  double get_module(const ::rr::CallOptions& options = {}) {
+    return rr_get<double>(rr_members_delete[100], options);
+  }
+  template <class Token>
+  auto async_get_module(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<double>(rr_members_delete[100], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_module(Token&& token) {
-    return rr_async_get<double>(rr_members_delete[100], ::std::forward<Token>(token));
+    return async_get_module(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_module(double value) { rr_set(rr_members_delete[100], &value); }
+  void set_module(double value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_delete[100], options, &value);
+  }
+  template <class Token>
+  auto async_set_module(double value, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<double>(rr_members_delete[100], options, ::std::forward<Token>(token),
+                                value);
+  }
   template <class Token>
   auto async_set_module(double value, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[100], ::std::forward<Token>(token), value);
+    return async_set_module(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
@@ -1936,1015 +3239,1525 @@ extern const ::rr::ObjectType rr_object_new;
 class newStub : public virtual ::rr::Stub {
  public:
   ::std::optional<::experimental::reserved_words::template_> alignas_(
-      ::experimental::reserved_words::export_ bitor__) {
+      ::experimental::reserved_words::export_ bitor__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[0],
-                                                                               bitor__);
+                                                                               options, bitor__);
+  }
+  template <class Token>
+  auto async_alignas_(::experimental::reserved_words::export_ bitor__,
+                      const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[0], options, ::std::forward<Token>(token), bitor__);
   }
   template <class Token>
   auto async_alignas_(::experimental::reserved_words::export_ bitor__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[0], ::std::forward<Token>(token), bitor__);
+    return async_alignas_(bitor__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> alignof_(
-      ::experimental::reserved_words::export_ break__) {
+      ::experimental::reserved_words::export_ break__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[1],
-                                                                               break__);
+                                                                               options, break__);
+  }
+  template <class Token>
+  auto async_alignof_(::experimental::reserved_words::export_ break__,
+                      const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[1], options, ::std::forward<Token>(token), break__);
   }
   template <class Token>
   auto async_alignof_(::experimental::reserved_words::export_ break__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[1], ::std::forward<Token>(token), break__);
+    return async_alignof_(break__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> and_(
-      ::experimental::reserved_words::export_ case__) {
+      ::experimental::reserved_words::export_ case__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[2],
-                                                                               case__);
+                                                                               options, case__);
+  }
+  template <class Token>
+  auto async_and_(::experimental::reserved_words::export_ case__, const ::rr::CallOptions& options,
+                  Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[2], options, ::std::forward<Token>(token), case__);
   }
   template <class Token>
   auto async_and_(::experimental::reserved_words::export_ case__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[2], ::std::forward<Token>(token), case__);
+    return async_and_(case__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> and_eq_(
-      ::experimental::reserved_words::export_ catch__) {
+      ::experimental::reserved_words::export_ catch__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[3],
-                                                                               catch__);
+                                                                               options, catch__);
+  }
+  template <class Token>
+  auto async_and_eq_(::experimental::reserved_words::export_ catch__,
+                     const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[3], options, ::std::forward<Token>(token), catch__);
   }
   template <class Token>
   auto async_and_eq_(::experimental::reserved_words::export_ catch__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[3], ::std::forward<Token>(token), catch__);
+    return async_and_eq_(catch__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> asm_(
-      ::experimental::reserved_words::export_ char__) {
+      ::experimental::reserved_words::export_ char__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[4],
-                                                                               char__);
+                                                                               options, char__);
+  }
+  template <class Token>
+  auto async_asm_(::experimental::reserved_words::export_ char__, const ::rr::CallOptions& options,
+                  Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[4], options, ::std::forward<Token>(token), char__);
   }
   template <class Token>
   auto async_asm_(::experimental::reserved_words::export_ char__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[4], ::std::forward<Token>(token), char__);
+    return async_asm_(char__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> auto_(
-      ::experimental::reserved_words::export_ char16_t_) {
+      ::experimental::reserved_words::export_ char16_t_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[5],
-                                                                               char16_t_);
+                                                                               options, char16_t_);
+  }
+  template <class Token>
+  auto async_auto_(::experimental::reserved_words::export_ char16_t_,
+                   const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[5], options, ::std::forward<Token>(token), char16_t_);
   }
   template <class Token>
   auto async_auto_(::experimental::reserved_words::export_ char16_t_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[5], ::std::forward<Token>(token), char16_t_);
+    return async_auto_(char16_t_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> bitand_(
-      ::experimental::reserved_words::export_ char32_t_) {
+      ::experimental::reserved_words::export_ char32_t_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[6],
-                                                                               char32_t_);
+                                                                               options, char32_t_);
+  }
+  template <class Token>
+  auto async_bitand_(::experimental::reserved_words::export_ char32_t_,
+                     const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[6], options, ::std::forward<Token>(token), char32_t_);
   }
   template <class Token>
   auto async_bitand_(::experimental::reserved_words::export_ char32_t_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[6], ::std::forward<Token>(token), char32_t_);
+    return async_bitand_(char32_t_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> bitor_(
-      ::experimental::reserved_words::export_ char8_t_) {
+      ::experimental::reserved_words::export_ char8_t_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[7],
-                                                                               char8_t_);
+                                                                               options, char8_t_);
+  }
+  template <class Token>
+  auto async_bitor_(::experimental::reserved_words::export_ char8_t_,
+                    const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[7], options, ::std::forward<Token>(token), char8_t_);
   }
   template <class Token>
   auto async_bitor_(::experimental::reserved_words::export_ char8_t_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[7], ::std::forward<Token>(token), char8_t_);
+    return async_bitor_(char8_t_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> break_(
-      ::experimental::reserved_words::export_ class__) {
+      ::experimental::reserved_words::export_ class__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[8],
-                                                                               class__);
+                                                                               options, class__);
+  }
+  template <class Token>
+  auto async_break_(::experimental::reserved_words::export_ class__,
+                    const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[8], options, ::std::forward<Token>(token), class__);
   }
   template <class Token>
   auto async_break_(::experimental::reserved_words::export_ class__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[8], ::std::forward<Token>(token), class__);
+    return async_break_(class__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> case_(
-      ::experimental::reserved_words::export_ co_await_) {
+      ::experimental::reserved_words::export_ co_await_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[9],
-                                                                               co_await_);
+                                                                               options, co_await_);
+  }
+  template <class Token>
+  auto async_case_(::experimental::reserved_words::export_ co_await_,
+                   const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[9], options, ::std::forward<Token>(token), co_await_);
   }
   template <class Token>
   auto async_case_(::experimental::reserved_words::export_ co_await_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[9], ::std::forward<Token>(token), co_await_);
+    return async_case_(co_await_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> catch_(
-      ::experimental::reserved_words::export_ co_return_) {
+      ::experimental::reserved_words::export_ co_return_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[10],
-                                                                               co_return_);
+                                                                               options, co_return_);
+  }
+  template <class Token>
+  auto async_catch_(::experimental::reserved_words::export_ co_return_,
+                    const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[10], options, ::std::forward<Token>(token), co_return_);
   }
   template <class Token>
   auto async_catch_(::experimental::reserved_words::export_ co_return_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[10], ::std::forward<Token>(token), co_return_);
+    return async_catch_(co_return_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> char_(
-      ::experimental::reserved_words::export_ co_yield_) {
+      ::experimental::reserved_words::export_ co_yield_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[11],
-                                                                               co_yield_);
+                                                                               options, co_yield_);
+  }
+  template <class Token>
+  auto async_char_(::experimental::reserved_words::export_ co_yield_,
+                   const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[11], options, ::std::forward<Token>(token), co_yield_);
   }
   template <class Token>
   auto async_char_(::experimental::reserved_words::export_ co_yield_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[11], ::std::forward<Token>(token), co_yield_);
+    return async_char_(co_yield_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> char16_t_(
-      ::experimental::reserved_words::export_ compl_) {
+      ::experimental::reserved_words::export_ compl_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[12],
-                                                                               compl_);
+                                                                               options, compl_);
+  }
+  template <class Token>
+  auto async_char16_t_(::experimental::reserved_words::export_ compl_,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[12], options, ::std::forward<Token>(token), compl_);
   }
   template <class Token>
   auto async_char16_t_(::experimental::reserved_words::export_ compl_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[12], ::std::forward<Token>(token), compl_);
+    return async_char16_t_(compl_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> char32_t_(
-      ::experimental::reserved_words::export_ concept_) {
+      ::experimental::reserved_words::export_ concept_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[13],
-                                                                               concept_);
+                                                                               options, concept_);
+  }
+  template <class Token>
+  auto async_char32_t_(::experimental::reserved_words::export_ concept_,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[13], options, ::std::forward<Token>(token), concept_);
   }
   template <class Token>
   auto async_char32_t_(::experimental::reserved_words::export_ concept_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[13], ::std::forward<Token>(token), concept_);
+    return async_char32_t_(concept_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> char8_t_(
-      ::experimental::reserved_words::export_ const_) {
+      ::experimental::reserved_words::export_ const_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[14],
-                                                                               const_);
+                                                                               options, const_);
+  }
+  template <class Token>
+  auto async_char8_t_(::experimental::reserved_words::export_ const_,
+                      const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[14], options, ::std::forward<Token>(token), const_);
   }
   template <class Token>
   auto async_char8_t_(::experimental::reserved_words::export_ const_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[14], ::std::forward<Token>(token), const_);
+    return async_char8_t_(const_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> class_(
-      ::experimental::reserved_words::export_ const_cast_) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[15],
-                                                                               const_cast_);
+      ::experimental::reserved_words::export_ const_cast_, const ::rr::CallOptions& options = {}) {
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[15], options, const_cast_);
+  }
+  template <class Token>
+  auto async_class_(::experimental::reserved_words::export_ const_cast_,
+                    const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[15], options, ::std::forward<Token>(token), const_cast_);
   }
   template <class Token>
   auto async_class_(::experimental::reserved_words::export_ const_cast_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[15], ::std::forward<Token>(token), const_cast_);
+    return async_class_(const_cast_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> co_await_(
-      ::experimental::reserved_words::export_ consteval_) {
+      ::experimental::reserved_words::export_ consteval_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[16],
-                                                                               consteval_);
+                                                                               options, consteval_);
+  }
+  template <class Token>
+  auto async_co_await_(::experimental::reserved_words::export_ consteval_,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[16], options, ::std::forward<Token>(token), consteval_);
   }
   template <class Token>
   auto async_co_await_(::experimental::reserved_words::export_ consteval_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[16], ::std::forward<Token>(token), consteval_);
+    return async_co_await_(consteval_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> co_return_(
-      ::experimental::reserved_words::export_ constexpr_) {
+      ::experimental::reserved_words::export_ constexpr_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[17],
-                                                                               constexpr_);
+                                                                               options, constexpr_);
+  }
+  template <class Token>
+  auto async_co_return_(::experimental::reserved_words::export_ constexpr_,
+                        const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[17], options, ::std::forward<Token>(token), constexpr_);
   }
   template <class Token>
   auto async_co_return_(::experimental::reserved_words::export_ constexpr_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[17], ::std::forward<Token>(token), constexpr_);
+    return async_co_return_(constexpr_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> co_yield_(
-      ::experimental::reserved_words::export_ constinit_) {
+      ::experimental::reserved_words::export_ constinit_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[18],
-                                                                               constinit_);
+                                                                               options, constinit_);
+  }
+  template <class Token>
+  auto async_co_yield_(::experimental::reserved_words::export_ constinit_,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[18], options, ::std::forward<Token>(token), constinit_);
   }
   template <class Token>
   auto async_co_yield_(::experimental::reserved_words::export_ constinit_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[18], ::std::forward<Token>(token), constinit_);
+    return async_co_yield_(constinit_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> compl_(
-      ::experimental::reserved_words::export_ continue_) {
+      ::experimental::reserved_words::export_ continue_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[19],
-                                                                               continue_);
+                                                                               options, continue_);
+  }
+  template <class Token>
+  auto async_compl_(::experimental::reserved_words::export_ continue_,
+                    const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[19], options, ::std::forward<Token>(token), continue_);
   }
   template <class Token>
   auto async_compl_(::experimental::reserved_words::export_ continue_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[19], ::std::forward<Token>(token), continue_);
+    return async_compl_(continue_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> concept_(
-      ::experimental::reserved_words::export_ decltype_) {
+      ::experimental::reserved_words::export_ decltype_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[20],
-                                                                               decltype_);
+                                                                               options, decltype_);
+  }
+  template <class Token>
+  auto async_concept_(::experimental::reserved_words::export_ decltype_,
+                      const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[20], options, ::std::forward<Token>(token), decltype_);
   }
   template <class Token>
   auto async_concept_(::experimental::reserved_words::export_ decltype_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[20], ::std::forward<Token>(token), decltype_);
+    return async_concept_(decltype_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> const_(
-      ::experimental::reserved_words::export_ default_) {
+      ::experimental::reserved_words::export_ default_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[21],
-                                                                               default_);
+                                                                               options, default_);
+  }
+  template <class Token>
+  auto async_const_(::experimental::reserved_words::export_ default_,
+                    const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[21], options, ::std::forward<Token>(token), default_);
   }
   template <class Token>
   auto async_const_(::experimental::reserved_words::export_ default_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[21], ::std::forward<Token>(token), default_);
+    return async_const_(default_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> const_cast_(
-      ::experimental::reserved_words::export_ delete__) {
+      ::experimental::reserved_words::export_ delete__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[22],
-                                                                               delete__);
+                                                                               options, delete__);
+  }
+  template <class Token>
+  auto async_const_cast_(::experimental::reserved_words::export_ delete__,
+                         const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[22], options, ::std::forward<Token>(token), delete__);
   }
   template <class Token>
   auto async_const_cast_(::experimental::reserved_words::export_ delete__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[22], ::std::forward<Token>(token), delete__);
+    return async_const_cast_(delete__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> consteval_(
-      ::experimental::reserved_words::export_ do_) {
+      ::experimental::reserved_words::export_ do_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[23],
-                                                                               do_);
+                                                                               options, do_);
+  }
+  template <class Token>
+  auto async_consteval_(::experimental::reserved_words::export_ do_,
+                        const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[23], options, ::std::forward<Token>(token), do_);
   }
   template <class Token>
   auto async_consteval_(::experimental::reserved_words::export_ do_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[23], ::std::forward<Token>(token), do_);
+    return async_consteval_(do_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> constexpr_(
-      ::experimental::reserved_words::export_ dynamic_cast_) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[24],
-                                                                               dynamic_cast_);
+      ::experimental::reserved_words::export_ dynamic_cast_,
+      const ::rr::CallOptions& options = {}) {
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[24], options, dynamic_cast_);
+  }
+  template <class Token>
+  auto async_constexpr_(::experimental::reserved_words::export_ dynamic_cast_,
+                        const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[24], options, ::std::forward<Token>(token), dynamic_cast_);
   }
   template <class Token>
   auto async_constexpr_(::experimental::reserved_words::export_ dynamic_cast_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[24], ::std::forward<Token>(token), dynamic_cast_);
+    return async_constexpr_(dynamic_cast_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> constinit_(
-      ::experimental::reserved_words::export_ else_) {
+      ::experimental::reserved_words::export_ else_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[25],
-                                                                               else_);
+                                                                               options, else_);
+  }
+  template <class Token>
+  auto async_constinit_(::experimental::reserved_words::export_ else_,
+                        const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[25], options, ::std::forward<Token>(token), else_);
   }
   template <class Token>
   auto async_constinit_(::experimental::reserved_words::export_ else_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[25], ::std::forward<Token>(token), else_);
+    return async_constinit_(else_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> continue_(
-      ::experimental::reserved_words::export_ explicit_) {
+      ::experimental::reserved_words::export_ explicit_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[26],
-                                                                               explicit_);
+                                                                               options, explicit_);
+  }
+  template <class Token>
+  auto async_continue_(::experimental::reserved_words::export_ explicit_,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[26], options, ::std::forward<Token>(token), explicit_);
   }
   template <class Token>
   auto async_continue_(::experimental::reserved_words::export_ explicit_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[26], ::std::forward<Token>(token), explicit_);
+    return async_continue_(explicit_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> decltype_(
-      ::experimental::reserved_words::export_ export__) {
+      ::experimental::reserved_words::export_ export__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[27],
-                                                                               export__);
+                                                                               options, export__);
+  }
+  template <class Token>
+  auto async_decltype_(::experimental::reserved_words::export_ export__,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[27], options, ::std::forward<Token>(token), export__);
   }
   template <class Token>
   auto async_decltype_(::experimental::reserved_words::export_ export__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[27], ::std::forward<Token>(token), export__);
+    return async_decltype_(export__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> default_(
-      ::experimental::reserved_words::export_ extern_) {
+      ::experimental::reserved_words::export_ extern_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[28],
-                                                                               extern_);
+                                                                               options, extern_);
+  }
+  template <class Token>
+  auto async_default_(::experimental::reserved_words::export_ extern_,
+                      const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[28], options, ::std::forward<Token>(token), extern_);
   }
   template <class Token>
   auto async_default_(::experimental::reserved_words::export_ extern_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[28], ::std::forward<Token>(token), extern_);
+    return async_default_(extern_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> delete_(
-      ::experimental::reserved_words::export_ false_) {
+      ::experimental::reserved_words::export_ false_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[29],
-                                                                               false_);
+                                                                               options, false_);
+  }
+  template <class Token>
+  auto async_delete_(::experimental::reserved_words::export_ false_,
+                     const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[29], options, ::std::forward<Token>(token), false_);
   }
   template <class Token>
   auto async_delete_(::experimental::reserved_words::export_ false_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[29], ::std::forward<Token>(token), false_);
+    return async_delete_(false_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> do_(
-      ::experimental::reserved_words::export_ float_) {
+      ::experimental::reserved_words::export_ float_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[30],
-                                                                               float_);
+                                                                               options, float_);
+  }
+  template <class Token>
+  auto async_do_(::experimental::reserved_words::export_ float_, const ::rr::CallOptions& options,
+                 Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[30], options, ::std::forward<Token>(token), float_);
   }
   template <class Token>
   auto async_do_(::experimental::reserved_words::export_ float_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[30], ::std::forward<Token>(token), float_);
+    return async_do_(float_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> dynamic_cast_(
-      ::experimental::reserved_words::export_ for_) {
+      ::experimental::reserved_words::export_ for_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[31],
-                                                                               for_);
+                                                                               options, for_);
+  }
+  template <class Token>
+  auto async_dynamic_cast_(::experimental::reserved_words::export_ for_,
+                           const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[31], options, ::std::forward<Token>(token), for_);
   }
   template <class Token>
   auto async_dynamic_cast_(::experimental::reserved_words::export_ for_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[31], ::std::forward<Token>(token), for_);
+    return async_dynamic_cast_(for_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> else_(
-      ::experimental::reserved_words::export_ friend_) {
+      ::experimental::reserved_words::export_ friend_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[32],
-                                                                               friend_);
+                                                                               options, friend_);
+  }
+  template <class Token>
+  auto async_else_(::experimental::reserved_words::export_ friend_,
+                   const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[32], options, ::std::forward<Token>(token), friend_);
   }
   template <class Token>
   auto async_else_(::experimental::reserved_words::export_ friend_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[32], ::std::forward<Token>(token), friend_);
+    return async_else_(friend_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> explicit_(
-      ::experimental::reserved_words::export_ goto_) {
+      ::experimental::reserved_words::export_ goto_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[33],
-                                                                               goto_);
+                                                                               options, goto_);
+  }
+  template <class Token>
+  auto async_explicit_(::experimental::reserved_words::export_ goto_,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[33], options, ::std::forward<Token>(token), goto_);
   }
   template <class Token>
   auto async_explicit_(::experimental::reserved_words::export_ goto_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[33], ::std::forward<Token>(token), goto_);
+    return async_explicit_(goto_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> export_(
-      ::experimental::reserved_words::export_ if_) {
+      ::experimental::reserved_words::export_ if_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[34],
-                                                                               if_);
+                                                                               options, if_);
+  }
+  template <class Token>
+  auto async_export_(::experimental::reserved_words::export_ if_, const ::rr::CallOptions& options,
+                     Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[34], options, ::std::forward<Token>(token), if_);
   }
   template <class Token>
   auto async_export_(::experimental::reserved_words::export_ if_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[34], ::std::forward<Token>(token), if_);
+    return async_export_(if_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> extern_(
-      ::experimental::reserved_words::export_ inline_) {
+      ::experimental::reserved_words::export_ inline_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[35],
-                                                                               inline_);
+                                                                               options, inline_);
+  }
+  template <class Token>
+  auto async_extern_(::experimental::reserved_words::export_ inline_,
+                     const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[35], options, ::std::forward<Token>(token), inline_);
   }
   template <class Token>
   auto async_extern_(::experimental::reserved_words::export_ inline_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[35], ::std::forward<Token>(token), inline_);
+    return async_extern_(inline_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> false_(
-      ::experimental::reserved_words::export_ int_) {
+      ::experimental::reserved_words::export_ int_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[36],
-                                                                               int_);
+                                                                               options, int_);
+  }
+  template <class Token>
+  auto async_false_(::experimental::reserved_words::export_ int_, const ::rr::CallOptions& options,
+                    Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[36], options, ::std::forward<Token>(token), int_);
   }
   template <class Token>
   auto async_false_(::experimental::reserved_words::export_ int_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[36], ::std::forward<Token>(token), int_);
+    return async_false_(int_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> float_(
-      ::experimental::reserved_words::export_ long_) {
+      ::experimental::reserved_words::export_ long_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[37],
-                                                                               long_);
+                                                                               options, long_);
+  }
+  template <class Token>
+  auto async_float_(::experimental::reserved_words::export_ long_, const ::rr::CallOptions& options,
+                    Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[37], options, ::std::forward<Token>(token), long_);
   }
   template <class Token>
   auto async_float_(::experimental::reserved_words::export_ long_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[37], ::std::forward<Token>(token), long_);
+    return async_float_(long_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> for_(
-      ::experimental::reserved_words::export_ mutable_) {
+      ::experimental::reserved_words::export_ mutable_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[38],
-                                                                               mutable_);
+                                                                               options, mutable_);
+  }
+  template <class Token>
+  auto async_for_(::experimental::reserved_words::export_ mutable_,
+                  const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[38], options, ::std::forward<Token>(token), mutable_);
   }
   template <class Token>
   auto async_for_(::experimental::reserved_words::export_ mutable_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[38], ::std::forward<Token>(token), mutable_);
+    return async_for_(mutable_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> friend_(
-      ::experimental::reserved_words::export_ namespace_) {
+      ::experimental::reserved_words::export_ namespace_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[39],
-                                                                               namespace_);
+                                                                               options, namespace_);
+  }
+  template <class Token>
+  auto async_friend_(::experimental::reserved_words::export_ namespace_,
+                     const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[39], options, ::std::forward<Token>(token), namespace_);
   }
   template <class Token>
   auto async_friend_(::experimental::reserved_words::export_ namespace_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[39], ::std::forward<Token>(token), namespace_);
+    return async_friend_(namespace_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> goto_(
-      ::experimental::reserved_words::export_ new__) {
+      ::experimental::reserved_words::export_ new__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[40],
-                                                                               new__);
+                                                                               options, new__);
+  }
+  template <class Token>
+  auto async_goto_(::experimental::reserved_words::export_ new__, const ::rr::CallOptions& options,
+                   Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[40], options, ::std::forward<Token>(token), new__);
   }
   template <class Token>
   auto async_goto_(::experimental::reserved_words::export_ new__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[40], ::std::forward<Token>(token), new__);
+    return async_goto_(new__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> if_(
-      ::experimental::reserved_words::export_ noexcept_) {
+      ::experimental::reserved_words::export_ noexcept_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[41],
-                                                                               noexcept_);
+                                                                               options, noexcept_);
+  }
+  template <class Token>
+  auto async_if_(::experimental::reserved_words::export_ noexcept_,
+                 const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[41], options, ::std::forward<Token>(token), noexcept_);
   }
   template <class Token>
   auto async_if_(::experimental::reserved_words::export_ noexcept_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[41], ::std::forward<Token>(token), noexcept_);
+    return async_if_(noexcept_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> inline_(
-      ::experimental::reserved_words::export_ not_) {
+      ::experimental::reserved_words::export_ not_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[42],
-                                                                               not_);
+                                                                               options, not_);
+  }
+  template <class Token>
+  auto async_inline_(::experimental::reserved_words::export_ not_, const ::rr::CallOptions& options,
+                     Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[42], options, ::std::forward<Token>(token), not_);
   }
   template <class Token>
   auto async_inline_(::experimental::reserved_words::export_ not_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[42], ::std::forward<Token>(token), not_);
+    return async_inline_(not_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> int_(
-      ::experimental::reserved_words::export_ not_eq_) {
+      ::experimental::reserved_words::export_ not_eq_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[43],
-                                                                               not_eq_);
+                                                                               options, not_eq_);
+  }
+  template <class Token>
+  auto async_int_(::experimental::reserved_words::export_ not_eq_, const ::rr::CallOptions& options,
+                  Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[43], options, ::std::forward<Token>(token), not_eq_);
   }
   template <class Token>
   auto async_int_(::experimental::reserved_words::export_ not_eq_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[43], ::std::forward<Token>(token), not_eq_);
+    return async_int_(not_eq_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> long_(
-      ::experimental::reserved_words::export_ nullptr_) {
+      ::experimental::reserved_words::export_ nullptr_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[44],
-                                                                               nullptr_);
+                                                                               options, nullptr_);
+  }
+  template <class Token>
+  auto async_long_(::experimental::reserved_words::export_ nullptr_,
+                   const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[44], options, ::std::forward<Token>(token), nullptr_);
   }
   template <class Token>
   auto async_long_(::experimental::reserved_words::export_ nullptr_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[44], ::std::forward<Token>(token), nullptr_);
+    return async_long_(nullptr_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> mutable_(
-      ::experimental::reserved_words::export_ operator_) {
+      ::experimental::reserved_words::export_ operator_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[45],
-                                                                               operator_);
+                                                                               options, operator_);
+  }
+  template <class Token>
+  auto async_mutable_(::experimental::reserved_words::export_ operator_,
+                      const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[45], options, ::std::forward<Token>(token), operator_);
   }
   template <class Token>
   auto async_mutable_(::experimental::reserved_words::export_ operator_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[45], ::std::forward<Token>(token), operator_);
+    return async_mutable_(operator_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> namespace_(
-      ::experimental::reserved_words::export_ or_) {
+      ::experimental::reserved_words::export_ or_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[46],
-                                                                               or_);
+                                                                               options, or_);
+  }
+  template <class Token>
+  auto async_namespace_(::experimental::reserved_words::export_ or_,
+                        const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[46], options, ::std::forward<Token>(token), or_);
   }
   template <class Token>
   auto async_namespace_(::experimental::reserved_words::export_ or_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[46], ::std::forward<Token>(token), or_);
+    return async_namespace_(or_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> new_(
-      ::experimental::reserved_words::export_ or_eq_) {
+      ::experimental::reserved_words::export_ or_eq_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[47],
-                                                                               or_eq_);
+                                                                               options, or_eq_);
+  }
+  template <class Token>
+  auto async_new_(::experimental::reserved_words::export_ or_eq_, const ::rr::CallOptions& options,
+                  Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[47], options, ::std::forward<Token>(token), or_eq_);
   }
   template <class Token>
   auto async_new_(::experimental::reserved_words::export_ or_eq_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[47], ::std::forward<Token>(token), or_eq_);
+    return async_new_(or_eq_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> noexcept_(
-      ::experimental::reserved_words::export_ private_) {
+      ::experimental::reserved_words::export_ private_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[48],
-                                                                               private_);
+                                                                               options, private_);
+  }
+  template <class Token>
+  auto async_noexcept_(::experimental::reserved_words::export_ private_,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[48], options, ::std::forward<Token>(token), private_);
   }
   template <class Token>
   auto async_noexcept_(::experimental::reserved_words::export_ private_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[48], ::std::forward<Token>(token), private_);
+    return async_noexcept_(private_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> not_(
-      ::experimental::reserved_words::export_ protected_) {
+      ::experimental::reserved_words::export_ protected_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[49],
-                                                                               protected_);
+                                                                               options, protected_);
+  }
+  template <class Token>
+  auto async_not_(::experimental::reserved_words::export_ protected_,
+                  const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[49], options, ::std::forward<Token>(token), protected_);
   }
   template <class Token>
   auto async_not_(::experimental::reserved_words::export_ protected_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[49], ::std::forward<Token>(token), protected_);
+    return async_not_(protected_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> not_eq_(
-      ::experimental::reserved_words::export_ public_) {
+      ::experimental::reserved_words::export_ public_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[50],
-                                                                               public_);
+                                                                               options, public_);
+  }
+  template <class Token>
+  auto async_not_eq_(::experimental::reserved_words::export_ public_,
+                     const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[50], options, ::std::forward<Token>(token), public_);
   }
   template <class Token>
   auto async_not_eq_(::experimental::reserved_words::export_ public_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[50], ::std::forward<Token>(token), public_);
+    return async_not_eq_(public_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> nullptr_(
-      ::experimental::reserved_words::export_ register__) {
+      ::experimental::reserved_words::export_ register__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[51],
-                                                                               register__);
+                                                                               options, register__);
+  }
+  template <class Token>
+  auto async_nullptr_(::experimental::reserved_words::export_ register__,
+                      const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[51], options, ::std::forward<Token>(token), register__);
   }
   template <class Token>
   auto async_nullptr_(::experimental::reserved_words::export_ register__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[51], ::std::forward<Token>(token), register__);
+    return async_nullptr_(register__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> operator_(
-      ::experimental::reserved_words::export_ reinterpret_cast_) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[52],
-                                                                               reinterpret_cast_);
+      ::experimental::reserved_words::export_ reinterpret_cast_,
+      const ::rr::CallOptions& options = {}) {
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[52], options, reinterpret_cast_);
+  }
+  template <class Token>
+  auto async_operator_(::experimental::reserved_words::export_ reinterpret_cast_,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[52], options, ::std::forward<Token>(token), reinterpret_cast_);
   }
   template <class Token>
   auto async_operator_(::experimental::reserved_words::export_ reinterpret_cast_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[52], ::std::forward<Token>(token), reinterpret_cast_);
+    return async_operator_(reinterpret_cast_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> or_(
-      ::experimental::reserved_words::export_ requires_) {
+      ::experimental::reserved_words::export_ requires_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[53],
-                                                                               requires_);
+                                                                               options, requires_);
+  }
+  template <class Token>
+  auto async_or_(::experimental::reserved_words::export_ requires_,
+                 const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[53], options, ::std::forward<Token>(token), requires_);
   }
   template <class Token>
   auto async_or_(::experimental::reserved_words::export_ requires_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[53], ::std::forward<Token>(token), requires_);
+    return async_or_(requires_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> or_eq_(
-      ::experimental::reserved_words::export_ return_) {
+      ::experimental::reserved_words::export_ return_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[54],
-                                                                               return_);
+                                                                               options, return_);
+  }
+  template <class Token>
+  auto async_or_eq_(::experimental::reserved_words::export_ return_,
+                    const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[54], options, ::std::forward<Token>(token), return_);
   }
   template <class Token>
   auto async_or_eq_(::experimental::reserved_words::export_ return_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[54], ::std::forward<Token>(token), return_);
+    return async_or_eq_(return_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> private_(
-      ::experimental::reserved_words::export_ short_) {
+      ::experimental::reserved_words::export_ short_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[55],
-                                                                               short_);
+                                                                               options, short_);
+  }
+  template <class Token>
+  auto async_private_(::experimental::reserved_words::export_ short_,
+                      const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[55], options, ::std::forward<Token>(token), short_);
   }
   template <class Token>
   auto async_private_(::experimental::reserved_words::export_ short_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[55], ::std::forward<Token>(token), short_);
+    return async_private_(short_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> protected_(
-      ::experimental::reserved_words::export_ signed_) {
+      ::experimental::reserved_words::export_ signed_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[56],
-                                                                               signed_);
+                                                                               options, signed_);
+  }
+  template <class Token>
+  auto async_protected_(::experimental::reserved_words::export_ signed_,
+                        const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[56], options, ::std::forward<Token>(token), signed_);
   }
   template <class Token>
   auto async_protected_(::experimental::reserved_words::export_ signed_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[56], ::std::forward<Token>(token), signed_);
+    return async_protected_(signed_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> public_(
-      ::experimental::reserved_words::export_ sizeof_) {
+      ::experimental::reserved_words::export_ sizeof_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[57],
-                                                                               sizeof_);
+                                                                               options, sizeof_);
+  }
+  template <class Token>
+  auto async_public_(::experimental::reserved_words::export_ sizeof_,
+                     const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[57], options, ::std::forward<Token>(token), sizeof_);
   }
   template <class Token>
   auto async_public_(::experimental::reserved_words::export_ sizeof_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[57], ::std::forward<Token>(token), sizeof_);
+    return async_public_(sizeof_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> register_(
-      ::experimental::reserved_words::export_ static__) {
+      ::experimental::reserved_words::export_ static__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[58],
-                                                                               static__);
+                                                                               options, static__);
+  }
+  template <class Token>
+  auto async_register_(::experimental::reserved_words::export_ static__,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[58], options, ::std::forward<Token>(token), static__);
   }
   template <class Token>
   auto async_register_(::experimental::reserved_words::export_ static__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[58], ::std::forward<Token>(token), static__);
+    return async_register_(static__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> reinterpret_cast_(
-      ::experimental::reserved_words::export_ static_assert_) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[59],
-                                                                               static_assert_);
+      ::experimental::reserved_words::export_ static_assert_,
+      const ::rr::CallOptions& options = {}) {
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[59], options, static_assert_);
+  }
+  template <class Token>
+  auto async_reinterpret_cast_(::experimental::reserved_words::export_ static_assert_,
+                               const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[59], options, ::std::forward<Token>(token), static_assert_);
   }
   template <class Token>
   auto async_reinterpret_cast_(::experimental::reserved_words::export_ static_assert_,
                                Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[59], ::std::forward<Token>(token), static_assert_);
+    return async_reinterpret_cast_(static_assert_, ::rr::CallOptions(),
+                                   ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> requires_(
-      ::experimental::reserved_words::export_ static_cast_) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[60],
-                                                                               static_cast_);
+      ::experimental::reserved_words::export_ static_cast_, const ::rr::CallOptions& options = {}) {
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[60], options, static_cast_);
+  }
+  template <class Token>
+  auto async_requires_(::experimental::reserved_words::export_ static_cast_,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[60], options, ::std::forward<Token>(token), static_cast_);
   }
   template <class Token>
   auto async_requires_(::experimental::reserved_words::export_ static_cast_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[60], ::std::forward<Token>(token), static_cast_);
+    return async_requires_(static_cast_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> return_(
-      ::experimental::reserved_words::export_ switch_) {
+      ::experimental::reserved_words::export_ switch_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[61],
-                                                                               switch_);
+                                                                               options, switch_);
+  }
+  template <class Token>
+  auto async_return_(::experimental::reserved_words::export_ switch_,
+                     const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[61], options, ::std::forward<Token>(token), switch_);
   }
   template <class Token>
   auto async_return_(::experimental::reserved_words::export_ switch_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[61], ::std::forward<Token>(token), switch_);
+    return async_return_(switch_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> short_(
-      ::experimental::reserved_words::export_ template__) {
+      ::experimental::reserved_words::export_ template__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[62],
-                                                                               template__);
+                                                                               options, template__);
+  }
+  template <class Token>
+  auto async_short_(::experimental::reserved_words::export_ template__,
+                    const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[62], options, ::std::forward<Token>(token), template__);
   }
   template <class Token>
   auto async_short_(::experimental::reserved_words::export_ template__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[62], ::std::forward<Token>(token), template__);
+    return async_short_(template__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> signed_(
-      ::experimental::reserved_words::export_ thread_local_) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[63],
-                                                                               thread_local_);
+      ::experimental::reserved_words::export_ thread_local_,
+      const ::rr::CallOptions& options = {}) {
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[63], options, thread_local_);
+  }
+  template <class Token>
+  auto async_signed_(::experimental::reserved_words::export_ thread_local_,
+                     const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[63], options, ::std::forward<Token>(token), thread_local_);
   }
   template <class Token>
   auto async_signed_(::experimental::reserved_words::export_ thread_local_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[63], ::std::forward<Token>(token), thread_local_);
+    return async_signed_(thread_local_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> sizeof_(
-      ::experimental::reserved_words::export_ throw_) {
+      ::experimental::reserved_words::export_ throw_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[64],
-                                                                               throw_);
+                                                                               options, throw_);
+  }
+  template <class Token>
+  auto async_sizeof_(::experimental::reserved_words::export_ throw_,
+                     const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[64], options, ::std::forward<Token>(token), throw_);
   }
   template <class Token>
   auto async_sizeof_(::experimental::reserved_words::export_ throw_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[64], ::std::forward<Token>(token), throw_);
+    return async_sizeof_(throw_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> static_(
-      ::experimental::reserved_words::export_ true_) {
+      ::experimental::reserved_words::export_ true_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[65],
-                                                                               true_);
+                                                                               options, true_);
+  }
+  template <class Token>
+  auto async_static_(::experimental::reserved_words::export_ true_,
+                     const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[65], options, ::std::forward<Token>(token), true_);
   }
   template <class Token>
   auto async_static_(::experimental::reserved_words::export_ true_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[65], ::std::forward<Token>(token), true_);
+    return async_static_(true_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> static_assert_(
-      ::experimental::reserved_words::export_ try_) {
+      ::experimental::reserved_words::export_ try_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[66],
-                                                                               try_);
+                                                                               options, try_);
+  }
+  template <class Token>
+  auto async_static_assert_(::experimental::reserved_words::export_ try_,
+                            const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[66], options, ::std::forward<Token>(token), try_);
   }
   template <class Token>
   auto async_static_assert_(::experimental::reserved_words::export_ try_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[66], ::std::forward<Token>(token), try_);
+    return async_static_assert_(try_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> static_cast_(
-      ::experimental::reserved_words::export_ typedef_) {
+      ::experimental::reserved_words::export_ typedef_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[67],
-                                                                               typedef_);
+                                                                               options, typedef_);
+  }
+  template <class Token>
+  auto async_static_cast_(::experimental::reserved_words::export_ typedef_,
+                          const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[67], options, ::std::forward<Token>(token), typedef_);
   }
   template <class Token>
   auto async_static_cast_(::experimental::reserved_words::export_ typedef_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[67], ::std::forward<Token>(token), typedef_);
+    return async_static_cast_(typedef_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> switch_(
-      ::experimental::reserved_words::export_ typeid_) {
+      ::experimental::reserved_words::export_ typeid_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[68],
-                                                                               typeid_);
+                                                                               options, typeid_);
+  }
+  template <class Token>
+  auto async_switch_(::experimental::reserved_words::export_ typeid_,
+                     const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[68], options, ::std::forward<Token>(token), typeid_);
   }
   template <class Token>
   auto async_switch_(::experimental::reserved_words::export_ typeid_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[68], ::std::forward<Token>(token), typeid_);
+    return async_switch_(typeid_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> template_(
-      ::experimental::reserved_words::export_ typename_) {
+      ::experimental::reserved_words::export_ typename_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[69],
-                                                                               typename_);
+                                                                               options, typename_);
+  }
+  template <class Token>
+  auto async_template_(::experimental::reserved_words::export_ typename_,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[69], options, ::std::forward<Token>(token), typename_);
   }
   template <class Token>
   auto async_template_(::experimental::reserved_words::export_ typename_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[69], ::std::forward<Token>(token), typename_);
+    return async_template_(typename_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> thread_local_(
-      ::experimental::reserved_words::export_ union__) {
+      ::experimental::reserved_words::export_ union__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[70],
-                                                                               union__);
+                                                                               options, union__);
+  }
+  template <class Token>
+  auto async_thread_local_(::experimental::reserved_words::export_ union__,
+                           const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[70], options, ::std::forward<Token>(token), union__);
   }
   template <class Token>
   auto async_thread_local_(::experimental::reserved_words::export_ union__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[70], ::std::forward<Token>(token), union__);
+    return async_thread_local_(union__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> throw_(
-      ::experimental::reserved_words::export_ unsigned_) {
+      ::experimental::reserved_words::export_ unsigned_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[71],
-                                                                               unsigned_);
+                                                                               options, unsigned_);
+  }
+  template <class Token>
+  auto async_throw_(::experimental::reserved_words::export_ unsigned_,
+                    const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[71], options, ::std::forward<Token>(token), unsigned_);
   }
   template <class Token>
   auto async_throw_(::experimental::reserved_words::export_ unsigned_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[71], ::std::forward<Token>(token), unsigned_);
+    return async_throw_(unsigned_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> true_(
-      ::experimental::reserved_words::export_ virtual_) {
+      ::experimental::reserved_words::export_ virtual_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[72],
-                                                                               virtual_);
+                                                                               options, virtual_);
+  }
+  template <class Token>
+  auto async_true_(::experimental::reserved_words::export_ virtual_,
+                   const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[72], options, ::std::forward<Token>(token), virtual_);
   }
   template <class Token>
   auto async_true_(::experimental::reserved_words::export_ virtual_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[72], ::std::forward<Token>(token), virtual_);
+    return async_true_(virtual_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> try_(
-      ::experimental::reserved_words::export_ volatile__) {
+      ::experimental::reserved_words::export_ volatile__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[73],
-                                                                               volatile__);
+                                                                               options, volatile__);
+  }
+  template <class Token>
+  auto async_try_(::experimental::reserved_words::export_ volatile__,
+                  const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[73], options, ::std::forward<Token>(token), volatile__);
   }
   template <class Token>
   auto async_try_(::experimental::reserved_words::export_ volatile__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[73], ::std::forward<Token>(token), volatile__);
+    return async_try_(volatile__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> typedef_(
-      ::experimental::reserved_words::export_ wchar_t_) {
+      ::experimental::reserved_words::export_ wchar_t_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[74],
-                                                                               wchar_t_);
+                                                                               options, wchar_t_);
+  }
+  template <class Token>
+  auto async_typedef_(::experimental::reserved_words::export_ wchar_t_,
+                      const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[74], options, ::std::forward<Token>(token), wchar_t_);
   }
   template <class Token>
   auto async_typedef_(::experimental::reserved_words::export_ wchar_t_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[74], ::std::forward<Token>(token), wchar_t_);
+    return async_typedef_(wchar_t_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> typeid_(
-      ::experimental::reserved_words::export_ while_) {
+      ::experimental::reserved_words::export_ while_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[75],
-                                                                               while_);
+                                                                               options, while_);
+  }
+  template <class Token>
+  auto async_typeid_(::experimental::reserved_words::export_ while_,
+                     const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[75], options, ::std::forward<Token>(token), while_);
   }
   template <class Token>
   auto async_typeid_(::experimental::reserved_words::export_ while_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[75], ::std::forward<Token>(token), while_);
+    return async_typeid_(while_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> typename_(
-      ::experimental::reserved_words::export_ xor_) {
+      ::experimental::reserved_words::export_ xor_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[76],
-                                                                               xor_);
+                                                                               options, xor_);
+  }
+  template <class Token>
+  auto async_typename_(::experimental::reserved_words::export_ xor_,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[76], options, ::std::forward<Token>(token), xor_);
   }
   template <class Token>
   auto async_typename_(::experimental::reserved_words::export_ xor_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[76], ::std::forward<Token>(token), xor_);
+    return async_typename_(xor_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> union_(
-      ::experimental::reserved_words::export_ xor_eq_) {
+      ::experimental::reserved_words::export_ xor_eq_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[77],
-                                                                               xor_eq_);
+                                                                               options, xor_eq_);
+  }
+  template <class Token>
+  auto async_union_(::experimental::reserved_words::export_ xor_eq_,
+                    const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[77], options, ::std::forward<Token>(token), xor_eq_);
   }
   template <class Token>
   auto async_union_(::experimental::reserved_words::export_ xor_eq_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[77], ::std::forward<Token>(token), xor_eq_);
+    return async_union_(xor_eq_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> unsigned_(
-      ::experimental::reserved_words::export_ assert_) {
+      ::experimental::reserved_words::export_ assert_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[78],
-                                                                               assert_);
+                                                                               options, assert_);
+  }
+  template <class Token>
+  auto async_unsigned_(::experimental::reserved_words::export_ assert_,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[78], options, ::std::forward<Token>(token), assert_);
   }
   template <class Token>
   auto async_unsigned_(::experimental::reserved_words::export_ assert_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[78], ::std::forward<Token>(token), assert_);
+    return async_unsigned_(assert_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> virtual_(
-      ::experimental::reserved_words::export_ errno_) {
+      ::experimental::reserved_words::export_ errno_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[79],
-                                                                               errno_);
+                                                                               options, errno_);
+  }
+  template <class Token>
+  auto async_virtual_(::experimental::reserved_words::export_ errno_,
+                      const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[79], options, ::std::forward<Token>(token), errno_);
   }
   template <class Token>
   auto async_virtual_(::experimental::reserved_words::export_ errno_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[79], ::std::forward<Token>(token), errno_);
+    return async_virtual_(errno_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> volatile_(
-      ::experimental::reserved_words::export_ linux_) {
+      ::experimental::reserved_words::export_ linux_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[80],
-                                                                               linux_);
+                                                                               options, linux_);
+  }
+  template <class Token>
+  auto async_volatile_(::experimental::reserved_words::export_ linux_,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[80], options, ::std::forward<Token>(token), linux_);
   }
   template <class Token>
   auto async_volatile_(::experimental::reserved_words::export_ linux_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[80], ::std::forward<Token>(token), linux_);
+    return async_volatile_(linux_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> wchar_t_(
-      ::experimental::reserved_words::export_ unix_) {
+      ::experimental::reserved_words::export_ unix_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[81],
-                                                                               unix_);
+                                                                               options, unix_);
+  }
+  template <class Token>
+  auto async_wchar_t_(::experimental::reserved_words::export_ unix_,
+                      const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[81], options, ::std::forward<Token>(token), unix_);
   }
   template <class Token>
   auto async_wchar_t_(::experimental::reserved_words::export_ unix_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[81], ::std::forward<Token>(token), unix_);
+    return async_wchar_t_(unix_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> while_(
-      ::experimental::reserved_words::export_ major_) {
+      ::experimental::reserved_words::export_ major_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[82],
-                                                                               major_);
+                                                                               options, major_);
+  }
+  template <class Token>
+  auto async_while_(::experimental::reserved_words::export_ major_,
+                    const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[82], options, ::std::forward<Token>(token), major_);
   }
   template <class Token>
   auto async_while_(::experimental::reserved_words::export_ major_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[82], ::std::forward<Token>(token), major_);
+    return async_while_(major_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> xor_(
-      ::experimental::reserved_words::export_ minor_) {
+      ::experimental::reserved_words::export_ minor_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[83],
-                                                                               minor_);
+                                                                               options, minor_);
+  }
+  template <class Token>
+  auto async_xor_(::experimental::reserved_words::export_ minor_, const ::rr::CallOptions& options,
+                  Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[83], options, ::std::forward<Token>(token), minor_);
   }
   template <class Token>
   auto async_xor_(::experimental::reserved_words::export_ minor_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[83], ::std::forward<Token>(token), minor_);
+    return async_xor_(minor_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> xor_eq_(
-      ::experimental::reserved_words::export_ EOF_) {
+      ::experimental::reserved_words::export_ EOF_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[84],
-                                                                               EOF_);
+                                                                               options, EOF_);
+  }
+  template <class Token>
+  auto async_xor_eq_(::experimental::reserved_words::export_ EOF_, const ::rr::CallOptions& options,
+                     Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[84], options, ::std::forward<Token>(token), EOF_);
   }
   template <class Token>
   auto async_xor_eq_(::experimental::reserved_words::export_ EOF_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[84], ::std::forward<Token>(token), EOF_);
+    return async_xor_eq_(EOF_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> assert_(
-      ::experimental::reserved_words::export_ NULL_) {
+      ::experimental::reserved_words::export_ NULL_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[85],
-                                                                               NULL_);
+                                                                               options, NULL_);
+  }
+  template <class Token>
+  auto async_assert_(::experimental::reserved_words::export_ NULL_,
+                     const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[85], options, ::std::forward<Token>(token), NULL_);
   }
   template <class Token>
   auto async_assert_(::experimental::reserved_words::export_ NULL_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[85], ::std::forward<Token>(token), NULL_);
+    return async_assert_(NULL_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> errno_(
-      ::experimental::reserved_words::export_ INFINITY_) {
+      ::experimental::reserved_words::export_ INFINITY_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[86],
-                                                                               INFINITY_);
+                                                                               options, INFINITY_);
+  }
+  template <class Token>
+  auto async_errno_(::experimental::reserved_words::export_ INFINITY_,
+                    const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[86], options, ::std::forward<Token>(token), INFINITY_);
   }
   template <class Token>
   auto async_errno_(::experimental::reserved_words::export_ INFINITY_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[86], ::std::forward<Token>(token), INFINITY_);
+    return async_errno_(INFINITY_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> linux_(
-      ::experimental::reserved_words::export_ NAN_) {
+      ::experimental::reserved_words::export_ NAN_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[87],
-                                                                               NAN_);
+                                                                               options, NAN_);
+  }
+  template <class Token>
+  auto async_linux_(::experimental::reserved_words::export_ NAN_, const ::rr::CallOptions& options,
+                    Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[87], options, ::std::forward<Token>(token), NAN_);
   }
   template <class Token>
   auto async_linux_(::experimental::reserved_words::export_ NAN_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[87], ::std::forward<Token>(token), NAN_);
+    return async_linux_(NAN_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> unix_(
-      ::experimental::reserved_words::export_ RAND_MAX_) {
+      ::experimental::reserved_words::export_ RAND_MAX_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[88],
-                                                                               RAND_MAX_);
+                                                                               options, RAND_MAX_);
+  }
+  template <class Token>
+  auto async_unix_(::experimental::reserved_words::export_ RAND_MAX_,
+                   const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[88], options, ::std::forward<Token>(token), RAND_MAX_);
   }
   template <class Token>
   auto async_unix_(::experimental::reserved_words::export_ RAND_MAX_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[88], ::std::forward<Token>(token), RAND_MAX_);
+    return async_unix_(RAND_MAX_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> major_(
-      ::experimental::reserved_words::export_ BUFSIZ_) {
+      ::experimental::reserved_words::export_ BUFSIZ_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[89],
-                                                                               BUFSIZ_);
+                                                                               options, BUFSIZ_);
+  }
+  template <class Token>
+  auto async_major_(::experimental::reserved_words::export_ BUFSIZ_,
+                    const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[89], options, ::std::forward<Token>(token), BUFSIZ_);
   }
   template <class Token>
   auto async_major_(::experimental::reserved_words::export_ BUFSIZ_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[89], ::std::forward<Token>(token), BUFSIZ_);
+    return async_major_(BUFSIZ_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> minor_(
-      ::experimental::reserved_words::export_ SIGINT_) {
+      ::experimental::reserved_words::export_ SIGINT_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[90],
-                                                                               SIGINT_);
+                                                                               options, SIGINT_);
+  }
+  template <class Token>
+  auto async_minor_(::experimental::reserved_words::export_ SIGINT_,
+                    const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[90], options, ::std::forward<Token>(token), SIGINT_);
   }
   template <class Token>
   auto async_minor_(::experimental::reserved_words::export_ SIGINT_, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[90], ::std::forward<Token>(token), SIGINT_);
+    return async_minor_(SIGINT_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> EOF_(
-      ::experimental::reserved_words::export_ final) {
+      ::experimental::reserved_words::export_ final, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[91],
-                                                                               final);
+                                                                               options, final);
+  }
+  template <class Token>
+  auto async_EOF_(::experimental::reserved_words::export_ final, const ::rr::CallOptions& options,
+                  Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[91], options, ::std::forward<Token>(token), final);
   }
   template <class Token>
   auto async_EOF_(::experimental::reserved_words::export_ final, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[91], ::std::forward<Token>(token), final);
+    return async_EOF_(final, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> NULL_(
-      ::experimental::reserved_words::export_ override) {
+      ::experimental::reserved_words::export_ override, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[92],
-                                                                               override);
+                                                                               options, override);
+  }
+  template <class Token>
+  auto async_NULL_(::experimental::reserved_words::export_ override,
+                   const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[92], options, ::std::forward<Token>(token), override);
   }
   template <class Token>
   auto async_NULL_(::experimental::reserved_words::export_ override, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[92], ::std::forward<Token>(token), override);
+    return async_NULL_(override, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> INFINITY_(
-      ::experimental::reserved_words::export_ module) {
+      ::experimental::reserved_words::export_ module, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[93],
-                                                                               module);
+                                                                               options, module);
+  }
+  template <class Token>
+  auto async_INFINITY_(::experimental::reserved_words::export_ module,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[93], options, ::std::forward<Token>(token), module);
   }
   template <class Token>
   auto async_INFINITY_(::experimental::reserved_words::export_ module, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[93], ::std::forward<Token>(token), module);
+    return async_INFINITY_(module, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> NAN_(
-      ::experimental::reserved_words::export_ alignas__) {
+      ::experimental::reserved_words::export_ alignas__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[94],
-                                                                               alignas__);
+                                                                               options, alignas__);
+  }
+  template <class Token>
+  auto async_NAN_(::experimental::reserved_words::export_ alignas__,
+                  const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[94], options, ::std::forward<Token>(token), alignas__);
   }
   template <class Token>
   auto async_NAN_(::experimental::reserved_words::export_ alignas__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[94], ::std::forward<Token>(token), alignas__);
+    return async_NAN_(alignas__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> RAND_MAX_(
-      ::experimental::reserved_words::export_ alignof__) {
+      ::experimental::reserved_words::export_ alignof__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[95],
-                                                                               alignof__);
+                                                                               options, alignof__);
+  }
+  template <class Token>
+  auto async_RAND_MAX_(::experimental::reserved_words::export_ alignof__,
+                       const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[95], options, ::std::forward<Token>(token), alignof__);
   }
   template <class Token>
   auto async_RAND_MAX_(::experimental::reserved_words::export_ alignof__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[95], ::std::forward<Token>(token), alignof__);
+    return async_RAND_MAX_(alignof__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> BUFSIZ_(
-      ::experimental::reserved_words::export_ and__) {
+      ::experimental::reserved_words::export_ and__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[96],
-                                                                               and__);
+                                                                               options, and__);
+  }
+  template <class Token>
+  auto async_BUFSIZ_(::experimental::reserved_words::export_ and__,
+                     const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[96], options, ::std::forward<Token>(token), and__);
   }
   template <class Token>
   auto async_BUFSIZ_(::experimental::reserved_words::export_ and__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[96], ::std::forward<Token>(token), and__);
+    return async_BUFSIZ_(and__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> SIGINT_(
-      ::experimental::reserved_words::export_ and_eq__) {
+      ::experimental::reserved_words::export_ and_eq__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[97],
-                                                                               and_eq__);
+                                                                               options, and_eq__);
+  }
+  template <class Token>
+  auto async_SIGINT_(::experimental::reserved_words::export_ and_eq__,
+                     const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[97], options, ::std::forward<Token>(token), and_eq__);
   }
   template <class Token>
   auto async_SIGINT_(::experimental::reserved_words::export_ and_eq__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[97], ::std::forward<Token>(token), and_eq__);
+    return async_SIGINT_(and_eq__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> final(
-      ::experimental::reserved_words::export_ asm__) {
+      ::experimental::reserved_words::export_ asm__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[98],
-                                                                               asm__);
+                                                                               options, asm__);
+  }
+  template <class Token>
+  auto async_final(::experimental::reserved_words::export_ asm__, const ::rr::CallOptions& options,
+                   Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[98], options, ::std::forward<Token>(token), asm__);
   }
   template <class Token>
   auto async_final(::experimental::reserved_words::export_ asm__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[98], ::std::forward<Token>(token), asm__);
+    return async_final(asm__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> override(
-      ::experimental::reserved_words::export_ auto__) {
+      ::experimental::reserved_words::export_ auto__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[99],
-                                                                               auto__);
+                                                                               options, auto__);
+  }
+  template <class Token>
+  auto async_override(::experimental::reserved_words::export_ auto__,
+                      const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[99], options, ::std::forward<Token>(token), auto__);
   }
   template <class Token>
   auto async_override(::experimental::reserved_words::export_ auto__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[99], ::std::forward<Token>(token), auto__);
+    return async_override(auto__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::experimental::reserved_words::template_> module(
-      ::experimental::reserved_words::export_ bitand__) {
+      ::experimental::reserved_words::export_ bitand__, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[100],
-                                                                               bitand__);
+                                                                               options, bitand__);
+  }
+  template <class Token>
+  auto async_module(::experimental::reserved_words::export_ bitand__,
+                    const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[100], options, ::std::forward<Token>(token), bitand__);
   }
   template <class Token>
   auto async_module(::experimental::reserved_words::export_ bitand__, Token&& token) {
-    return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[100], ::std::forward<Token>(token), bitand__);
+    return async_module(bitand__, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
@@ -3665,6 +5478,415 @@ class newSkeleton : public virtual ::rr::Skeleton {
                                              const ::rr::ObjectIndex& index) override;
 };
 
+/// A new whose functions and objrefs fail until they are overridden.
+class newDefault : public newSkeleton {
+ public:
+  ::std::optional<::experimental::reserved_words::template_> alignas_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("alignas");
+  }
+  ::std::optional<::experimental::reserved_words::template_> alignof_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("alignof");
+  }
+  ::std::optional<::experimental::reserved_words::template_> and_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("and");
+  }
+  ::std::optional<::experimental::reserved_words::template_> and_eq_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("and_eq");
+  }
+  ::std::optional<::experimental::reserved_words::template_> asm_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("asm");
+  }
+  ::std::optional<::experimental::reserved_words::template_> auto_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("auto");
+  }
+  ::std::optional<::experimental::reserved_words::template_> bitand_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("bitand");
+  }
+  ::std::optional<::experimental::reserved_words::template_> bitor_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("bitor");
+  }
+  ::std::optional<::experimental::reserved_words::template_> break_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("break");
+  }
+  ::std::optional<::experimental::reserved_words::template_> case_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("case");
+  }
+  ::std::optional<::experimental::reserved_words::template_> catch_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("catch");
+  }
+  ::std::optional<::experimental::reserved_words::template_> char_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("char");
+  }
+  ::std::optional<::experimental::reserved_words::template_> char16_t_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("char16_t");
+  }
+  ::std::optional<::experimental::reserved_words::template_> char32_t_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("char32_t");
+  }
+  ::std::optional<::experimental::reserved_words::template_> char8_t_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("char8_t");
+  }
+  ::std::optional<::experimental::reserved_words::template_> class_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("class");
+  }
+  ::std::optional<::experimental::reserved_words::template_> co_await_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("co_await");
+  }
+  ::std::optional<::experimental::reserved_words::template_> co_return_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("co_return");
+  }
+  ::std::optional<::experimental::reserved_words::template_> co_yield_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("co_yield");
+  }
+  ::std::optional<::experimental::reserved_words::template_> compl_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("compl");
+  }
+  ::std::optional<::experimental::reserved_words::template_> concept_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("concept");
+  }
+  ::std::optional<::experimental::reserved_words::template_> const_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("const");
+  }
+  ::std::optional<::experimental::reserved_words::template_> const_cast_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("const_cast");
+  }
+  ::std::optional<::experimental::reserved_words::template_> consteval_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("consteval");
+  }
+  ::std::optional<::experimental::reserved_words::template_> constexpr_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("constexpr");
+  }
+  ::std::optional<::experimental::reserved_words::template_> constinit_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("constinit");
+  }
+  ::std::optional<::experimental::reserved_words::template_> continue_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("continue");
+  }
+  ::std::optional<::experimental::reserved_words::template_> decltype_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("decltype");
+  }
+  ::std::optional<::experimental::reserved_words::template_> default_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("default");
+  }
+  ::std::optional<::experimental::reserved_words::template_> delete_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("delete");
+  }
+  ::std::optional<::experimental::reserved_words::template_> do_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("do");
+  }
+  ::std::optional<::experimental::reserved_words::template_> dynamic_cast_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("dynamic_cast");
+  }
+  ::std::optional<::experimental::reserved_words::template_> else_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("else");
+  }
+  ::std::optional<::experimental::reserved_words::template_> explicit_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("explicit");
+  }
+  ::std::optional<::experimental::reserved_words::template_> export_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("export");
+  }
+  ::std::optional<::experimental::reserved_words::template_> extern_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("extern");
+  }
+  ::std::optional<::experimental::reserved_words::template_> false_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("false");
+  }
+  ::std::optional<::experimental::reserved_words::template_> float_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("float");
+  }
+  ::std::optional<::experimental::reserved_words::template_> for_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("for");
+  }
+  ::std::optional<::experimental::reserved_words::template_> friend_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("friend");
+  }
+  ::std::optional<::experimental::reserved_words::template_> goto_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("goto");
+  }
+  ::std::optional<::experimental::reserved_words::template_> if_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("if");
+  }
+  ::std::optional<::experimental::reserved_words::template_> inline_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("inline");
+  }
+  ::std::optional<::experimental::reserved_words::template_> int_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("int");
+  }
+  ::std::optional<::experimental::reserved_words::template_> long_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("long");
+  }
+  ::std::optional<::experimental::reserved_words::template_> mutable_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("mutable");
+  }
+  ::std::optional<::experimental::reserved_words::template_> namespace_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("namespace");
+  }
+  ::std::optional<::experimental::reserved_words::template_> new_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("new");
+  }
+  ::std::optional<::experimental::reserved_words::template_> noexcept_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("noexcept");
+  }
+  ::std::optional<::experimental::reserved_words::template_> not_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("not");
+  }
+  ::std::optional<::experimental::reserved_words::template_> not_eq_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("not_eq");
+  }
+  ::std::optional<::experimental::reserved_words::template_> nullptr_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("nullptr");
+  }
+  ::std::optional<::experimental::reserved_words::template_> operator_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("operator");
+  }
+  ::std::optional<::experimental::reserved_words::template_> or_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("or");
+  }
+  ::std::optional<::experimental::reserved_words::template_> or_eq_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("or_eq");
+  }
+  ::std::optional<::experimental::reserved_words::template_> private_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("private");
+  }
+  ::std::optional<::experimental::reserved_words::template_> protected_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("protected");
+  }
+  ::std::optional<::experimental::reserved_words::template_> public_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("public");
+  }
+  ::std::optional<::experimental::reserved_words::template_> register_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("register");
+  }
+  ::std::optional<::experimental::reserved_words::template_> reinterpret_cast_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("reinterpret_cast");
+  }
+  ::std::optional<::experimental::reserved_words::template_> requires_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("requires");
+  }
+  ::std::optional<::experimental::reserved_words::template_> return_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("return");
+  }
+  ::std::optional<::experimental::reserved_words::template_> short_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("short");
+  }
+  ::std::optional<::experimental::reserved_words::template_> signed_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("signed");
+  }
+  ::std::optional<::experimental::reserved_words::template_> sizeof_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("sizeof");
+  }
+  ::std::optional<::experimental::reserved_words::template_> static_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("static");
+  }
+  ::std::optional<::experimental::reserved_words::template_> static_assert_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("static_assert");
+  }
+  ::std::optional<::experimental::reserved_words::template_> static_cast_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("static_cast");
+  }
+  ::std::optional<::experimental::reserved_words::template_> switch_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("switch");
+  }
+  ::std::optional<::experimental::reserved_words::template_> template_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("template");
+  }
+  ::std::optional<::experimental::reserved_words::template_> thread_local_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("thread_local");
+  }
+  ::std::optional<::experimental::reserved_words::template_> throw_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("throw");
+  }
+  ::std::optional<::experimental::reserved_words::template_> true_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("true");
+  }
+  ::std::optional<::experimental::reserved_words::template_> try_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("try");
+  }
+  ::std::optional<::experimental::reserved_words::template_> typedef_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("typedef");
+  }
+  ::std::optional<::experimental::reserved_words::template_> typeid_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("typeid");
+  }
+  ::std::optional<::experimental::reserved_words::template_> typename_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("typename");
+  }
+  ::std::optional<::experimental::reserved_words::template_> union_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("union");
+  }
+  ::std::optional<::experimental::reserved_words::template_> unsigned_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("unsigned");
+  }
+  ::std::optional<::experimental::reserved_words::template_> virtual_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("virtual");
+  }
+  ::std::optional<::experimental::reserved_words::template_> volatile_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("volatile");
+  }
+  ::std::optional<::experimental::reserved_words::template_> wchar_t_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("wchar_t");
+  }
+  ::std::optional<::experimental::reserved_words::template_> while_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("while");
+  }
+  ::std::optional<::experimental::reserved_words::template_> xor_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("xor");
+  }
+  ::std::optional<::experimental::reserved_words::template_> xor_eq_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("xor_eq");
+  }
+  ::std::optional<::experimental::reserved_words::template_> assert_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("assert");
+  }
+  ::std::optional<::experimental::reserved_words::template_> errno_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("errno");
+  }
+  ::std::optional<::experimental::reserved_words::template_> linux_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("linux");
+  }
+  ::std::optional<::experimental::reserved_words::template_> unix_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("unix");
+  }
+  ::std::optional<::experimental::reserved_words::template_> major_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("major");
+  }
+  ::std::optional<::experimental::reserved_words::template_> minor_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("minor");
+  }
+  ::std::optional<::experimental::reserved_words::template_> EOF_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("EOF");
+  }
+  ::std::optional<::experimental::reserved_words::template_> NULL_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("NULL");
+  }
+  ::std::optional<::experimental::reserved_words::template_> INFINITY_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("INFINITY");
+  }
+  ::std::optional<::experimental::reserved_words::template_> NAN_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("NAN");
+  }
+  ::std::optional<::experimental::reserved_words::template_> RAND_MAX_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("RAND_MAX");
+  }
+  ::std::optional<::experimental::reserved_words::template_> BUFSIZ_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("BUFSIZ");
+  }
+  ::std::optional<::experimental::reserved_words::template_> SIGINT_(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("SIGINT");
+  }
+  ::std::optional<::experimental::reserved_words::template_> final(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("final");
+  }
+  ::std::optional<::experimental::reserved_words::template_> override(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("override");
+  }
+  ::std::optional<::experimental::reserved_words::template_> module(
+      ::experimental::reserved_words::export_) override {
+    ::rr::throw_not_implemented("module");
+  }
+};
+
 extern const ::rr::Member rr_members_class[101];
 extern const ::rr::ObjectType rr_object_class;
 
@@ -3711,310 +5933,554 @@ class classStub : public virtual ::rr::Stub {
   ::rr::Event<double> float_() { return {*this, rr_members_class[37]}; }
   ::rr::Event<double> for_() { return {*this, rr_members_class[38]}; }
   ::rr::Event<double> friend_() { return {*this, rr_members_class[39]}; }
-  ::std::shared_ptr<newStub> get_goto();
+  ::std::shared_ptr<newStub> get_goto(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_goto(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[40], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_goto(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[40], ::std::forward<Token>(token));
+    return async_get_goto(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_if();
+  ::std::shared_ptr<newStub> get_if(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_if(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[41], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_if(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[41], ::std::forward<Token>(token));
+    return async_get_if(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_inline();
+  ::std::shared_ptr<newStub> get_inline(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_inline(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[42], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_inline(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[42], ::std::forward<Token>(token));
+    return async_get_inline(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_int();
+  ::std::shared_ptr<newStub> get_int(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_int(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[43], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_int(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[43], ::std::forward<Token>(token));
+    return async_get_int(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_long();
+  ::std::shared_ptr<newStub> get_long(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_long(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[44], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_long(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[44], ::std::forward<Token>(token));
+    return async_get_long(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_mutable();
+  ::std::shared_ptr<newStub> get_mutable(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_mutable(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[45], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_mutable(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[45], ::std::forward<Token>(token));
+    return async_get_mutable(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_namespace();
+  ::std::shared_ptr<newStub> get_namespace(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_namespace(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[46], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_namespace(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[46], ::std::forward<Token>(token));
+    return async_get_namespace(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_new();
+  ::std::shared_ptr<newStub> get_new(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_new(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[47], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_new(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[47], ::std::forward<Token>(token));
+    return async_get_new(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_noexcept();
+  ::std::shared_ptr<newStub> get_noexcept(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_noexcept(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[48], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_noexcept(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[48], ::std::forward<Token>(token));
+    return async_get_noexcept(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_not();
+  ::std::shared_ptr<newStub> get_not(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_not(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[49], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_not(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[49], ::std::forward<Token>(token));
+    return async_get_not(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_not_eq();
+  ::std::shared_ptr<newStub> get_not_eq(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_not_eq(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[50], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_not_eq(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[50], ::std::forward<Token>(token));
+    return async_get_not_eq(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_nullptr();
+  ::std::shared_ptr<newStub> get_nullptr(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_nullptr(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[51], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_nullptr(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[51], ::std::forward<Token>(token));
+    return async_get_nullptr(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_operator();
+  ::std::shared_ptr<newStub> get_operator(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_operator(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[52], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_operator(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[52], ::std::forward<Token>(token));
+    return async_get_operator(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_or();
+  ::std::shared_ptr<newStub> get_or(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_or(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[53], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_or(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[53], ::std::forward<Token>(token));
+    return async_get_or(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_or_eq();
+  ::std::shared_ptr<newStub> get_or_eq(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_or_eq(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[54], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_or_eq(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[54], ::std::forward<Token>(token));
+    return async_get_or_eq(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_private();
+  ::std::shared_ptr<newStub> get_private(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_private(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[55], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_private(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[55], ::std::forward<Token>(token));
+    return async_get_private(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_protected();
+  ::std::shared_ptr<newStub> get_protected(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_protected(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[56], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_protected(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[56], ::std::forward<Token>(token));
+    return async_get_protected(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_public();
+  ::std::shared_ptr<newStub> get_public(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_public(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[57], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_public(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[57], ::std::forward<Token>(token));
+    return async_get_public(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_register();
+  ::std::shared_ptr<newStub> get_register(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_register(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[58], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_register(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[58], ::std::forward<Token>(token));
+    return async_get_register(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_reinterpret_cast();
+  ::std::shared_ptr<newStub> get_reinterpret_cast(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_reinterpret_cast(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[59], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_reinterpret_cast(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[59], ::std::forward<Token>(token));
+    return async_get_reinterpret_cast(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_requires();
+  ::std::shared_ptr<newStub> get_requires(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_requires(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[60], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_requires(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[60], ::std::forward<Token>(token));
+    return async_get_requires(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_return();
+  ::std::shared_ptr<newStub> get_return(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_return(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[61], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_return(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[61], ::std::forward<Token>(token));
+    return async_get_return(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_short();
+  ::std::shared_ptr<newStub> get_short(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_short(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[62], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_short(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[62], ::std::forward<Token>(token));
+    return async_get_short(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_signed();
+  ::std::shared_ptr<newStub> get_signed(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_signed(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[63], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_signed(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[63], ::std::forward<Token>(token));
+    return async_get_signed(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_sizeof();
+  ::std::shared_ptr<newStub> get_sizeof(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_sizeof(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[64], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_sizeof(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[64], ::std::forward<Token>(token));
+    return async_get_sizeof(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_static();
+  ::std::shared_ptr<newStub> get_static(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_static(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[65], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_static(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[65], ::std::forward<Token>(token));
+    return async_get_static(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_static_assert();
+  ::std::shared_ptr<newStub> get_static_assert(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_static_assert(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[66], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_static_assert(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[66], ::std::forward<Token>(token));
+    return async_get_static_assert(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_static_cast();
+  ::std::shared_ptr<newStub> get_static_cast(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_static_cast(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[67], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_static_cast(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[67], ::std::forward<Token>(token));
+    return async_get_static_cast(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_switch();
+  ::std::shared_ptr<newStub> get_switch(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_switch(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[68], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_switch(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[68], ::std::forward<Token>(token));
+    return async_get_switch(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_template();
+  ::std::shared_ptr<newStub> get_template(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_template(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[69], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_template(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[69], ::std::forward<Token>(token));
+    return async_get_template(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_thread_local();
+  ::std::shared_ptr<newStub> get_thread_local(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_thread_local(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[70], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_thread_local(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[70], ::std::forward<Token>(token));
+    return async_get_thread_local(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_throw();
+  ::std::shared_ptr<newStub> get_throw(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_throw(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[71], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_throw(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[71], ::std::forward<Token>(token));
+    return async_get_throw(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_true();
+  ::std::shared_ptr<newStub> get_true(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_true(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[72], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_true(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[72], ::std::forward<Token>(token));
+    return async_get_true(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_try();
+  ::std::shared_ptr<newStub> get_try(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_try(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[73], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_try(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[73], ::std::forward<Token>(token));
+    return async_get_try(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_typedef();
+  ::std::shared_ptr<newStub> get_typedef(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_typedef(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[74], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_typedef(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[74], ::std::forward<Token>(token));
+    return async_get_typedef(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_typeid();
+  ::std::shared_ptr<newStub> get_typeid(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_typeid(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[75], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_typeid(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[75], ::std::forward<Token>(token));
+    return async_get_typeid(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_typename();
+  ::std::shared_ptr<newStub> get_typename(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_typename(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[76], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_typename(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[76], ::std::forward<Token>(token));
+    return async_get_typename(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_union();
+  ::std::shared_ptr<newStub> get_union(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_union(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[77], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_union(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[77], ::std::forward<Token>(token));
+    return async_get_union(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_unsigned();
+  ::std::shared_ptr<newStub> get_unsigned(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_unsigned(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[78], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_unsigned(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[78], ::std::forward<Token>(token));
+    return async_get_unsigned(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_virtual();
+  ::std::shared_ptr<newStub> get_virtual(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_virtual(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[79], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_virtual(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[79], ::std::forward<Token>(token));
+    return async_get_virtual(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_volatile();
+  ::std::shared_ptr<newStub> get_volatile(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_volatile(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[80], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_volatile(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[80], ::std::forward<Token>(token));
+    return async_get_volatile(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_wchar_t();
+  ::std::shared_ptr<newStub> get_wchar_t(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_wchar_t(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[81], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_wchar_t(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[81], ::std::forward<Token>(token));
+    return async_get_wchar_t(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_while();
+  ::std::shared_ptr<newStub> get_while(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_while(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[82], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_while(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[82], ::std::forward<Token>(token));
+    return async_get_while(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_xor();
+  ::std::shared_ptr<newStub> get_xor(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_xor(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[83], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_xor(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[83], ::std::forward<Token>(token));
+    return async_get_xor(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_xor_eq();
+  ::std::shared_ptr<newStub> get_xor_eq(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_xor_eq(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[84], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_xor_eq(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[84], ::std::forward<Token>(token));
+    return async_get_xor_eq(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_assert();
+  ::std::shared_ptr<newStub> get_assert(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_assert(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[85], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_assert(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[85], ::std::forward<Token>(token));
+    return async_get_assert(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_errno();
+  ::std::shared_ptr<newStub> get_errno(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_errno(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[86], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_errno(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[86], ::std::forward<Token>(token));
+    return async_get_errno(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_linux();
+  ::std::shared_ptr<newStub> get_linux(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_linux(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[87], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_linux(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[87], ::std::forward<Token>(token));
+    return async_get_linux(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_unix();
+  ::std::shared_ptr<newStub> get_unix(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_unix(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[88], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_unix(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[88], ::std::forward<Token>(token));
+    return async_get_unix(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_major();
+  ::std::shared_ptr<newStub> get_major(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_major(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[89], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_major(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[89], ::std::forward<Token>(token));
+    return async_get_major(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_minor();
+  ::std::shared_ptr<newStub> get_minor(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_minor(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[90], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_minor(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[90], ::std::forward<Token>(token));
+    return async_get_minor(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_EOF();
+  ::std::shared_ptr<newStub> get_EOF(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_EOF(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[91], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_EOF(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[91], ::std::forward<Token>(token));
+    return async_get_EOF(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_NULL();
+  ::std::shared_ptr<newStub> get_NULL(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_NULL(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[92], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_NULL(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[92], ::std::forward<Token>(token));
+    return async_get_NULL(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_INFINITY();
+  ::std::shared_ptr<newStub> get_INFINITY(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_INFINITY(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[93], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_INFINITY(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[93], ::std::forward<Token>(token));
+    return async_get_INFINITY(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_NAN();
+  ::std::shared_ptr<newStub> get_NAN(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_NAN(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[94], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_NAN(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[94], ::std::forward<Token>(token));
+    return async_get_NAN(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_RAND_MAX();
+  ::std::shared_ptr<newStub> get_RAND_MAX(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_RAND_MAX(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[95], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_RAND_MAX(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[95], ::std::forward<Token>(token));
+    return async_get_RAND_MAX(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_BUFSIZ();
+  ::std::shared_ptr<newStub> get_BUFSIZ(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_BUFSIZ(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[96], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_BUFSIZ(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[96], ::std::forward<Token>(token));
+    return async_get_BUFSIZ(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_SIGINT();
+  ::std::shared_ptr<newStub> get_SIGINT(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_SIGINT(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[97], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_SIGINT(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[97], ::std::forward<Token>(token));
+    return async_get_SIGINT(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_final();
+  ::std::shared_ptr<newStub> get_final(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_final(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[98], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_final(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[98], ::std::forward<Token>(token));
+    return async_get_final(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_override();
+  ::std::shared_ptr<newStub> get_override(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_override(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[99], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_override(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[99], ::std::forward<Token>(token));
+    return async_get_override(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::shared_ptr<newStub> get_module();
+  ::std::shared_ptr<newStub> get_module(const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_module(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<newStub>(rr_members_class[100], options, ::std::forward<Token>(token));
+  }
   template <class Token>
   auto async_get_module(Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[100], ::std::forward<Token>(token));
+    return async_get_module(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
@@ -4129,6 +6595,80 @@ class classSkeleton : public virtual ::rr::Skeleton {
   void rr_dispatch(::std::size_t member, ::rr::Request& request) override;
   ::std::shared_ptr<::rr::Skeleton> rr_child(::std::size_t member,
                                              const ::rr::ObjectIndex& index) override;
+};
+
+/// A class whose functions and objrefs fail until they are overridden.
+class classDefault : public classSkeleton {
+ public:
+  ::std::shared_ptr<newSkeleton> get_goto() override { ::rr::throw_no_object("goto"); }
+  ::std::shared_ptr<newSkeleton> get_if() override { ::rr::throw_no_object("if"); }
+  ::std::shared_ptr<newSkeleton> get_inline() override { ::rr::throw_no_object("inline"); }
+  ::std::shared_ptr<newSkeleton> get_int() override { ::rr::throw_no_object("int"); }
+  ::std::shared_ptr<newSkeleton> get_long() override { ::rr::throw_no_object("long"); }
+  ::std::shared_ptr<newSkeleton> get_mutable() override { ::rr::throw_no_object("mutable"); }
+  ::std::shared_ptr<newSkeleton> get_namespace() override { ::rr::throw_no_object("namespace"); }
+  ::std::shared_ptr<newSkeleton> get_new() override { ::rr::throw_no_object("new"); }
+  ::std::shared_ptr<newSkeleton> get_noexcept() override { ::rr::throw_no_object("noexcept"); }
+  ::std::shared_ptr<newSkeleton> get_not() override { ::rr::throw_no_object("not"); }
+  ::std::shared_ptr<newSkeleton> get_not_eq() override { ::rr::throw_no_object("not_eq"); }
+  ::std::shared_ptr<newSkeleton> get_nullptr() override { ::rr::throw_no_object("nullptr"); }
+  ::std::shared_ptr<newSkeleton> get_operator() override { ::rr::throw_no_object("operator"); }
+  ::std::shared_ptr<newSkeleton> get_or() override { ::rr::throw_no_object("or"); }
+  ::std::shared_ptr<newSkeleton> get_or_eq() override { ::rr::throw_no_object("or_eq"); }
+  ::std::shared_ptr<newSkeleton> get_private() override { ::rr::throw_no_object("private"); }
+  ::std::shared_ptr<newSkeleton> get_protected() override { ::rr::throw_no_object("protected"); }
+  ::std::shared_ptr<newSkeleton> get_public() override { ::rr::throw_no_object("public"); }
+  ::std::shared_ptr<newSkeleton> get_register() override { ::rr::throw_no_object("register"); }
+  ::std::shared_ptr<newSkeleton> get_reinterpret_cast() override {
+    ::rr::throw_no_object("reinterpret_cast");
+  }
+  ::std::shared_ptr<newSkeleton> get_requires() override { ::rr::throw_no_object("requires"); }
+  ::std::shared_ptr<newSkeleton> get_return() override { ::rr::throw_no_object("return"); }
+  ::std::shared_ptr<newSkeleton> get_short() override { ::rr::throw_no_object("short"); }
+  ::std::shared_ptr<newSkeleton> get_signed() override { ::rr::throw_no_object("signed"); }
+  ::std::shared_ptr<newSkeleton> get_sizeof() override { ::rr::throw_no_object("sizeof"); }
+  ::std::shared_ptr<newSkeleton> get_static() override { ::rr::throw_no_object("static"); }
+  ::std::shared_ptr<newSkeleton> get_static_assert() override {
+    ::rr::throw_no_object("static_assert");
+  }
+  ::std::shared_ptr<newSkeleton> get_static_cast() override {
+    ::rr::throw_no_object("static_cast");
+  }
+  ::std::shared_ptr<newSkeleton> get_switch() override { ::rr::throw_no_object("switch"); }
+  ::std::shared_ptr<newSkeleton> get_template() override { ::rr::throw_no_object("template"); }
+  ::std::shared_ptr<newSkeleton> get_thread_local() override {
+    ::rr::throw_no_object("thread_local");
+  }
+  ::std::shared_ptr<newSkeleton> get_throw() override { ::rr::throw_no_object("throw"); }
+  ::std::shared_ptr<newSkeleton> get_true() override { ::rr::throw_no_object("true"); }
+  ::std::shared_ptr<newSkeleton> get_try() override { ::rr::throw_no_object("try"); }
+  ::std::shared_ptr<newSkeleton> get_typedef() override { ::rr::throw_no_object("typedef"); }
+  ::std::shared_ptr<newSkeleton> get_typeid() override { ::rr::throw_no_object("typeid"); }
+  ::std::shared_ptr<newSkeleton> get_typename() override { ::rr::throw_no_object("typename"); }
+  ::std::shared_ptr<newSkeleton> get_union() override { ::rr::throw_no_object("union"); }
+  ::std::shared_ptr<newSkeleton> get_unsigned() override { ::rr::throw_no_object("unsigned"); }
+  ::std::shared_ptr<newSkeleton> get_virtual() override { ::rr::throw_no_object("virtual"); }
+  ::std::shared_ptr<newSkeleton> get_volatile() override { ::rr::throw_no_object("volatile"); }
+  ::std::shared_ptr<newSkeleton> get_wchar_t() override { ::rr::throw_no_object("wchar_t"); }
+  ::std::shared_ptr<newSkeleton> get_while() override { ::rr::throw_no_object("while"); }
+  ::std::shared_ptr<newSkeleton> get_xor() override { ::rr::throw_no_object("xor"); }
+  ::std::shared_ptr<newSkeleton> get_xor_eq() override { ::rr::throw_no_object("xor_eq"); }
+  ::std::shared_ptr<newSkeleton> get_assert() override { ::rr::throw_no_object("assert"); }
+  ::std::shared_ptr<newSkeleton> get_errno() override { ::rr::throw_no_object("errno"); }
+  ::std::shared_ptr<newSkeleton> get_linux() override { ::rr::throw_no_object("linux"); }
+  ::std::shared_ptr<newSkeleton> get_unix() override { ::rr::throw_no_object("unix"); }
+  ::std::shared_ptr<newSkeleton> get_major() override { ::rr::throw_no_object("major"); }
+  ::std::shared_ptr<newSkeleton> get_minor() override { ::rr::throw_no_object("minor"); }
+  ::std::shared_ptr<newSkeleton> get_EOF() override { ::rr::throw_no_object("EOF"); }
+  ::std::shared_ptr<newSkeleton> get_NULL() override { ::rr::throw_no_object("NULL"); }
+  ::std::shared_ptr<newSkeleton> get_INFINITY() override { ::rr::throw_no_object("INFINITY"); }
+  ::std::shared_ptr<newSkeleton> get_NAN() override { ::rr::throw_no_object("NAN"); }
+  ::std::shared_ptr<newSkeleton> get_RAND_MAX() override { ::rr::throw_no_object("RAND_MAX"); }
+  ::std::shared_ptr<newSkeleton> get_BUFSIZ() override { ::rr::throw_no_object("BUFSIZ"); }
+  ::std::shared_ptr<newSkeleton> get_SIGINT() override { ::rr::throw_no_object("SIGINT"); }
+  ::std::shared_ptr<newSkeleton> get_final() override { ::rr::throw_no_object("final"); }
+  ::std::shared_ptr<newSkeleton> get_override() override { ::rr::throw_no_object("override"); }
+  ::std::shared_ptr<newSkeleton> get_module() override { ::rr::throw_no_object("module"); }
 };
 
 extern const ::rr::Definition rr_definition;

@@ -61,8 +61,9 @@ constinit const ::rr::ObjectType rr_object_Node{
 
 const ::rr::ObjectType& NodeStub::rr_object_type() const { return rr_object_Node; }
 
-::std::shared_ptr<NodeStub> NodeStub::get_array(::std::int32_t index) {
-  return rr_find_as<NodeStub>(rr_members_Node[4], index);
+::std::shared_ptr<NodeStub> NodeStub::get_array(::std::int32_t index,
+                                                const ::rr::CallOptions& options) {
+  return rr_find_as<NodeStub>(rr_members_Node[4], options, index);
 }
 
 const ::rr::ObjectType& NodeSkeleton::rr_object_type() const { return rr_object_Node; }

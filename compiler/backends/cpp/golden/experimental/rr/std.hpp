@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-static_assert(::rr::stub_api == 2, "made for stub API 2; run robdef again");
+static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace experimental::rr::std {
 
@@ -46,50 +46,84 @@ extern const ::rr::ObjectType rr_object_Node;
 /// A Node on another node.
 class NodeStub : public virtual ::rr::Stub {
  public:
-  ::std::optional<optional> get_Error() {
-    return rr_get<::std::optional<optional>>(rr_members_Node[0]);
+  ::std::optional<optional> get_Error(const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::optional<optional>>(rr_members_Node[0], options);
+  }
+  template <class Token>
+  auto async_get_Error(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::optional<optional>>(rr_members_Node[0], options,
+                                                   ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_Error(Token&& token) {
-    return rr_async_get<::std::optional<optional>>(rr_members_Node[0],
-                                                   ::std::forward<Token>(token));
+    return async_get_Error(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_Error(const ::std::optional<optional>& value) { rr_set(rr_members_Node[0], &value); }
+  void set_Error(const ::std::optional<optional>& value, const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Node[0], options, &value);
+  }
+  template <class Token>
+  auto async_set_Error(const ::std::optional<optional>& value, const ::rr::CallOptions& options,
+                       Token&& token) {
+    return rr_async_set<::std::optional<optional>>(rr_members_Node[0], options,
+                                                   ::std::forward<Token>(token), value);
+  }
   template <class Token>
   auto async_set_Error(const ::std::optional<optional>& value, Token&& token) {
-    return rr_async_set<::std::optional<optional>>(rr_members_Node[0], ::std::forward<Token>(token),
-                                                   value);
+    return async_set_Error(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::optional<::std::vector<::std::string>> get_shared_ptr() {
-    return rr_get<::std::optional<::std::vector<::std::string>>>(rr_members_Node[1]);
+  ::std::optional<::std::vector<::std::string>> get_shared_ptr(
+      const ::rr::CallOptions& options = {}) {
+    return rr_get<::std::optional<::std::vector<::std::string>>>(rr_members_Node[1], options);
+  }
+  template <class Token>
+  auto async_get_shared_ptr(const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_get<::std::optional<::std::vector<::std::string>>>(
+        rr_members_Node[1], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_shared_ptr(Token&& token) {
-    return rr_async_get<::std::optional<::std::vector<::std::string>>>(
-        rr_members_Node[1], ::std::forward<Token>(token));
+    return async_get_shared_ptr(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  void set_shared_ptr(const ::std::optional<::std::vector<::std::string>>& value) {
-    rr_set(rr_members_Node[1], &value);
+  void set_shared_ptr(const ::std::optional<::std::vector<::std::string>>& value,
+                      const ::rr::CallOptions& options = {}) {
+    rr_set(rr_members_Node[1], options, &value);
+  }
+  template <class Token>
+  auto async_set_shared_ptr(const ::std::optional<::std::vector<::std::string>>& value,
+                            const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_set<::std::optional<::std::vector<::std::string>>>(
+        rr_members_Node[1], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_shared_ptr(const ::std::optional<::std::vector<::std::string>>& value,
                             Token&& token) {
-    return rr_async_set<::std::optional<::std::vector<::std::string>>>(
-        rr_members_Node[1], ::std::forward<Token>(token), value);
+    return async_set_shared_ptr(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::std::int32_t move(const ::std::optional<optional>& std, ::std::int32_t size_t) {
-    return rr_call<::std::int32_t>(rr_members_Node[2], std, size_t);
+  ::std::int32_t move(const ::std::optional<optional>& std, ::std::int32_t size_t,
+                      const ::rr::CallOptions& options = {}) {
+    return rr_call<::std::int32_t>(rr_members_Node[2], options, std, size_t);
+  }
+  template <class Token>
+  auto async_move(const ::std::optional<optional>& std, ::std::int32_t size_t,
+                  const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_call<::std::int32_t>(rr_members_Node[2], options, ::std::forward<Token>(token),
+                                         std, size_t);
   }
   template <class Token>
   auto async_move(const ::std::optional<optional>& std, ::std::int32_t size_t, Token&& token) {
-    return rr_async_call<::std::int32_t>(rr_members_Node[2], ::std::forward<Token>(token), std,
-                                         size_t);
+    return async_move(std, size_t, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::Event<::std::int32_t> swap() { return {*this, rr_members_Node[3]}; }
-  ::std::shared_ptr<NodeStub> get_array(::std::int32_t index);
+  ::std::shared_ptr<NodeStub> get_array(::std::int32_t index,
+                                        const ::rr::CallOptions& options = {});
+  template <class Token>
+  auto async_get_array(::std::int32_t index, const ::rr::CallOptions& options, Token&& token) {
+    return rr_async_find<NodeStub>(rr_members_Node[4], options, ::std::forward<Token>(token),
+                                   index);
+  }
   template <class Token>
   auto async_get_array(::std::int32_t index, Token&& token) {
-    return rr_async_find<NodeStub>(rr_members_Node[4], ::std::forward<Token>(token), index);
+    return async_get_array(index, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "compiler/backends/backend.hpp"
+
+namespace robdef::typescript {
+
+/// A memory in a list or map means nothing on the wire.
+inline constexpr Abilities runtime_abilities{.properties = true,
+                                             .functions = true,
+                                             .generators = true,
+                                             .events = true,
+                                             .objrefs = true,
+                                             .pipes = true,
+                                             .callbacks = true,
+                                             .wires = true,
+                                             .memories = true};
+
+/// TypeScript on @robdef/runtime (README.md in this folder says what is generated).
+class TypeScriptBackend final : public Backend {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "typescript"; }
+  [[nodiscard]] std::string_view summary() const override;
+  [[nodiscard]] const Abilities& abilities() const override { return runtime_abilities; }
+  [[nodiscard]] FileSet generate(const model::Model& model, const GenerateOptions& options,
+                                 Report& report) const override;
+  [[nodiscard]] std::string view(const model::Model& model, Report& report) const override;
+};
+
+}  // namespace robdef::typescript

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/driver/job.hpp"
+
+#include <cstddef>
+#include <string_view>
+
+namespace robdef {
+namespace {
+
+ast::SearchPath search_path(const Options& options, const project::Project* project) {
+  ast::SearchPath path = options.search_path;
+  if (project == nullptr) return path;
+  path.folders.insert(
+      path.folders.begin() + static_cast<std::ptrdiff_t>(options.own_import_folders),
+      project->import_folders.begin(), project->import_folders.end());
+  return path;
+}
+
+Target make_target(std::string_view name, const Options& options, const project::Project* project) {
+  Target target;
+  target.backend = find_backend(name);
+  const project::Language* const language = project == nullptr ? nullptr : project->find(name);
+  if (language != nullptr) {
+    if (!language->output_folder.empty()) target.folder = language->output_folder;
+    target.template_folder = language->template_folder;
+    target.renames = language->renames;
+  }
+  if (!options.output_folder.empty()) target.folder = options.output_folder;
+  if (!options.template_folder.empty()) target.template_folder = options.template_folder;
+  // Later ones count.
+  target.renames.insert(target.renames.end(), options.renames.begin(), options.renames.end());
+  return target;
+}
+
+std::vector<Target> make_targets(const Options& options, const project::Project* project) {
+  std::vector<Target> targets;
+  for (const std::string& language : options.languages) {
+    targets.push_back(make_target(language, options, project));
+  }
+  if (!targets.empty() || options.command != Command::generate || project == nullptr) {
+    return targets;
+  }
+  for (const project::Language& language : project->languages) {
+    if (language.output_folder.empty()) continue;
+    targets.push_back(make_target(language.name, options, project));
+  }
+  return targets;
+}
+
+/// What belongs to one language, without one.
+std::string_view alone(const Options& options) {
+  if (!options.output_folder.empty()) return "`--output`";
+  if (!options.template_folder.empty()) return "`--templates`";
+  return options.renames.empty() ? "" : "`--rename`";
+}
+
+std::string complaint_of(const Job& job, const Options& options, const project::Project* project) {
+  const std::string no_language =
+      "; " + (project == nullptr ? "" : project->path) + " says `output` of no language";
+  if (job.inputs.empty()) {
+    return project == nullptr ? "no file given"
+                              : "no file given; " + project->path + " has no inputs";
+  }
+  const bool needs_target =
+      options.command == Command::generate || options.command == Command::view;
+  if (!needs_target) return "";
+  if (job.targets.empty()) {
+    const bool has_project = project != nullptr && options.command == Command::generate;
+    return "`--lang` is missing" + (has_project ? no_language : "");
+  }
+  const std::string_view option = alone(options);
+  if (options.languages.empty() && !option.empty()) return std::string(option) + " needs `--lang`";
+  return "";
+}
+
+}  // namespace
+
+Job make_job(const Options& options, const project::Project* project, std::string& complaint) {
+  Job job;
+  const bool has_inputs = !options.inputs.empty();
+  job.inputs = has_inputs || project == nullptr ? options.inputs : project->inputs;
+  job.search_path = search_path(options, project);
+  job.targets = make_targets(options, project);
+  job.is_strict = options.is_strict ||
+                  (project != nullptr && project->is_strict && options.command == Command::check);
+  job.is_whole_project = project != nullptr && !has_inputs && options.languages.empty();
+  complaint = complaint_of(job, options, project);
+  return job;
+}
+
+}  // namespace robdef
