@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "rr/service.hpp"
+#include "runtime/cpp/fuzz/fuzzed_streams.hpp"
 
 namespace rr::fuzz {
 namespace {
@@ -191,6 +192,9 @@ class Root final : public robdef::RootDefault {
   }
   std::shared_ptr<robdef::EventBoardSkeleton> get_events() override {
     return std::make_shared<EventBoard>(life_);
+  }
+  std::shared_ptr<robdef::StreamBoardSkeleton> get_streams() override {
+    return make_fuzzed_streams(life_);
   }
   std::shared_ptr<robdef::ChildSkeleton> get_child() override {
     return std::make_shared<Child>(life_);

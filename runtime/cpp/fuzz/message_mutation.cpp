@@ -43,11 +43,12 @@ constexpr std::array element_types = {ElementType::void_,
                                       ElementType::namedarray_multidimarray,
                                       ElementType::multidimarray};
 
-constexpr std::array<std::string_view, 20> paths = {"conformance",
+constexpr std::array<std::string_view, 21> paths = {"conformance",
                                                     "conformance.props",
                                                     "conformance.funcs",
                                                     "conformance.errs",
                                                     "conformance.events",
+                                                    "conformance.streams",
                                                     "conformance.child",
                                                     "conformance.child.next_child",
                                                     "conformance.child.next_child.next_child",
@@ -168,8 +169,9 @@ MessageTree MessageMutation::random_request() {
     type = member.kind == MemberKind::function ? EntryType::function_call_req
            : random_->one_in(2)                ? EntryType::property_get_req
                                                : EntryType::property_set_req;
-    constexpr std::array<std::string_view, 6> objects = {
-        "Root", "PropertyBoard", "FunctionBoard", "ErrorBoard", "EventBoard", "Child"};
+    constexpr std::array<std::string_view, 7> objects = {
+        "Root",       "PropertyBoard", "FunctionBoard", "ErrorBoard",
+        "EventBoard", "StreamBoard",   "Child"};
     for (std::size_t i = 0; i < objects.size(); ++i) {
       if (object.name.ends_with(objects[i])) path = paths[i];
     }

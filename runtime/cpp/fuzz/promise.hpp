@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <sched.h>
+
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -15,6 +18,18 @@ inline void promise(bool kept, const char* what) {
   if (kept) return;
   std::fprintf(stderr, "broken: %s\n", what);
   std::abort();
+}
+
+/// For what another thread is about to do; it is nearly always done by then.
+template <class Condition>
+void await(const char* what, const Condition& condition) {
+  constexpr std::chrono::seconds limit{30};
+  if (condition()) return;
+  const auto end = std::chrono::steady_clock::now() + limit;
+  while (!condition()) {
+    promise(std::chrono::steady_clock::now() < end, what);
+    sched_yield();
+  }
 }
 
 /// The input without its first byte, which is taken from it; 0 when there is none.

@@ -4,21 +4,18 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sanitizer/lsan_interface.h>
-#include <sched.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <string_view>
 #include <utility>
 
 #include "rr/reader.hpp"
 #include "runtime/cpp/fuzz/fuzzed_service.hpp"
+#include "runtime/cpp/fuzz/promise.hpp"
 
 namespace rr::fuzz {
 namespace {
@@ -31,24 +28,6 @@ constexpr std::size_t surely_received = 64 * 1024;
 constexpr std::uint32_t marker_request_id = 0xB0B0B0B0;
 constexpr std::uint64_t runs_per_clean_client = 64;
 constexpr std::uint64_t runs_per_search_for_leaks = 2048;
-
-void promise(bool kept, const char* what) {
-  if (kept) return;
-  std::fprintf(stderr, "broken: %s\n", what);
-  std::abort();
-}
-
-// For what another thread is about to do; it is nearly always done by then.
-template <class Condition>
-void await(const char* what, const Condition& condition) {
-  constexpr std::chrono::seconds limit{8};
-  if (condition()) return;
-  const auto end = std::chrono::steady_clock::now() + limit;
-  while (!condition()) {
-    promise(std::chrono::steady_clock::now() < end, what);
-    sched_yield();
-  }
-}
 
 void send_all(int descriptor, std::span<const std::byte> bytes) {
   // A node that has closed the connection takes nothing any more.
@@ -177,7 +156,7 @@ void ServiceExchange::send_rest(std::uint32_t service_endpoint) {
   if (!std::exchange(must_send_rest_, false)) return;
   name_service_endpoint(rest_, service_endpoint);
   send_all(client_, rest_);
-  ::shutdown(client_, SHUT_WR);
+  if (!waits_for_answer_) ::shutdown(client_, SHUT_WR);
 }
 
 void ServiceExchange::converse(std::span<const std::byte> input, const Taker& take) {
@@ -244,13 +223,26 @@ void ServiceExchange::serve_clean_client() {
   add(special_request(MessageVersion::v4, EntryType::connect_client, service_name));
   add(call);
   double sum = 0;
+  std::string answers;       // said when this fails
+  waits_for_answer_ = true;  // nothing is done for who has gone
   converse(input, [&](const MessageTree& message) {
     const EntryTree& entry = message.entries.front();
-    if (entry.type != EntryType::function_call_res || entry.elements.empty()) return;
+    answers += " type " + std::to_string(static_cast<int>(entry.type)) + " error " +
+               std::to_string(entry.error);
+    for (const ElementTree& element : entry.elements) {
+      if (element.name != "errorstring") continue;
+      answers.append(": ").append(reinterpret_cast<const char*>(element.payload.data()),
+                                  element.payload.size());
+    }
+    answers += ";";
+    if (entry.type != EntryType::function_call_res) return;
+    ::shutdown(client_, SHUT_WR);
+    if (entry.elements.empty()) return;
     const Bytes& result = entry.elements.front().payload;
     if (result.size() == sizeof sum) std::memcpy(&sum, result.data(), sizeof sum);
   });
-  promise(sum == number + number, "a clean client is served");
+  waits_for_answer_ = false;
+  promise(sum == number + number, ("a clean client is served; answers:" + answers).c_str());
 }
 
 }  // namespace rr::fuzz

@@ -47,7 +47,8 @@ class ServiceExchange {
 
   std::mutex mutex_;
   bool must_send_rest_ = false;
-  Bytes rest_;  // waits for the number of the service's endpoint
+  bool waits_for_answer_ = false;  // before the client has no more to send
+  Bytes rest_;                     // waits for the number of the service's endpoint
 };
 
 }  // namespace rr::fuzz

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
-#include <vector>
 
 #include "runtime/cpp/fuzz/conversation_mutation.hpp"
+#include "runtime/cpp/fuzz/fuzzer_options.hpp"
 #include "runtime/cpp/fuzz/service_exchange.hpp"
 
 namespace {
@@ -23,15 +23,8 @@ std::size_t put(const rr::fuzz::Bytes& bytes, std::uint8_t* data, std::size_t ma
 
 }  // namespace
 
-// Without its own search for leaks after each input: a node keeps things beyond the end of a
-// connection, which would make it search every time. The exchange does it now and then.
 extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
-  static char no_leaks[] = "-detect_leaks=0";
-  static std::vector<char*> all(*arguments, *arguments + *count);
-  all.insert(all.begin() + 1, no_leaks);
-  *count = static_cast<int>(all.size());
-  all.push_back(nullptr);
-  *arguments = all.data();
+  rr::fuzz::add_fuzzer_options(count, arguments, {rr::fuzz::no_leaks});
   return 0;
 }
 

@@ -64,13 +64,13 @@ class Phase {
   int running_ = 0;
 };
 
-void run_client(Ground& ground, Node& node, Phase& phase, std::uint32_t client,
+void run_client(ChannelContext& context, Node& node, Phase& phase, std::uint32_t client,
                 std::uint32_t seed) {
-  const Watchdog::Entry entry(ground.watchdog, "client " + std::to_string(client));
+  const Watchdog::Entry entry(context.watchdog, "client " + std::to_string(client));
   Random random(seed * 1009 + client + 1);
   for (std::uint32_t serial = 0; phase.enter(); ++serial) {
     {
-      Session session(ground, entry.watched(), client, serial,
+      Session session(context, entry.watched(), client, serial,
                       static_cast<std::uint32_t>(random()));
       session.use(node, [&phase] { return phase.is_over(); });
     }
@@ -78,10 +78,10 @@ void run_client(Ground& ground, Node& node, Phase& phase, std::uint32_t client,
   }
 }
 
-std::string done_text(const Ground& ground) {
-  return "done sessions " + std::to_string(ground.sessions) + " calls " +
-         std::to_string(ground.calls) + " packets " + std::to_string(ground.packets) + " values " +
-         std::to_string(ground.values) + " events " + std::to_string(ground.events);
+std::string done_text(const ChannelContext& context) {
+  return "done sessions " + std::to_string(context.sessions) + " calls " +
+         std::to_string(context.calls) + " packets " + std::to_string(context.packets) +
+         " values " + std::to_string(context.values) + " events " + std::to_string(context.events);
 }
 
 }  // namespace
@@ -90,8 +90,8 @@ int use(const Options& options) {
   Lines lines;
   Watchdog watchdog(lines, hang_limit());
   SocketCutter cutter;
-  Ground ground{lines, watchdog, cutter,
-                "rr+tcp://127.0.0.1:" + std::to_string(options.port) + "/?service=bench"};
+  ChannelContext context{lines, watchdog, cutter,
+                         "rr+tcp://127.0.0.1:" + std::to_string(options.port) + "/?service=bench"};
   Node node({.request_timeout = hang_limit(),
              .connect_timeout = hang_limit(),
              .receive_timeout = hang_limit()});
@@ -99,13 +99,13 @@ int use(const Options& options) {
   std::vector<std::thread> threads;
   for (std::uint32_t i = 0; i < options.count; ++i) {
     threads.emplace_back(
-        [&, i] { run_client(ground, node, phase, options.first + i, options.seed); });
+        [&, i] { run_client(context, node, phase, options.first + i, options.seed); });
   }
   for (std::string command; std::getline(std::cin, command) && command != "end";) {
     if (command == "go") phase.go();
     if (command != "pause") continue;
     phase.pause();
-    lines.write(done_text(ground));
+    lines.write(done_text(context));
     lines.write("census left 0 " + testing::ProcessState::now().text());
   }
   phase.end();

@@ -161,10 +161,7 @@ TEST_F(DeadService, ThatIsStoppedLosesItsClientsInTheReceiveTimeout) {
 TEST_F(DeadService, ThatGoesOnAnswersAgain) {
   Mourner& mourner = begin();
   service_.stop();
-  EXPECT_EQ(error_of([&] {
-              const CallScope scope(200ms);
-              mourner.client()->set_kept(5);
-            }).code(),
+  EXPECT_EQ(error_of([&] { mourner.client()->set_kept(5, within(200ms)); }).code(),
             ErrorCode::request_timeout);
   service_.signal(SIGCONT);
   EXPECT_EQ(mourner.client()->get_kept(), 5U);

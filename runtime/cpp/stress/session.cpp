@@ -11,8 +11,8 @@
 
 namespace rr::stress {
 
-SessionState::SessionState(Ground& its_ground, const std::string& name)
-    : ground(its_ground),
+SessionState::SessionState(ChannelContext& its_ground, const std::string& name)
+    : context(its_ground),
       ticks(its_ground.lines, name + " events"),
       broadcast(its_ground.lines, name + " broadcast"),
       echo(its_ground.lines, name + " echo"),
@@ -20,15 +20,15 @@ SessionState::SessionState(Ground& its_ground, const std::string& name)
       level_polled(its_ground.lines, name + " level"),
       mirror(its_ground.lines, name + " mirror") {}
 
-Session::Session(Ground& ground, Watchdog::Watched& watched, std::uint32_t client,
+Session::Session(ChannelContext& context, Watchdog::Watched& watched, std::uint32_t client,
                  std::uint32_t serial, std::uint32_t seed)
-    : ground_(ground),
+    : context_(context),
       watched_(watched),
       client_number_(client),
       place_(client * places_of_a_client + serial % places_of_a_client),
       name_("client " + std::to_string(client) + " session " + std::to_string(serial)),
       random_(seed),
-      state_(std::make_shared<SessionState>(ground, name_)) {}
+      state_(std::make_shared<SessionState>(context, name_)) {}
 
 Session::~Session() {
   is_companion_ending_ = true;
@@ -38,18 +38,18 @@ Session::~Session() {
 std::uint64_t Session::draw(std::uint64_t below) { return random_() % below; }
 
 void Session::check(bool holds, const char* what) {
-  if (!holds) ground_.lines.fault(name_ + ": " + what + " is wrong");
+  if (!holds) context_.lines.fault(name_ + ": " + what + " is wrong");
 }
 
 void Session::attempt(const char* what, const std::function<void()>& action, Codes allowed) {
   const Doing doing(watched_, what);
-  ++ground_.calls;
+  ++context_.calls;
   try {
     action();
   } catch (const Error& error) {
     if (std::find(allowed.begin(), allowed.end(), error.code()) != allowed.end()) return;
     if (state_->excuses(error)) return;
-    ground_.lines.fault(name_ + ": " + what + ": " + error.what());
+    context_.lines.fault(name_ + ": " + what + ": " + error.what());
   }
 }
 
@@ -58,7 +58,7 @@ void Session::wait_for(const char* what, const std::function<bool()>& holds) {
   const auto deadline = std::chrono::steady_clock::now() + patience();
   while (!holds()) {
     if (std::chrono::steady_clock::now() > deadline) {
-      ground_.lines.fault(name_ + ": waited in vain for " + what);
+      context_.lines.fault(name_ + ": waited in vain for " + what);
       return;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -71,21 +71,22 @@ bool Session::connect(Node& node) {
   const auto connecting = [&] {
     attempt("connect", [&] {
       client_ = node.connect<BenchStub>(
-          ground_.url, {.username = user,
-                        .credentials = {{"password", Everybody::password_of(user)}},
-                        .on_closed = [state = state_](const Error& why) {
-                          state->has_ended = true;
-                          ++state->ends_told;
-                          if (state->may_end) return;
-                          state->ground.lines.fault(std::string("a session ended: ") + why.what());
-                        }});
+          context_.url,
+          {.username = user,
+           .credentials = {{"password", Everybody::password_of(user)}},
+           .on_closed = [state = state_](const Error& why) {
+             state->has_ended = true;
+             ++state->ends_told;
+             if (state->may_end) return;
+             state->context.lines.fault(std::string("a session ended: ") + why.what());
+           }});
       is_connected = true;
     });
   };
   if (draw(2) == 0) {
-    socket_ = ground_.cutter.connect_and_find(connecting);
+    socket_ = context_.cutter.connect_and_find(connecting);
   } else {
-    ground_.cutter.connect(connecting);
+    context_.cutter.connect(connecting);
   }
   if (is_connected) bench_ = client_.stub();
   return is_connected;
@@ -100,7 +101,7 @@ void Session::use(Node& shared, const std::function<bool()>& is_over) {
                             .receive_timeout = hang_limit()});
   }
   if (!connect(own ? *own : shared)) return;
-  ++ground_.sessions;
+  ++context_.sessions;
   connect_streams();
   if (draw(4) == 0) companion_ = std::thread([this] { run_companion(); });
   const std::uint64_t actions = draw(8) == 0 ? 1000 : draw(150);
@@ -137,7 +138,7 @@ void Session::finish(End end) {
     }
     case End::cut:
     case End::reset:
-      ground_.cutter.cut(socket_, end == End::reset);
+      context_.cutter.cut(socket_, end == End::reset);
       break;
     case End::sent_away:
       attempt("send_away", [&] { bench_->send_away(); });
@@ -164,11 +165,11 @@ void Session::expect_the_end(ErrorCode why) {
   const Doing doing(watched_, "a call after the end");
   try {
     bench_->mix(1, 2);
-    ground_.lines.fault(name_ + ": a call is answered after the end");
+    context_.lines.fault(name_ + ": a call is answered after the end");
   } catch (const Error& error) {
     // What this side ends, the other may have lost a moment before.
     if (error.code() != why && error.code() != ErrorCode::connection_error) {
-      ground_.lines.fault(name_ + ": a call after the end: " + error.what());
+      context_.lines.fault(name_ + ": a call after the end: " + error.what());
     }
   }
   if (has_broadcast_) wait_for("a pipe's end", [&] { return !broadcast_.is_open(); });

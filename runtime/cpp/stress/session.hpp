@@ -28,7 +28,7 @@ using test::stress::PartStub;
 using test::stress::Stamp;
 
 /// What the sessions of a process have in common; outlives them.
-struct Ground {
+struct ChannelContext {
   Lines& lines;
   Watchdog& watchdog;
   SocketCutter& cutter;
@@ -42,7 +42,7 @@ struct Ground {
 
 /// What a session shares with functions that may run a little longer than it.
 struct SessionState {
-  SessionState(Ground& its_ground, const std::string& name);
+  SessionState(ChannelContext& its_ground, const std::string& name);
   /// Whether a call may fail so: one that was open at the end with the first, a later one with the
   /// second when this side has closed.
   [[nodiscard]] bool excuses(const Error& error) const {
@@ -50,7 +50,7 @@ struct SessionState {
                        error.code() == ErrorCode::invalid_operation);
   }
 
-  Ground& ground;
+  ChannelContext& context;
   Consecutive ticks;
   Consecutive broadcast;
   Consecutive echo;
@@ -67,8 +67,8 @@ struct SessionState {
 /// one at times.
 class Session {
  public:
-  Session(Ground& ground, Watchdog::Watched& watched, std::uint32_t client, std::uint32_t serial,
-          std::uint32_t seed);
+  Session(ChannelContext& context, Watchdog::Watched& watched, std::uint32_t client,
+          std::uint32_t serial, std::uint32_t seed);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -113,7 +113,7 @@ class Session {
   void release_part();
   void run_companion();
 
-  Ground& ground_;
+  ChannelContext& context_;
   Watchdog::Watched& watched_;
   const std::uint32_t client_number_;
   const std::uint32_t place_;  // in the memories

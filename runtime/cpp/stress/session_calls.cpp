@@ -103,7 +103,7 @@ void Session::call_aside() {
     const std::uint64_t value = unique(client_number_, random_);
     const std::shared_ptr<SessionState> state = state_;
     ++state->open_calls;
-    ++ground_.calls;
+    ++context_.calls;
     const auto done = [state, value, name = name_](const std::exception_ptr& error,
                                                    std::uint64_t result, std::uint64_t key) {
       std::string fault;
@@ -113,7 +113,7 @@ void Session::call_aside() {
       } catch (const Error& caught) {
         if (!state->excuses(caught)) fault = caught.what();
       }
-      if (!fault.empty()) state->ground.lines.fault(name + ": an asynchronous call: " + fault);
+      if (!fault.empty()) state->context.lines.fault(name + ": an asynchronous call: " + fault);
       --state->open_calls;
     };
     const Doing doing(watched_, "starting an asynchronous call");
@@ -222,7 +222,8 @@ void Session::feed_generator() {
 // Parts that nobody locks, but that are released at times, with what is connected to them.
 void Session::use_part() {
   const auto index = static_cast<std::int32_t>(part_count - 1 - draw(released_parts));
-  const Codes may_be_gone = {ErrorCode::invalid_operation, ErrorCode::operation_aborted};
+  const Codes may_be_gone = {ErrorCode::invalid_operation, ErrorCode::operation_aborted,
+                             ErrorCode::object_not_found};
   attempt(
       "a part",
       [&] {
@@ -275,19 +276,19 @@ void Session::enter_part() {
 
 // Calls from a second thread, until the session ends under it.
 void Session::run_companion() {
-  const Watchdog::Entry entry(ground_.watchdog, name_ + ", second thread");
+  const Watchdog::Entry entry(context_.watchdog, name_ + ", second thread");
   Random random(client_number_ + 1);
   while (!is_companion_ending_ && !state_->has_ended) {
     const Doing doing(entry.watched(), "mix");
-    ++ground_.calls;
+    ++context_.calls;
     try {
       const std::uint64_t value = random();
       if (bench_->mix(value, 7) != mixed(value, 7)) {
-        ground_.lines.fault(name_ + ": a call of the second thread is wrong");
+        context_.lines.fault(name_ + ": a call of the second thread is wrong");
       }
     } catch (const Error& error) {
       if (!state_->excuses(error)) {
-        ground_.lines.fault(name_ + ": a call of the second thread: " + error.what());
+        context_.lines.fault(name_ + ": a call of the second thread: " + error.what());
       }
     }
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 5000));

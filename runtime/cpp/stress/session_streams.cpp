@@ -16,7 +16,7 @@ void Session::connect_streams() {
     has_ticks_ = true;
     subscriptions_.push_back(bench_->ticked().connect([state](std::uint64_t number) {
       state->ticks.take(number);
-      ++state->ground.events;
+      ++state->context.events;
     }));
   }
   if (draw(2) == 0) {
@@ -29,7 +29,7 @@ void Session::connect_streams() {
     if (draw(2) == 0) broadcast_.ask_for_acknowledgements();
     subscriptions_.push_back(broadcast_.on_packet([state](const std::optional<Stamp>& packet) {
       state->broadcast.take(packet->number);
-      ++state->ground.packets;
+      ++state->context.packets;
     }));
   }
   if (draw(2) == 0) {
@@ -43,8 +43,8 @@ void Session::connect_streams() {
     subscriptions_.push_back(
         echo_.on_packet([state, client = client_number_](const std::optional<Stamp>& packet) {
           state->echo.take(packet->number);
-          if (packet->writer != client) state->ground.lines.fault("a packet of another client");
-          ++state->ground.packets;
+          if (packet->writer != client) state->context.lines.fault("a packet of another client");
+          ++state->context.packets;
         }));
   }
   if (draw(4) == 0) {
@@ -72,7 +72,7 @@ void Session::connect_wires() {
     subscriptions_.push_back(
         level_.on_in([state](const std::optional<Stamp>& value, const TimeSpec&) {
           state->level.take(value->number, "function");
-          ++state->ground.values;
+          ++state->context.values;
         }));
   }
   if (draw(2) == 0) {
@@ -85,7 +85,7 @@ void Session::connect_wires() {
     subscriptions_.push_back(
         mirror_.on_in([state](const std::optional<Stamp>& value, const TimeSpec&) {
           state->mirror.take(value->number, "function");
-          ++state->ground.values;
+          ++state->context.values;
         }));
   }
   if (draw(2) == 0) {

@@ -67,6 +67,14 @@ class Array : private ArrayStorage {
   /// `size` value-initialized items.
   explicit Array(std::size_t size);
   Array(std::initializer_list<T> items);
+  /// The same for coroutines: g++ 12 refuses `co_yield rr::Array<double>{1, 2}` with "array used as
+  /// initializer", and takes `co_yield rr::Array<double>::of(1, 2)`.
+  template <class... Items>
+  static Array of(const Items&... items) {
+    static_assert((std::is_convertible_v<Items, T> && ...), "each is an item of the array");
+    const T values[] = {static_cast<T>(items)...};
+    return Array(std::span<const T>(values));
+  }
   /// Copies.
   explicit Array(std::span<const T> items);
   /// Copies.

@@ -2,51 +2,76 @@
 #pragma once
 
 #include <chrono>
-#include <memory>
+#include <concepts>
+#include <coroutine>
+#include <functional>
+#include <stop_token>
+#include <type_traits>
 #include <utility>
 
 namespace rr {
 
-/// Ends calls before their answers come: they fail with operation_cancelled. The service is not
-/// told and finishes its work.
-class Cancellation {
- public:
-  Cancellation();
-  /// Ends all calls made with this, now and from now on. From any thread; does not wait.
-  void cancel();
-  [[nodiscard]] bool is_cancelled() const;
-
-  struct State;  // internal
-  explicit Cancellation(std::shared_ptr<State> state) : state_(std::move(state)) {}
-  [[nodiscard]] const std::shared_ptr<State>& state() const { return state_; }
-
- private:
-  std::shared_ptr<State> state_;
+/// How long one call may take, and what ends it before its answer comes. The last parameter of
+/// members that call the other side, and the one before the token of their asynchronous forms:
+///
+///   arm->move_to(0.5, 0.1, rr::within(2s));
+///   arm->move_to(0.5, 0.1, {.timeout = 2s, .stop = thread.get_stop_token()});
+///   co_await arm->async_move_to(0.5, 0.1, rr::within(2s), boost::asio::use_awaitable);
+///
+/// Both end the waiting only: the service is not told and finishes its work.
+struct CallOptions {
+  /// Then the call fails with request_timeout. 0: what the stub, the client or the node say;
+  /// milliseconds::max(): no limit.
+  std::chrono::milliseconds timeout{0};
+  /// When a stop is requested, from any thread, the call fails with operation_cancelled.
+  std::stop_token stop{};
 };
 
-/// Time-out and cancellation of the calls, blocking and asynchronous, that this thread starts while
-/// the object exists:
-///
-///   rr::CallScope scope(2s, stop);
-///   arm->move_to(0.5, 0.1);
-///
-/// What a scope does not say is as in the one around it.
-class CallScope {
+[[nodiscard]] inline CallOptions within(std::chrono::milliseconds timeout,
+                                        std::stop_token stop = {}) {
+  return {timeout, std::move(stop)};
+}
+[[nodiscard]] inline CallOptions stopped_by(std::stop_token stop) {
+  return {std::chrono::milliseconds(0), std::move(stop)};
+}
+
+/// Internal: options of the calls that this thread begins while the object exists. It is made and
+/// destroyed within one function that does not return in between.
+class CallOptionsScope {
  public:
-  /// milliseconds::max() means no limit.
-  explicit CallScope(std::chrono::milliseconds timeout);
-  explicit CallScope(const Cancellation& cancellation);
-  CallScope(std::chrono::milliseconds timeout, const Cancellation& cancellation);
-  ~CallScope();
-  CallScope(const CallScope&) = delete;
-  CallScope& operator=(const CallScope&) = delete;
+  /// What the scope counts for.
+  enum class Reach : bool { blocking_calls, all_calls };
+
+  /// `options` stay where they are.
+  explicit CallOptionsScope(const CallOptions& options, Reach reach = Reach::all_calls);
+  ~CallOptionsScope();
+  CallOptionsScope(const CallOptionsScope&) = delete;
+  CallOptionsScope& operator=(const CallOptionsScope&) = delete;
 
  private:
-  std::chrono::milliseconds timeout_{0};
-  std::shared_ptr<Cancellation::State> cancellation_;
-  const CallScope* outer_;
-
   friend struct CallTerms;
+  const CallOptions* const options_;
+  const CallOptionsScope* const outer_;
+  const Reach reach_;
 };
+
+/// What a coroutine returns: something whose work goes on after the function has returned.
+template <class R>
+concept Awaitable = requires {
+  typename std::coroutine_traits<R>::promise_type;
+}
+|| requires(R& result) { result.await_ready(); }
+|| requires(R&& result) { std::forward<R>(result).operator co_await(); }
+|| requires(R&& result) { operator co_await(std::forward<R>(result)); };
+
+/// Calls `function()` and returns what it returns. Blocking calls that it makes on this thread take
+/// `options` for what they are not told themselves; an inner with_options() for what it does not
+/// say. Asynchronous calls take none of it, and coroutines are refused: they may go on elsewhere.
+template <std::invocable Function>
+requires(!Awaitable<std::invoke_result_t<Function>>) decltype(auto)
+    with_options(const CallOptions& options, Function&& function) {
+  const CallOptionsScope scope(options, CallOptionsScope::Reach::blocking_calls);
+  return std::invoke(std::forward<Function>(function));
+}
 
 }  // namespace rr

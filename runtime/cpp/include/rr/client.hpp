@@ -5,11 +5,14 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 
+#include "rr/call.hpp"
+#include "rr/definition_check.hpp"
 #include "rr/node_id.hpp"
 #include "rr/stub.hpp"
 #include "rr/varvalue.hpp"
@@ -26,6 +29,9 @@ struct ConnectOptions {
   /// Of a service that has users; then `credentials` usually holds `password`.
   std::string username{};
   std::map<std::string, VarValue> credentials{};
+  /// Logs in without TLS even at a URL that this node's discovery has found, which anybody on the
+  /// network can announce. A URL from elsewhere is not asked about.
+  bool allow_clear_credentials = false;
   /// Qualified name of the type that the root object must have or implement. Empty: that of the
   /// stub.
   std::string object_type{};
@@ -39,6 +45,8 @@ struct ConnectOptions {
   /// Called when the service has released the object at a path, on a thread of the node. Stubs for
   /// it and for what lies below may still be used and reach the object that is there then, if any.
   std::function<void(const std::string&)> on_path_released{};
+  /// Instead of the node's, NodeOptions::definition_check.
+  std::optional<DefinitionCheck> definition_check{};
   std::shared_ptr<client::DefinitionReader> definition_reader{};  // internal: of rr::dynamic
 };
 
@@ -53,8 +61,8 @@ class ClientBase {
   ~ClientBase();
 
   /// Tells the service, waits for its answer for at most half a second, and ends the connection.
-  /// Calls that are open fail with connection_error. Nothing happens the second time. A CallScope
-  /// around it counts for nothing.
+  /// Calls that are open fail with connection_error. Nothing happens the second time.
+  /// with_options() around it counts for nothing.
   void close();
   /// False once the session has ended, whoever ended it.
   [[nodiscard]] bool is_open() const;
@@ -70,17 +78,19 @@ class ClientBase {
   /// The texts of the service's definitions, by their names.
   [[nodiscard]] std::map<std::string, std::string> definitions() const;
   /// Type of the object at an objref, as the service tells it now. Throws rr::Error.
-  [[nodiscard]] std::string find_object_type(const std::string& path) const;
+  [[nodiscard]] std::string find_object_type(const std::string& path,
+                                             const CallOptions& options = {}) const;
   /// Attributes as they are now. Throws rr::Error.
-  [[nodiscard]] std::map<std::string, VarValue> fetch_attributes() const;
+  [[nodiscard]] std::map<std::string, VarValue> fetch_attributes(
+      const CallOptions& options = {}) const;
 
   /// Logs in, perhaps as another user than in connecting. Locks that were made stay those of the
   /// user before. Throws rr::Error (authentication_error; invalid_operation for a service without
   /// users).
-  void authenticate(const std::string& username,
-                    const std::map<std::string, VarValue>& credentials);
+  void authenticate(const std::string& username, const std::map<std::string, VarValue>& credentials,
+                    const CallOptions& options = {});
   /// Logs out. Throws rr::Error.
-  void logout();
+  void logout(const CallOptions& options = {});
 
   explicit ClientBase(std::shared_ptr<Session> session);  // made by Node::connect
   [[nodiscard]] const std::shared_ptr<Session>& rr_session() const { return session_; }

@@ -128,6 +128,8 @@ class Memory {
   [[nodiscard]] std::uint64_t length() const;
   [[nodiscard]] Numbers dims() const;
   [[nodiscard]] std::uint64_t dim_count() const;
+  /// Bytes that one item takes in this process.
+  [[nodiscard]] std::size_t item_size() const;
   /// An array; of several dimensions one with dims.
   [[nodiscard]] Value read(const Numbers& position, const Numbers& count) const;
   /// The counts are those of the array.

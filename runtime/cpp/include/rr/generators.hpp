@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -33,17 +34,25 @@ class GeneratorHandle {
   GeneratorHandle() = default;
   /// Tells the service that no more steps are wanted; it ends its work in order. Nothing happens
   /// when the generator has ended already. Throws rr::Error.
-  void close() { end(false); }
+  void close(const CallOptions& options = {}) { end(false, options); }
   /// Tells the service to break off.
-  void abort() { end(true); }
+  void abort(const CallOptions& options = {}) { end(true, options); }
   /// The same with a completion token, see rr/async.hpp. Signature: void(std::exception_ptr).
   template <class Token>
+  auto async_close(const CallOptions& options, Token&& token) {
+    return async_end(false, options, std::forward<Token>(token));
+  }
+  template <class Token>
   auto async_close(Token&& token) {
-    return async_end(std::forward<Token>(token), false);
+    return async_close(CallOptions(), std::forward<Token>(token));
+  }
+  template <class Token>
+  auto async_abort(const CallOptions& options, Token&& token) {
+    return async_end(true, options, std::forward<Token>(token));
   }
   template <class Token>
   auto async_abort(Token&& token) {
-    return async_end(std::forward<Token>(token), true);
+    return async_abort(CallOptions(), std::forward<Token>(token));
   }
 
   explicit GeneratorHandle(std::shared_ptr<GeneratorState> state) : state_(std::move(state)) {}
@@ -51,14 +60,19 @@ class GeneratorHandle {
  protected:
   /// One step: `parameter` is null where none is taken, `result` where none is given. False when
   /// the generator has ended. Throws what the service throws, after which it has ended too.
-  bool step(const void* parameter, void* result);
+  bool step(const void* parameter, void* result, const CallOptions& options = {});
+  /// Steps until the end: each leaves a value of `size` bytes at `value`, which `keep` takes.
+  /// Throws rr::Error: out_of_system_resource when all of them are more than the service may make
+  /// this client hold.
+  void collect(void* value, std::size_t size, const std::function<void()>& keep,
+               const CallOptions& options = {});
   static void start_step(const std::shared_ptr<GeneratorState>& state, const void* parameter,
                          std::unique_ptr<GeneratorStep> step);
-  void end(bool aborts);
+  void end(bool aborts, const CallOptions& options = {});
   static void start_end(const std::shared_ptr<GeneratorState>& state, bool aborts,
                         std::unique_ptr<Completion> completion);
   template <class Token>
-  auto async_end(Token&& token, bool aborts);
+  auto async_end(bool aborts, const CallOptions& options, Token&& token);
 
   std::shared_ptr<GeneratorState> state_;
 };
@@ -74,14 +88,18 @@ class Generator : public GeneratorHandle {
   using GeneratorHandle::GeneratorHandle;
 
   /// The next value; nothing at the end. Throws what the service throws.
-  std::optional<R> next(const P& parameter) {
+  std::optional<R> next(const P& parameter, const CallOptions& options = {}) {
     R result{};
-    if (!step(&parameter, &result)) return std::nullopt;
+    if (!step(&parameter, &result, options)) return std::nullopt;
     return result;
   }
   /// Signature: void(std::exception_ptr, std::optional<R>).
   template <class Token>
-  auto async_next(const P& parameter, Token&& token);
+  auto async_next(const P& parameter, const CallOptions& options, Token&& token);
+  template <class Token>
+  auto async_next(const P& parameter, Token&& token) {
+    return async_next(parameter, CallOptions(), std::forward<Token>(token));
+  }
 };
 
 template <class P>
@@ -90,10 +108,16 @@ class Generator<void, P> : public GeneratorHandle {
   using GeneratorHandle::GeneratorHandle;
 
   /// Gives the service the next value. False when it takes no more.
-  bool next(const P& parameter) { return step(&parameter, nullptr); }
+  bool next(const P& parameter, const CallOptions& options = {}) {
+    return step(&parameter, nullptr, options);
+  }
   /// Signature: void(std::exception_ptr, bool).
   template <class Token>
-  auto async_next(const P& parameter, Token&& token);
+  auto async_next(const P& parameter, const CallOptions& options, Token&& token);
+  template <class Token>
+  auto async_next(const P& parameter, Token&& token) {
+    return async_next(parameter, CallOptions(), std::forward<Token>(token));
+  }
 };
 
 template <class R>
@@ -101,17 +125,24 @@ class Generator<R, void> : public GeneratorHandle {
  public:
   using GeneratorHandle::GeneratorHandle;
 
-  std::optional<R> next() {
+  std::optional<R> next(const CallOptions& options = {}) {
     R result{};
-    if (!step(nullptr, &result)) return std::nullopt;
+    if (!step(nullptr, &result, options)) return std::nullopt;
     return result;
   }
   template <class Token>
-  auto async_next(Token&& token);
-  /// All values that are left.
-  std::vector<R> all() {
+  auto async_next(const CallOptions& options, Token&& token);
+  template <class Token>
+  auto async_next(Token&& token) {
+    return async_next(CallOptions(), std::forward<Token>(token));
+  }
+  /// All values that are left. Throws rr::Error: out_of_system_resource when they are more than
+  /// Budget::client_session together; next() has no such limit. A time-out is for each step.
+  std::vector<R> all(const CallOptions& options = {}) {
     std::vector<R> values;
-    while (auto value = next()) values.push_back(std::move(*value));
+    R value{};
+    collect(
+        &value, sizeof value, [&] { values.push_back(std::exchange(value, R{})); }, options);
     return values;
   }
 
@@ -144,7 +175,9 @@ class Generator<R, void> : public GeneratorHandle {
 };
 
 template <class R, class P, class... Arguments>
-Generator<R, P> Stub::rr_generate(const Member& member, const Arguments&... arguments) {
+Generator<R, P> Stub::rr_generate(const Member& member, const CallOptions& options,
+                                  const Arguments&... arguments) {
+  const CallOptionsScope scope(options);
   const void* const values[] = {&arguments..., nullptr};
   return Generator<R, P>(rr_open_generator(member, values));
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "rr/call.hpp"
 #include "rr/stub.hpp"
 
 /// Keeping others from an object of a service (07, section 6). All throw rr::Error.
@@ -18,10 +19,10 @@ enum class LockOwner : std::uint8_t { user, session };
 /// `objectlock` (object_locked_error). An object that is locked, or has one below that is, cannot
 /// be locked again: object_locked_error. The lock ends with the session, or, for a user, with the
 /// last one of that user.
-void lock(const Stub& object, LockOwner owner = LockOwner::user);
+void lock(const Stub& object, LockOwner owner = LockOwner::user, const CallOptions& options = {});
 /// Ends a lock at the object at which it was made. Nothing happens when there is none. The lock of
 /// another user needs the privilege `objectlockoverride`.
-void unlock(const Stub& object);
+void unlock(const Stub& object, const CallOptions& options = {});
 
 inline constexpr std::chrono::milliseconds wait_forever = std::chrono::milliseconds::max();
 

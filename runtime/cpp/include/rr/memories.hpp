@@ -206,33 +206,50 @@ class ArrayMemory : public MemoryMember {
   ArrayMemory(Stub& stub, const Member& member) : MemoryMember(stub, member) {}
 
   /// Asks the service.
-  [[nodiscard]] std::uint64_t length() const { return ask_length(); }
+  [[nodiscard]] std::uint64_t length(const CallOptions& options = {}) const {
+    const CallOptionsScope scope(options);
+    return ask_length();
+  }
 
-  void read(std::uint64_t position, std::span<T> items) const {
+  void read(std::uint64_t position, std::span<T> items, const CallOptions& options = {}) const {
+    const CallOptionsScope scope(options);
     const std::uint64_t count = items.size();
     read_part({&position, 1}, {&count, 1}, items.data(), items.size());
   }
-  [[nodiscard]] Array<T> read(std::uint64_t position, std::uint64_t count) const {
+  [[nodiscard]] Array<T> read(std::uint64_t position, std::uint64_t count,
+                              const CallOptions& options = {}) const {
     Array<T> items(size_of({&count, 1}));
-    read(position, items.mutate());
+    read(position, items.mutate(), options);
     return items;
   }
-  void write(std::uint64_t position, std::span<const T> items) const {
+  void write(std::uint64_t position, std::span<const T> items,
+             const CallOptions& options = {}) const {
+    const CallOptionsScope scope(options);
     const std::uint64_t count = items.size();
     write_part({&position, 1}, {&count, 1}, items.data(), items.size());
   }
   // A template, so that nothing is converted to an Array first.
   template <std::same_as<Array<T>> A>
-  void write(std::uint64_t position, const A& items) const {
-    write(position, std::span<const T>(items.data(), items.size()));
+  void write(std::uint64_t position, const A& items, const CallOptions& options = {}) const {
+    write(position, std::span<const T>(items.data(), items.size()), options);
   }
 
   // Defined in rr/async.hpp. Signatures: void(std::exception_ptr, Array<T>) and
   // void(std::exception_ptr). What is written is copied, or shared when the array owns it.
   template <class Token>
-  auto async_read(std::uint64_t position, std::uint64_t count, Token&& token) const;
+  auto async_read(std::uint64_t position, std::uint64_t count, const CallOptions& options,
+                  Token&& token) const;
   template <class Token>
-  auto async_write(std::uint64_t position, const Array<T>& items, Token&& token) const;
+  auto async_read(std::uint64_t position, std::uint64_t count, Token&& token) const {
+    return async_read(position, count, CallOptions(), std::forward<Token>(token));
+  }
+  template <class Token>
+  auto async_write(std::uint64_t position, const Array<T>& items, const CallOptions& options,
+                   Token&& token) const;
+  template <class Token>
+  auto async_write(std::uint64_t position, const Array<T>& items, Token&& token) const {
+    return async_write(position, items, CallOptions(), std::forward<Token>(token));
+  }
 };
 
 /// A memory of several dimensions of an object on another node. As ArrayMemory, but for a part that
@@ -243,33 +260,56 @@ class MultiMemory : public MemoryMember {
   MultiMemory(Stub& stub, const Member& member) : MemoryMember(stub, member) {}
 
   /// Both ask the service.
-  [[nodiscard]] std::vector<std::uint64_t> dims() const { return ask_dims(); }
-  [[nodiscard]] std::uint64_t dim_count() const { return ask_dim_count(); }
+  [[nodiscard]] std::vector<std::uint64_t> dims(const CallOptions& options = {}) const {
+    const CallOptionsScope scope(options);
+    return ask_dims();
+  }
+  [[nodiscard]] std::uint64_t dim_count(const CallOptions& options = {}) const {
+    const CallOptionsScope scope(options);
+    return ask_dim_count();
+  }
 
   /// `items` has the shape `count`, first dimension fastest.
-  void read(Numbers position, Numbers count, std::span<T> items) const {
+  void read(Numbers position, Numbers count, std::span<T> items,
+            const CallOptions& options = {}) const {
+    const CallOptionsScope scope(options);
     read_part(position, count, items.data(), items.size());
   }
-  [[nodiscard]] MultiArray<T> read(Numbers position, Numbers count) const {
+  [[nodiscard]] MultiArray<T> read(Numbers position, Numbers count,
+                                   const CallOptions& options = {}) const {
     MultiArray<T> array{{count.begin(), count.end()}, Array<T>(size_of(count))};
-    read(position, count, array.items.mutate());
+    read(position, count, array.items.mutate(), options);
     return array;
   }
-  void write(Numbers position, Numbers count, std::span<const T> items) const {
+  void write(Numbers position, Numbers count, std::span<const T> items,
+             const CallOptions& options = {}) const {
+    const CallOptionsScope scope(options);
     write_part(position, count, items.data(), items.size());
   }
-  void write(Numbers position, const MultiArray<T>& array) const {
-    write(position, std::vector<std::uint64_t>(array.dims.begin(), array.dims.end()), array.items);
+  void write(Numbers position, const MultiArray<T>& array, const CallOptions& options = {}) const {
+    write(position, std::vector<std::uint64_t>(array.dims.begin(), array.dims.end()), array.items,
+          options);
   }
 
   // Defined in rr/async.hpp. Signatures: void(std::exception_ptr, MultiArray<T>) and
   // void(std::exception_ptr).
   template <class Token>
   auto async_read(std::vector<std::uint64_t> position, std::vector<std::uint64_t> count,
-                  Token&& token) const;
+                  const CallOptions& options, Token&& token) const;
+  template <class Token>
+  auto async_read(std::vector<std::uint64_t> position, std::vector<std::uint64_t> count,
+                  Token&& token) const {
+    return async_read(std::move(position), std::move(count), CallOptions(),
+                      std::forward<Token>(token));
+  }
   template <class Token>
   auto async_write(std::vector<std::uint64_t> position, const MultiArray<T>& array,
-                   Token&& token) const;
+                   const CallOptions& options, Token&& token) const;
+  template <class Token>
+  auto async_write(std::vector<std::uint64_t> position, const MultiArray<T>& array,
+                   Token&& token) const {
+    return async_write(std::move(position), array, CallOptions(), std::forward<Token>(token));
+  }
 };
 
 }  // namespace rr

@@ -29,7 +29,7 @@ class ServiceInfoSubscription;
 ///
 ///   rr::Node node({.name = "camera.host"});
 ///   node.register_service("camera", std::make_shared<MyCamera>());
-///   node.listen_tcp(6257);
+///   node.listen_tcp(6257, "*");  // for other machines, too
 ///
 ///   rr::Node node;
 ///   auto camera = node.connect<CameraStub>("rr+tcp://host:6257/?service=camera");
@@ -43,7 +43,8 @@ class ServiceInfoSubscription;
 /// their own locks.
 ///
 /// A handler that takes long holds up its own client only: after a few milliseconds another thread
-/// waits for the network (NodeOptions::max_threads bounds how many). A handler can answer later
+/// waits for the network. NodeOptions::max_threads bounds how many there are,
+/// NodeOptions::session_threads how many of them one client may keep. A handler can answer later
 /// (Request::defer), and then holds up nobody.
 ///
 /// A blocking call sends in the calling thread, which reads the connection itself until its answer
@@ -69,8 +70,9 @@ class Node {
   /// Accepts connections at `rr+tcp://host:port`, port 0 meaning any; a host of `*`, or none, means
   /// all addresses. Returns the port. Throws rr::Error.
   std::uint16_t listen(std::string_view url);
-  /// The same at all addresses of both families, or at `host` only.
-  std::uint16_t listen_tcp(std::uint16_t port, std::string_view host = {});
+  /// The same at `host`: for programs of this machine only, unless another one is given. `*` means
+  /// all addresses of both families, so that every machine that reaches this one can connect.
+  std::uint16_t listen_tcp(std::uint16_t port, std::string_view host = "localhost");
   /// Whether URLs of a scheme (`rr+tcp`) can be listened at and connected to.
   [[nodiscard]] bool has_channel(std::string_view scheme) const;
   /// Where a service may be reached, by what this node knows: one URL for each address it listens
@@ -164,6 +166,10 @@ class Node {
   /// The same without connecting: tells which services there are. See rr/discovery.hpp.
   ServiceInfoSubscription subscribe_services(std::vector<std::string> types,
                                              ServiceFilter filter = {});
+
+  /// Calls a function every `period`, or once after `delay`: see NodeContext in rr/timer.hpp.
+  Timer every(std::chrono::nanoseconds period, std::function<void()> work);
+  Timer after(std::chrono::nanoseconds delay, std::function<void()> work);
 
   /// Runs something on a thread of its own, which shutdown() waits for. It may not throw. Throws
   /// rr::Error (invalid_operation) after shutdown().

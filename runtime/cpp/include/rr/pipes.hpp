@@ -84,7 +84,8 @@ class PipeEnd {
   /// While there is a function, packets go to it, in order, on a thread of the node, and none
   /// waits. The newest one counts.
   Subscription on_received(Function<void(std::shared_ptr<void>)> function);
-  /// The completion gets the next packet; its result is a shared_ptr<void>.
+  /// The completion gets the next packet; its result is a shared_ptr<void>. When its time-out or
+  /// stop ends it, the packet stays for the next receive. Without a time-out it waits for ever.
   void start_receive(std::unique_ptr<Completion> completion);
   [[noreturn]] static void throw_no_packet();  // invalid_operation
 
@@ -122,9 +123,14 @@ class PipeEndpoint : public PipeEnd {
     return *static_cast<const T*>(packet.get());
   }
   /// Completes with the next packet, or fails with invalid_operation when the end is closed before
-  /// one comes: void(std::exception_ptr, T). Defined in rr/async.hpp.
+  /// one comes: void(std::exception_ptr, T). What `options` end leaves the packet for the next
+  /// receive; without a time-out it waits for ever. Defined in rr/async.hpp.
   template <class Token>
-  auto async_receive(Token&& token);
+  auto async_receive(const CallOptions& options, Token&& token);
+  template <class Token>
+  auto async_receive(Token&& token) {
+    return async_receive(CallOptions(), std::forward<Token>(token));
+  }
   /// Calls `function(T)` for packets, those that wait first, instead of keeping them.
   template <class Function>
   Subscription on_packet(Function function) {
@@ -160,12 +166,26 @@ class Pipe : public PipeMember {
   Pipe(Stub& stub, const Member& member) : PipeMember(stub, member, holding_of<T>) {}
 
   /// Packets that the service sends before it answers are kept. Throws rr::Error.
-  PipeEndpoint<T> connect(const PipeOptions& options = {}) {
-    return PipeEndpoint<T>(connect_end(options));
+  PipeEndpoint<T> connect(const PipeOptions& wishes = {}, const CallOptions& options = {}) {
+    const CallOptionsScope scope(options);
+    return PipeEndpoint<T>(connect_end(wishes));
   }
+  PipeEndpoint<T> connect(const CallOptions& options) { return connect(PipeOptions(), options); }
   /// void(std::exception_ptr, PipeEndpoint<T>). Defined in rr/async.hpp.
   template <class Token>
-  auto async_connect(Token&& token, const PipeOptions& options = {});
+  auto async_connect(const PipeOptions& wishes, const CallOptions& options, Token&& token);
+  template <class Token>
+  auto async_connect(const PipeOptions& wishes, Token&& token) {
+    return async_connect(wishes, CallOptions(), std::forward<Token>(token));
+  }
+  template <class Token>
+  auto async_connect(const CallOptions& options, Token&& token) {
+    return async_connect(PipeOptions(), options, std::forward<Token>(token));
+  }
+  template <class Token>
+  auto async_connect(Token&& token) {
+    return async_connect(CallOptions(), std::forward<Token>(token));
+  }
 };
 
 /// A pipe that an object offers, without its type. What is set up here is kept by the object.

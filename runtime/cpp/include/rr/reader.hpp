@@ -86,6 +86,16 @@ struct Element {
   }
 };
 
+/// What the memory of decoded lists, maps and structs is taken from.
+class ContainerBudget {
+ public:
+  /// False, and nothing happens, when so many bytes more are too many.
+  [[nodiscard]] virtual bool draw(std::size_t bytes) = 0;
+
+ protected:
+  ~ContainerBudget() = default;
+};
+
 /// What reading the values of one message has in common, and the first thing that went wrong.
 /// Nothing here throws; after a failure everything that is read is empty.
 class Decoder : public Latch {
@@ -101,27 +111,33 @@ class Decoder : public Latch {
   /// Where named types of a varvalue are found; may be null.
   [[nodiscard]] const TypeRegistry* types() const { return types_; }
 
-  /// Containers may be much larger in memory than on the wire (a list of null structs is): the
-  /// items of one message may take this much. False, with the failure latched, when `bytes` more
-  /// are over it.
-  static constexpr std::size_t container_limit = std::size_t{256} * 1024 * 1024;
+  /// Without a budget.
+  static constexpr std::size_t container_limit = std::size_t{36} * 1024 * 1024;
+  /// Lists, maps and structs may be much larger in memory than on the wire. The items of one
+  /// message may take `container_limit` bytes, or what the budget gives. False, with the failure
+  /// latched, when `bytes` more are over it.
   bool reserve(std::size_t bytes, std::string_view element) {
-    if (bytes <= container_limit - reserved_) [[likely]] {
-      reserved_ += bytes;
+    if (bytes <= reserved_) [[likely]] {
+      reserved_ -= bytes;
       return true;
     }
-    return fail(ErrorCode::out_of_system_resource, "containers of too many items", element);
+    return reserve_more(bytes, element);
   }
+  /// Must outlive the decoder. Before anything is read.
+  void set_budget(ContainerBudget& budget);
   /// How many bytes of arrays were copied, not sliced, so far.
   [[nodiscard]] std::size_t copied_array_bytes() const { return copied_array_bytes_; }
   void count_copied_array(std::size_t bytes) { copied_array_bytes_ += bytes; }
 
  private:
+  bool reserve_more(std::size_t bytes, std::string_view element);
+
   MessageVersion version_;
   const StringTable* strings_;
   MemoryRef owner_;
   const TypeRegistry* types_;
-  std::size_t reserved_ = 0;
+  std::size_t reserved_ = container_limit;  // and not used yet
+  ContainerBudget* budget_ = nullptr;
   std::size_t copied_array_bytes_ = 0;
 };
 
@@ -252,7 +268,17 @@ class EntryReader {
         at_(message.entries.data()),
         end_(message.entries.data() + message.entries.size()),
         left_(message.entry_count) {}
+  /// Goes on behind `count` entries, where another reader of the same bytes was at `offset`.
+  EntryReader(const Message& message, std::size_t count, std::size_t offset)
+      : EntryReader(message) {
+    at_ += offset;
+    left_ -= static_cast<std::uint32_t>(count);
+  }
   bool next(Entry& entry);
+  /// Of the next entry, in Message::entries.
+  [[nodiscard]] std::size_t offset() const {
+    return static_cast<std::size_t>(at_ - message_->entries.data());
+  }
 
  private:
   const Message* message_;

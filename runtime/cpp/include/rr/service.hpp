@@ -12,7 +12,9 @@
 
 #include "rr/definition.hpp"
 #include "rr/node_id.hpp"
+#include "rr/rights.hpp"
 #include "rr/skeleton.hpp"
+#include "rr/timer.hpp"
 #include "rr/users.hpp"
 #include "rr/varvalue.hpp"
 
@@ -25,6 +27,28 @@ struct ServiceClient {
   NodeId node;
   std::string node_name;
   std::string user{};  ///< who is logged in, empty for nobody; in what clients() returns only
+  /// Number of the session, which no other session of this process has had.
+  std::uint64_t session = 0;
+};
+
+/// How much of each kind clients may make a service keep (docs/limits.md). What is more fails with
+/// OutOfSystemResource.
+struct ServiceLimits {
+  /// Objects besides the root, those of clients' own included.
+  std::size_t objects = 16'384;
+  /// While there are more than so many, those that nobody uses any more are released when a session
+  /// ends.
+  std::size_t unused_objects = 1'024;
+  /// Of one session: generators that are open, or were closed less than 30 s ago.
+  std::size_t generators = 1'024;
+  /// Of one session: requests whose answers the service has put off.
+  std::size_t late_answers = 4'096;
+  /// Of one session: callbacks without an answer.
+  std::size_t callbacks = 1'024;
+  /// Of one session: monitors that it is in or waits for.
+  std::size_t monitors = 256;
+  /// Of one session: locks, and of one user those that are not of a session.
+  std::size_t locks = 256;
 };
 
 struct ServiceOptions {
@@ -38,13 +62,25 @@ struct ServiceOptions {
   /// With users: whether everybody has to be one. Otherwise clients may connect without a user, and
   /// log in later if they wish; in connecting they may not.
   bool require_user = true;
+  /// What each user may do; null: everything. See rr/rights.hpp.
+  std::shared_ptr<const Rights> rights{};
+  /// The same from a file, instead of `rights`; empty for none. It is read again when it has
+  /// changed, and sessions that are open get the new rules: within two seconds. Rules that cannot
+  /// be read leave the ones before in force, and the log is told, level error. When the service is
+  /// registered they make that throw rr::Error (invalid_configuration).
+  std::string rights_file{};
   /// A session that is in an object's monitor and does not use the object for so long is out.
   std::chrono::milliseconds monitor_patience{30'000};
+  ServiceLimits limits{};
   /// Called on a thread of the node, before the first and after the last request of a client. The
   /// second comes when the connection has ended, which is up to 0.1 s after disconnect() or
   /// close().
   std::function<void(const ServiceClient&)> on_client_connected{};
   std::function<void(const ServiceClient&)> on_client_disconnected{};
+  /// Called once as soon as nobody waits for answers of a session any more: its client has left or
+  /// is lost, or the service was closed. Its handlers may still run. On a thread of the node or
+  /// that of close() or disconnect(), before on_client_disconnected.
+  std::function<void(const ServiceClient&)> on_client_leaving{};
 };
 
 /// A service while it is offered.
@@ -64,6 +100,19 @@ class ServiceContext {
   /// The same for one client and an object of its own (per_client()), or one below such an object:
   /// nobody else is concerned. Throws rr::Error: service_error when this client has none there.
   virtual void release_path(const std::string& path, std::uint32_t client) = 0;
+  /// Locks the object at a path, and all below it, as a client does (rr/locks.hpp), but until
+  /// unlock(), whether or not the user has a session. Only that user may use it then; for an empty
+  /// name nobody may. Users who may release each other's locks may release this one, too, and so
+  /// may the user himself. Throws rr::Error: object_locked_error when the object, or one above or
+  /// below, is locked, and what is thrown when no object can be found at the path.
+  virtual void lock(const std::string& path, const std::string& user = {}) = 0;
+  /// Ends the lock at this very path, whoever has it. False when there is none.
+  virtual bool unlock(const std::string& path) = 0;
+  /// The node that offers the service; as long as the context lives.
+  [[nodiscard]] virtual NodeContext& node() const = 0;
+  /// Other rights from now on, for sessions that are open, too: what they may not do any more ends.
+  /// Null: everything is allowed. They hold until the file of rights changes, if there is one.
+  virtual void set_rights(std::shared_ptr<const Rights> rights) = 0;
   [[nodiscard]] virtual std::vector<ServiceClient> clients() const = 0;
   /// Ends the session of a client, if it has one.
   virtual void disconnect(std::uint32_t endpoint) = 0;

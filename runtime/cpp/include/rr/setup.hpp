@@ -29,7 +29,8 @@ struct SetupOptions {
   bool tcp_ipv6_discovery = true;
   bool tcp_enable = true;
   bool tcp_start_server = false;
-  bool tcp_listen_localhost = false;  ///< accepts connections of this machine only
+  /// Accepts connections of this machine only. False: of every machine that reaches this one.
+  bool tcp_listen_localhost = true;
   bool tcp_start_server_sharer = false;
   bool local_enable = true;
   bool local_start_server = false;
@@ -38,9 +39,16 @@ struct SetupOptions {
   bool intra_enable = true;
   bool intra_start_server = false;
   bool hardware_enable = false;
+  /// The node has a certificate: `tls_certificate`, that of `node.tls` or, without either, the file
+  /// `certificates/<node id>.p12` in the user's configuration folder. Without one it is not made.
   bool load_tls = false;
-  bool require_tls = false;
-  bool disable_timeouts = false;  ///< for who stops programs to look into them
+  bool require_tls = false;  ///< TlsOptions::is_required
+  /// In place of TlsOptions::certificate_file and key_file; the node's id is the certificate's.
+  std::string tls_certificate{};
+  std::string tls_key{};
+  std::vector<std::string> tls_authority{};   ///< besides TlsOptions::authority_files
+  std::vector<std::string> tls_revocation{};  ///< besides TlsOptions::revocation_files
+  bool disable_timeouts = false;              ///< for who stops programs to look into them
   bool disable_message4 = false;
   bool disable_stringtable = true;
   bool jumbo_message = false;  ///< messages up to 100 MiB
@@ -48,14 +56,16 @@ struct SetupOptions {
   std::string local_tap_name{};
   std::vector<std::string> tcp_ws_add_origin{};
   std::vector<std::string> tcp_ws_remove_origin{};
+  bool tcp_ws_allow_local_pages = false;  ///< WebSocketOptions::allow_local_pages
   /// Reports of this level and above go to standard error, unless `node.log` takes them. One of
   /// `debug`, `info`, `warning`, `error`, and `disable`.
   std::string log_level = "warning";
 
   /// The defaults of a client: listens to discovery, and to nobody else.
   static SetupOptions client();
-  /// Those of a service: accepts connections by TCP, local sockets and inside the process, and
-  /// announces itself. Its id is kept by its name.
+  /// Those of a service: accepts connections by TCP from this machine, by local sockets and inside
+  /// the process, and announces what others can reach. Its id is kept by its name, unless it has a
+  /// certificate.
   static SetupOptions server(std::string name, std::uint16_t port);
   /// The same with TLS required.
   static SetupOptions secure_server(std::string name, std::uint16_t port);
@@ -66,7 +76,8 @@ struct SetupOptions {
   std::vector<std::string> take(int argc, const char* const* argv);
 };
 
-/// A node, set up; it is shut down with this.
+/// A node, set up; it is shut down with this. Where it listens is reported once, at level info, or
+/// to standard error where `node.log` is not given and the level is `warning` or below.
 ///
 ///   int main(int argc, char** argv) {
 ///     rr::ServerNodeSetup setup("my.camera.host", 6257, argc, argv);
@@ -78,7 +89,8 @@ struct SetupOptions {
 class NodeSetup {
  public:
   /// Throws rr::Error: invalid_argument for wrong flags, invalid_operation when the name is in use
-  /// by another node of this user, connection_error when it cannot listen, and others.
+  /// by another node of this user, invalid_configuration for files of TLS that are missing or
+  /// cannot be used, connection_error when it cannot listen, and others.
   explicit NodeSetup(SetupOptions options, int argc = 0, const char* const* argv = nullptr);
   ~NodeSetup();
   NodeSetup(const NodeSetup&) = delete;

@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "rr/call.hpp"
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
 #include "rr/generators.hpp"
@@ -140,6 +141,11 @@ class Skeleton {
   virtual bool rr_monitor_enter(std::chrono::milliseconds /*timeout*/) { return true; }
   virtual void rr_monitor_exit() {}
 
+  /// Where it is reached: the first path of those where it is now; empty while it is at none.
+  [[nodiscard]] std::string rr_path() const;
+  /// The service there, null while there is none. Keeps it, so it is not to be kept by the object.
+  [[nodiscard]] std::shared_ptr<ServiceContext> rr_service() const;
+
   struct Places;  // internal: where the object is attached
 
   /// What per_client() does.
@@ -156,14 +162,16 @@ class Skeleton {
   }
 
   /// Calls a callback of one client, `client` being the number of its endpoint in this node
-  /// (ServiceContext::current_client()), and waits for what it returns, as long as the thread's
-  /// CallScope or the node's request timeout say. Throws rr::Error (connection_error when there is
+  /// (ServiceContext::current_client()), and waits for what it returns, as long as
+  /// `options` or the node's request timeout say. Throws rr::Error (connection_error when there is
   /// no such client, or when it leaves meanwhile), or what the client has thrown.
   ///
   /// May be called anywhere, in a member that this very client has called too: while the member
   /// waits, the client's next requests are handled, so that its function may make calls itself.
   template <class R, class... Arguments>
-  R rr_call_back(const Member& member, std::uint32_t client, const Arguments&... arguments) const {
+  R rr_call_back(const Member& member, const CallOptions& options, std::uint32_t client,
+                 const Arguments&... arguments) const {
+    const CallOptionsScope scope(options);
     const void* const values[] = {&arguments..., nullptr};
     if constexpr (std::is_void_v<R>) {
       rr_ask_client(member, client, values, nullptr);
@@ -175,8 +183,8 @@ class Skeleton {
   }
   /// The same without waiting: see rr/async.hpp.
   template <class R, class Token, class... Arguments>
-  auto rr_async_call_back(const Member& member, Token&& token, std::uint32_t client,
-                          const Arguments&... arguments) const;
+  auto rr_async_call_back(const Member& member, const CallOptions& options, Token&& token,
+                          std::uint32_t client, const Arguments&... arguments) const;
   // What these two stand on.
   void rr_ask_client(const Member& member, std::uint32_t client, const void* const* arguments,
                      void* result) const;

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "rr/call.hpp"
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
 #include "rr/type.hpp"
@@ -22,7 +23,7 @@ namespace rr {
 
 /// Number of the contract between generated code and this runtime. Generated headers refuse
 /// another.
-inline constexpr int stub_api = 2;
+inline constexpr int stub_api = 3;
 
 class Session;
 class Stub;
@@ -132,53 +133,62 @@ class Stub {
 
  protected:
   // Used by generated code; each blocks until the answer is there, and throws rr::Error.
-  void rr_get(const Member& member, void* value);
-  void rr_set(const Member& member, const void* value);
-  void rr_invoke(const Member& member, const void* const* arguments, void* result);
-  std::shared_ptr<Stub> rr_find(const Member& member);
-  std::shared_ptr<Stub> rr_find(const Member& member, std::int32_t index);
-  std::shared_ptr<Stub> rr_find(const Member& member, std::string_view index);
+  void rr_get(const Member& member, const CallOptions& options, void* value);
+  void rr_set(const Member& member, const CallOptions& options, const void* value);
+  void rr_invoke(const Member& member, const CallOptions& options, const void* const* arguments,
+                 void* result);
+  std::shared_ptr<Stub> rr_find(const Member& member, const CallOptions& options);
+  std::shared_ptr<Stub> rr_find(const Member& member, const CallOptions& options,
+                                std::int32_t index);
+  std::shared_ptr<Stub> rr_find(const Member& member, const CallOptions& options,
+                                std::string_view index);
 
   template <class T>
-  T rr_get(const Member& member) {
+  T rr_get(const Member& member, const CallOptions& options) {
     T value{};
-    rr_get(member, &value);
+    rr_get(member, options, &value);
     return value;
   }
   template <class R, class... Arguments>
-  R rr_call(const Member& member, const Arguments&... arguments) {
+  R rr_call(const Member& member, const CallOptions& options, const Arguments&... arguments) {
     const void* const values[] = {&arguments..., nullptr};
     if constexpr (std::is_void_v<R>) {
-      rr_invoke(member, values, nullptr);
+      rr_invoke(member, options, values, nullptr);
     } else {
       R result{};
-      rr_invoke(member, values, &result);
+      rr_invoke(member, options, values, &result);
       return result;
     }
   }
   template <class S, class... Index>
-  std::shared_ptr<S> rr_find_as(const Member& member, const Index&... index) {
-    auto stub = std::dynamic_pointer_cast<S>(rr_find(member, index...));
+  std::shared_ptr<S> rr_find_as(const Member& member, const CallOptions& options,
+                                const Index&... index) {
+    auto stub = std::dynamic_pointer_cast<S>(rr_find(member, options, index...));
     if (!stub) rr_refuse(member);
     return stub;
   }
 
   /// Calls a generator function; see rr/generators.hpp.
   template <class R, class P, class... Arguments>
-  Generator<R, P> rr_generate(const Member& member, const Arguments&... arguments);
+  Generator<R, P> rr_generate(const Member& member, const CallOptions& options,
+                              const Arguments&... arguments);
 
   // The asynchronous forms: encode and send now, complete later. Defined in rr/async.hpp, which a
   // program includes that calls an async_ member.
   template <class R, class Token, class... Arguments>
-  auto rr_async_call(const Member& member, Token&& token, const Arguments&... arguments);
+  auto rr_async_call(const Member& member, const CallOptions& options, Token&& token,
+                     const Arguments&... arguments);
   template <class T, class Token>
-  auto rr_async_get(const Member& member, Token&& token);
+  auto rr_async_get(const Member& member, const CallOptions& options, Token&& token);
   template <class T, class Token>
-  auto rr_async_set(const Member& member, Token&& token, const T& value);
+  auto rr_async_set(const Member& member, const CallOptions& options, Token&& token,
+                    const T& value);
   template <class S, class Token, class... Index>
-  auto rr_async_find(const Member& member, Token&& token, const Index&... index);
+  auto rr_async_find(const Member& member, const CallOptions& options, Token&& token,
+                     const Index&... index);
   template <class R, class P, class Token, class... Arguments>
-  auto rr_async_generate(const Member& member, Token&& token, const Arguments&... arguments);
+  auto rr_async_generate(const Member& member, const CallOptions& options, Token&& token,
+                         const Arguments&... arguments);
 
   // What the asynchronous templates stand on: encodes and sends at once, so arguments need not
   // outlive the call. `set` tells a property's two requests apart.

@@ -31,6 +31,8 @@ struct SubscriptionOptions {
   /// As in ConnectOptions.
   std::string username{};
   std::map<std::string, VarValue> credentials{};
+  /// As in ConnectOptions: for services that discovery finds.
+  bool allow_clear_credentials = false;
   /// Qualified name of the type that root objects must have or implement. Empty: any.
   std::string object_type{};
   /// For calls of the clients' stubs; 0: the node's request timeout.

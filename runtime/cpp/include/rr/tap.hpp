@@ -79,6 +79,9 @@ struct RecorderOptions {
   /// What happens to a message for which there is no room: the thread that sends or reads it waits
   /// for the disk, or it is left out and counted in the file.
   enum class WhenFull : std::uint8_t { wait, drop } when_full = WhenFull::wait;
+  /// Passwords of logins are written as they are. Otherwise each byte of the values of credentials
+  /// is replaced, so that sizes stay.
+  bool keeps_credentials = false;
 };
 
 /// A tap that writes a recording. What it is told is copied into a buffer, which one thread of its
@@ -87,8 +90,11 @@ struct RecorderOptions {
 /// written; what is in the buffer follows within the time of one write.
 class Recorder final : public Tap {
  public:
-  /// Makes the file, or empties it. Throws rr::Error (io_error) with the path.
+  /// Makes the file, mode 0600, in place of a regular one of this user. Throws rr::Error (io_error)
+  /// with the path, for a link and anything else that is there too.
   explicit Recorder(const std::filesystem::path& path, RecorderOptions options = {});
+  /// Writes to a descriptor that is open, such as that of a pipe, and takes it over.
+  explicit Recorder(int descriptor, RecorderOptions options = {});
   /// As close().
   ~Recorder() override;
   Recorder(const Recorder&) = delete;

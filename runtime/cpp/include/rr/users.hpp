@@ -32,9 +32,11 @@ struct User {
 class Users {
  public:
   virtual ~Users() = default;
-  /// Called on a thread of the node, for several clients at once. `credentials` are what the client
-  /// gives, usually `password`; `node` is what it says of itself. Throws rr::Error
-  /// (authentication_error) for anybody who is not to be let in.
+  /// Called on a thread that does nothing but this (NodeOptions::login says how many there are), so
+  /// it may take its time; several clients at once where there are several threads. The client's
+  /// other requests wait until it returns. `credentials` are what the client gives, usually
+  /// `password`; `node` is what it says of itself. Throws rr::Error (authentication_error) for
+  /// anybody who is not to be let in.
   [[nodiscard]] virtual User authenticate(const std::string& name,
                                           const std::map<std::string, VarValue>& credentials,
                                           const NodeId& node) const = 0;

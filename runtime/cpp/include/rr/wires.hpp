@@ -172,34 +172,62 @@ class Wire : public WireMember {
   Wire(Stub& stub, const Member& member) : WireMember(stub, member, holding_of<T>) {}
 
   /// Throws rr::Error: invalid_operation when the client has connected it already.
-  WireConnection<T> connect() { return WireConnection<T>(connect_end()); }
+  WireConnection<T> connect(const CallOptions& options = {}) {
+    const CallOptionsScope scope(options);
+    return WireConnection<T>(connect_end());
+  }
   /// The service's value now. Throws rr::Error (value_not_set, write_only_member, ...).
-  Timed<T> peek_in() {
+  Timed<T> peek_in(const CallOptions& options = {}) {
+    const CallOptionsScope scope(options);
     Timed<T> result;
     WireMember::peek_in(&result.value, result.time);
     return result;
   }
   /// The value that the service has last received. Throws as above, read_only_member.
-  Timed<T> peek_out() {
+  Timed<T> peek_out(const CallOptions& options = {}) {
+    const CallOptionsScope scope(options);
     Timed<T> result;
     WireMember::peek_out(&result.value, result.time);
     return result;
   }
-  void poke_out(const T& value) { WireMember::poke_out(&value); }
+  void poke_out(const T& value, const CallOptions& options = {}) {
+    const CallOptionsScope scope(options);
+    WireMember::poke_out(&value);
+  }
 
   // The asynchronous forms, defined in rr/async.hpp.
   template <class Token>
-  auto async_connect(Token&& token);
+  auto async_connect(const CallOptions& options, Token&& token);
   template <class Token>
-  auto async_peek_in(Token&& token);
+  auto async_connect(Token&& token) {
+    return async_connect(CallOptions(), std::forward<Token>(token));
+  }
   template <class Token>
-  auto async_peek_out(Token&& token);
+  auto async_peek_in(const CallOptions& options, Token&& token) {
+    return async_peek(false, options, std::forward<Token>(token));
+  }
   template <class Token>
-  auto async_poke_out(const T& value, Token&& token);
+  auto async_peek_in(Token&& token) {
+    return async_peek_in(CallOptions(), std::forward<Token>(token));
+  }
+  template <class Token>
+  auto async_peek_out(const CallOptions& options, Token&& token) {
+    return async_peek(true, options, std::forward<Token>(token));
+  }
+  template <class Token>
+  auto async_peek_out(Token&& token) {
+    return async_peek_out(CallOptions(), std::forward<Token>(token));
+  }
+  template <class Token>
+  auto async_poke_out(const T& value, const CallOptions& options, Token&& token);
+  template <class Token>
+  auto async_poke_out(const T& value, Token&& token) {
+    return async_poke_out(value, CallOptions(), std::forward<Token>(token));
+  }
 
  private:
   template <class Token>
-  auto async_peek(bool of_out, Token&& token);
+  auto async_peek(bool of_out, const CallOptions& options, Token&& token);
 };
 
 /// A wire that an object offers, without its type. What is set up here is kept by the object, so a

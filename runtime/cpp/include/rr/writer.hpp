@@ -216,7 +216,10 @@ class Writer : public Latch {
 
   [[nodiscard]] std::size_t used() const { return static_cast<std::size_t>(end_ - begin_); }
   [[nodiscard]] std::size_t room() const {
-    return static_cast<std::size_t>(begin_ - buffer_.get());
+    return static_cast<std::size_t>(begin_ - buffer_.bytes);
+  }
+  [[nodiscard]] std::size_t capacity() const {
+    return static_cast<std::size_t>(end_ - buffer_.bytes);
   }
   void grow(std::size_t size);
   void element_v2(const ElementName& name, ElementType type, std::string_view type_name,
@@ -226,9 +229,10 @@ class Writer : public Latch {
   void message_v2(const MessageHeader& header, std::uint32_t entry_count);
   void message_v4(const MessageHeader& header, std::uint32_t entry_count);
 
-  std::unique_ptr<std::byte[]> buffer_;
+  Allocation buffer_;
   std::byte* begin_ = nullptr;
   std::byte* end_ = nullptr;
+  std::size_t last_large_ = 0;  // capacity of a buffer that was too large to keep
   std::size_t attached_bytes_ = 0;
   std::vector<Attachment> attachments_;
   std::vector<Piece> pieces_;

@@ -12,7 +12,7 @@ namespace rr::channel {
 
 /// Makes an incoming connection, counts it, and gives it its receiver. Throws rr::Error
 /// (connection_error) when the node has as many connections as it may, and what `accept` throws.
-std::shared_ptr<Connection> accept_connection(const Ground& ground, Descriptor socket,
+std::shared_ptr<Connection> accept_connection(const ChannelContext& context, Descriptor socket,
                                               LinkTerms terms, std::unique_ptr<Carrier> carrier,
                                               const AcceptHandler& accept);
 

@@ -7,10 +7,10 @@
 
 namespace rr::channel {
 
-std::map<std::string, std::shared_ptr<Channel>> all_channels(const Ground& ground) {
-  const std::shared_ptr<Channel> tcp = make_tcp_channel(ground);
+std::map<std::string, std::shared_ptr<Channel>> all_channels(const ChannelContext& context) {
+  const std::shared_ptr<Channel> tcp = make_tcp_channel(context);
   const std::shared_ptr<IntraSpace> space =
-      ground.options->intra ? ground.options->intra : IntraSpace::of_process();
+      context.options->intra ? context.options->intra : IntraSpace::of_process();
   std::map<std::string, std::shared_ptr<Channel>> channels = {
       {"tcp", tcp},
       {"rr+tcp", tcp},
@@ -19,13 +19,14 @@ std::map<std::string, std::shared_ptr<Channel>> all_channels(const Ground& groun
       {"rrs+ws", tcp},
       {"rr+wss", tcp},
       {"rrs+wss", tcp},
-      {"rr+local", make_local_channel(ground)},
-      {"rr+intra", make_message_channel(ground, "rr+intra",
-                                        space->channel(ground.options->id, ground.options->name))},
+      {"rr+local", make_local_channel(context)},
+      {"rr+intra",
+       make_message_channel(context, "rr+intra",
+                            space->channel(context.options->id, context.options->name))},
   };
-  for (const auto& [scheme, channel] : ground.options->channels) {
+  for (const auto& [scheme, channel] : context.options->channels) {
     if (!channel ||
-        !channels.emplace(scheme, make_message_channel(ground, scheme, channel)).second) {
+        !channels.emplace(scheme, make_message_channel(context, scheme, channel)).second) {
       throw Error(ErrorCode::invalid_argument, "`" + scheme + "` cannot be given to a channel");
     }
   }

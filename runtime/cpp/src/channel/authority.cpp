@@ -1,208 +1,355 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rr/authority.hpp"
 
-#include <fcntl.h>
-#include <openssl/ec.h>
 #include <openssl/pem.h>
-#include <openssl/rand.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
 #include <utility>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/channel/authority_index.hpp"
 #include "runtime/cpp/src/channel/certificate.hpp"
+#include "runtime/cpp/src/channel/issuing.hpp"
+#include "runtime/cpp/src/channel/private_files.hpp"
 
 namespace rr {
 namespace {
 
 using namespace channel;  // NOLINT(google-build-using-namespace): the types of certificate.hpp
 
-constexpr long second_a_day = 86400;
-// Clocks differ.
-constexpr long back_dated = 3600;
-constexpr long list_validity = 3650 * second_a_day;
+using WallClock = std::chrono::system_clock;
 
-using TextPtr = std::unique_ptr<BIO, Releases<BIO_free>>;
-
-void check(bool is_right) {
-  if (!is_right) throw Error(ErrorCode::internal_error, "a certificate: " + library_error());
+std::string certificate_text(X509& certificate) {
+  return printed([&](BIO* to) { return PEM_write_bio_X509(to, &certificate) == 1; });
 }
 
-KeyPtr make_key() {
-  KeyPtr key(EVP_EC_gen("P-256"));
-  check(key != nullptr);
-  return key;
-}
-
-void set_random_serial(X509& certificate) {
-  std::array<unsigned char, 16> bytes{};
-  check(RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) == 1);
-  bytes.front() &= 0x7fU;  // positive
-  const std::unique_ptr<BIGNUM, Releases<BN_free>> number(
-      BN_bin2bn(bytes.data(), static_cast<int>(bytes.size()), nullptr));
-  check(BN_to_ASN1_INTEGER(number.get(), X509_get_serialNumber(&certificate)) != nullptr);
-}
-
-void set_subject(X509& certificate, const std::string& name) {
-  check(X509_NAME_add_entry_by_NID(
-            X509_get_subject_name(&certificate), NID_commonName, MBSTRING_UTF8,
-            reinterpret_cast<const unsigned char*>(name.c_str()), -1, -1, 0) == 1);
-}
-
-void add_extension(X509& certificate, X509& issuer, int kind, const char* value) {
-  X509V3_CTX context;
-  X509V3_set_ctx_nodb(&context);
-  X509V3_set_ctx(&context, &issuer, &certificate, nullptr, nullptr, 0);
-  const std::unique_ptr<X509_EXTENSION, Releases<X509_EXTENSION_free>> extension(
-      X509V3_EXT_conf_nid(nullptr, &context, kind, value));
-  check(extension != nullptr && X509_add_ext(&certificate, extension.get(), -1) == 1);
-}
-
-// The critical extension that says what the certificate is for; its content is an empty value.
-void add_mark(X509& certificate, Mark mark) {
-  const std::unique_ptr<ASN1_OBJECT, Releases<ASN1_OBJECT_free>> identifier(
-      OBJ_txt2obj(mark_identifier(mark).c_str(), 1));
-  const std::unique_ptr<ASN1_OCTET_STRING, Releases<ASN1_OCTET_STRING_free>> content(
-      ASN1_OCTET_STRING_new());
-  constexpr std::array<unsigned char, 2> null = {5, 0};
-  check(ASN1_OCTET_STRING_set(content.get(), null.data(), static_cast<int>(null.size())) == 1);
-  const std::unique_ptr<X509_EXTENSION, Releases<X509_EXTENSION_free>> extension(
-      X509_EXTENSION_create_by_OBJ(nullptr, identifier.get(), 1, content.get()));
-  check(extension != nullptr && X509_add_ext(&certificate, extension.get(), -1) == 1);
-}
-
-CertificatePtr make_certificate(const std::string& subject, EVP_PKEY& key, Authority::Days days) {
-  CertificatePtr certificate(X509_new());
-  check(certificate != nullptr);
-  X509_set_version(certificate.get(), X509_VERSION_3);
-  set_random_serial(*certificate);
-  const long validity = days.count() * second_a_day;
-  X509_gmtime_adj(X509_getm_notBefore(certificate.get()),
-                  validity < 0 ? 2 * validity : -back_dated);
-  X509_gmtime_adj(X509_getm_notAfter(certificate.get()), validity);
-  set_subject(*certificate, subject);
-  check(X509_set_pubkey(certificate.get(), &key) == 1);
-  return certificate;
-}
-
-// Writes what `print` prints, whole or not at all.
-template <class Print>
-void write_file(const std::string& path, mode_t mode, Print&& print) {
-  const TextPtr text(BIO_new(BIO_s_mem()));
-  check(text != nullptr && print(text.get()));
-  char* bytes = nullptr;
-  const long size = BIO_get_mem_data(text.get(), &bytes);
-  const std::string part = path + ".new";
-  unlink(part.c_str());
-  const int file = open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-  const bool is_written = file >= 0 && ::write(file, bytes, static_cast<std::size_t>(size)) == size;
-  const bool is_closed = file >= 0 && ::close(file) == 0;
-  if (!is_written || !is_closed || std::rename(part.c_str(), path.c_str()) != 0) {
-    throw Error(ErrorCode::invalid_configuration, "`" + path + "` cannot be written");
+// Names stand in a line of the index.
+void check_name(const std::string& name) {
+  const bool is_line = std::none_of(name.begin(), name.end(), [](unsigned char letter) {
+    return letter < 0x20 || letter == 0x7f;
+  });
+  if (!is_line || name.size() > 256) {
+    throw Error(ErrorCode::invalid_argument,
+                "a name has 256 bytes at most, and no control characters");
   }
 }
 
-bool print_key(BIO* to, EVP_PKEY* key) {
-  return PEM_write_bio_PKCS8PrivateKey(to, key, nullptr, nullptr, 0, nullptr, nullptr) == 1;
+IssuedCertificate described(const X509& certificate, const NodeId& node, const std::string& name) {
+  return {serial_of(certificate), node, name, time_of(X509_get0_notBefore(&certificate)),
+          time_of(X509_get0_notAfter(&certificate))};
 }
 
-constexpr mode_t secret = 0600;
-constexpr mode_t readable = 0644;
-
-void write_revocations(const std::string& file, X509_CRL& list, const Identity& authority) {
-  const std::unique_ptr<ASN1_TIME, Releases<ASN1_TIME_free>> now(
-      X509_gmtime_adj(nullptr, -back_dated));
-  const std::unique_ptr<ASN1_TIME, Releases<ASN1_TIME_free>> next(
-      X509_gmtime_adj(nullptr, list_validity));
-  X509_CRL_set_version(&list, X509_CRL_VERSION_2);
-  X509_CRL_set_issuer_name(&list, X509_get_subject_name(authority.certificate.get()));
-  X509_CRL_set1_lastUpdate(&list, now.get());
-  X509_CRL_set1_nextUpdate(&list, next.get());
-  X509_CRL_sort(&list);
-  check(X509_CRL_sign(&list, authority.key.get(), EVP_sha256()) > 0);
-  write_file(file, readable, [&](BIO* to) { return PEM_write_bio_X509_CRL(to, &list) == 1; });
+// The same with a key, without a passphrase, for programs that read no PEM.
+std::string bundle_text(X509& certificate, EVP_PKEY& key, X509& authority, const NodeId& node) {
+  STACK_OF(X509)* const above = sk_X509_new_null();
+  sk_X509_push(above, &authority);
+  const std::unique_ptr<PKCS12, Releases<PKCS12_free>> bundle(
+      PKCS12_create("", subject_of(node).c_str(), &key, &certificate, above, 0, 0, 0, 0, 0));
+  sk_X509_free(above);
+  check_made(bundle != nullptr);
+  return printed([&](BIO* to) { return i2d_PKCS12_bio(to, bundle.get()) == 1; });
 }
 
-Identity read_authority(const std::string& folder) {
-  return read_identity(folder + "/ca.pem", folder + "/ca.key");
+void wipe(std::string& secret) { OPENSSL_cleanse(secret.data(), secret.size()); }
+
+}  // namespace
+
+// What one call does in the folder, with everybody else kept out.
+class Authority::Work {
+ public:
+  explicit Work(const Authority& authority)
+      : folder_(authority.folder_), lock_(folder_), index_(read_or_collect()) {}
+
+  // The one who signs, with the key. Throws.
+  static Identity signer(const Authority& authority) {
+    Identity identity;
+    identity.certificate = std::move(read_certificates(authority.certificate_file()).front());
+    identity.key = read_key(authority.folder_ + "/ca.key", authority.passphrase_);
+    if (X509_check_private_key(identity.certificate.get(), identity.key.get()) != 1) {
+      throw Error(ErrorCode::invalid_configuration,
+                  "`" + authority.folder_ + "/ca.key`: the key is not that of ca.pem");
+    }
+    return identity;
+  }
+
+  [[nodiscard]] const std::vector<IssuedCertificate>& index() const { return index_; }
+
+  // Before the certificate is in anybody's hands: none is valid that the index does not know.
+  void add(IssuedCertificate issued) {
+    index_.push_back(std::move(issued));
+    write_index(index_file(), index_);
+  }
+
+  // How many of those that `is_meant` were valid until now.
+  template <class Meant>
+  std::size_t revoke(const Identity& signer, Meant&& is_meant) {
+    std::size_t count = 0;
+    const auto now = std::chrono::floor<std::chrono::seconds>(WallClock::now());
+    for (IssuedCertificate& each : index_) {
+      if (each.revoked || !is_meant(each)) continue;
+      each.revoked = now;
+      ++count;
+    }
+    // The index first: the list is made of it, so that the next one mends an interrupted run.
+    if (count != 0) write_index(index_file(), index_);
+    write_list(signer, std::nullopt);
+    return count;
+  }
+
+  void write_list(const Identity& signer, std::optional<Days> validity) const {
+    Revocations known;
+    if (std::filesystem::exists(list_file())) {
+      known = revocations_of(*read_revocations(list_file()).front());
+    }
+    if (validity) known.validity = *validity;
+    for (const IssuedCertificate& each : index_) {
+      const auto is_same = [&](const Revocations::Entry& entry) {
+        return entry.serial == each.serial;
+      };
+      if (!each.revoked || std::any_of(known.entries.begin(), known.entries.end(), is_same)) {
+        continue;
+      }
+      known.entries.push_back({each.serial, *each.revoked});
+    }
+    const RevocationsPtr list = make_list(known, signer);
+    replace_file(list_file(),
+                 printed([&](BIO* to) { return PEM_write_bio_X509_CRL(to, list.get()) == 1; }),
+                 public_file);
+  }
+
+ private:
+  [[nodiscard]] std::string index_file() const { return folder_ + "/index"; }
+  [[nodiscard]] std::string list_file() const { return folder_ + "/revoked.pem"; }
+
+  // Folders that an older version has made have no index: then what is there counts.
+  [[nodiscard]] std::vector<IssuedCertificate> read_or_collect() const {
+    if (std::filesystem::exists(index_file())) return read_index(index_file());
+    std::vector<IssuedCertificate> found;
+    std::error_code error;
+    for (const auto& file : std::filesystem::directory_iterator(folder_ + "/nodes", error)) {
+      if (file.path().extension() != ".pem") continue;
+      const CertificatePtr certificate = std::move(read_certificates(file.path().string()).front());
+      const auto node = channel::node_of(*certificate);
+      if (node) found.push_back(described(*certificate, *node, {}));
+    }
+    if (std::filesystem::exists(list_file())) {
+      for (const auto& entry : revocations_of(*read_revocations(list_file()).front()).entries) {
+        for (IssuedCertificate& each : found) {
+          if (each.serial == entry.serial) each.revoked = entry.when;
+        }
+      }
+    }
+    return found;
+  }
+
+  const std::string folder_;
+  const FolderLock lock_;
+  std::vector<IssuedCertificate> index_;
+};
+
+Authority Authority::create(const std::string& folder, const std::string& name, Days validity,
+                            const std::string& passphrase) {
+  check_name(name);
+  make_private_folder(folder);
+  std::error_code error;
+  const auto refuse_second = [&] {
+    throw Error(ErrorCode::invalid_operation, "`" + folder + "` has an authority already");
+  };
+  const FolderLock lock(folder);
+  if (std::filesystem::exists(folder + "/ca.key", error)) refuse_second();
+  make_private_folder(folder + "/nodes");
+  Identity made;
+  made.key = make_key();
+  made.certificate = make_root(name, *made.key, validity);
+  std::string key = key_text(*made.key, passphrase);
+  replace_file(folder + "/ca.pem", certificate_text(*made.certificate), public_file);
+  write_index(folder + "/index", {});
+  const RevocationsPtr list = make_list({}, made);
+  replace_file(folder + "/revoked.pem",
+               printed([&](BIO* to) { return PEM_write_bio_X509_CRL(to, list.get()) == 1; }),
+               public_file);
+  // The last: with it the authority is there.
+  create_file(folder + "/ca.key", key, secret_file);
+  wipe(key);
+  return Authority(folder, passphrase);
+}
+
+Authority::Authority(std::string folder, std::string passphrase)
+    : folder_(std::move(folder)), passphrase_(std::move(passphrase)) {
+  read_certificates(certificate_file());
+}
+
+Authority::~Authority() { wipe(passphrase_); }
+Authority::Authority(const Authority&) = default;
+
+bool Authority::has_passphrase(const std::string& folder) {
+  std::ifstream file(folder + "/ca.key", std::ios::binary);
+  std::string line;
+  while (std::getline(file, line)) {
+    if (line.find("ENCRYPTED") != std::string::npos) return true;
+  }
+  return false;
+}
+
+void Authority::set_passphrase(const std::string& passphrase) {
+  const Identity signer = Work::signer(*this);
+  const Work work(*this);
+  std::string key = key_text(*signer.key, passphrase);
+  replace_file(folder_ + "/ca.key", key, secret_file);
+  wipe(key);
+  wipe(passphrase_);
+  passphrase_ = passphrase;
+}
+
+namespace {
+
+void write_identity(const std::string& stem, X509& certificate, EVP_PKEY& key, X509& authority,
+                    const NodeId& node) {
+  std::string both = certificate_text(certificate) + key_text(key, {});
+  replace_file(stem + ".pem", both, secret_file);
+  wipe(both);
+  std::string bundle = bundle_text(certificate, key, authority, node);
+  replace_file(stem + ".p12", bundle, secret_file);
+  wipe(bundle);
 }
 
 }  // namespace
 
-Authority Authority::create(const std::string& folder, const std::string& name, Days validity) {
-  std::error_code error;
-  if (std::filesystem::exists(folder + "/ca.key", error)) {
-    throw Error(ErrorCode::invalid_operation, "`" + folder + "` has an authority already");
-  }
-  std::filesystem::create_directories(folder + "/nodes", error);
-  if (error) {
-    throw Error(ErrorCode::invalid_configuration, "`" + folder + "`: " + error.message());
-  }
-  Identity made;
-  made.key = make_key();
-  made.certificate = make_certificate(name, *made.key, validity);
-  X509& certificate = *made.certificate;
-  X509_set_issuer_name(&certificate, X509_get_subject_name(&certificate));
-  add_extension(certificate, certificate, NID_basic_constraints, "critical,CA:TRUE");
-  add_extension(certificate, certificate, NID_key_usage, "critical,keyCertSign,cRLSign");
-  add_extension(certificate, certificate, NID_subject_key_identifier, "hash");
-  add_mark(certificate, Mark::root);
-  check(X509_sign(&certificate, made.key.get(), EVP_sha256()) > 0);
-  write_file(folder + "/ca.key", secret, [&](BIO* to) { return print_key(to, made.key.get()); });
-  write_file(folder + "/ca.pem", readable,
-             [&](BIO* to) { return PEM_write_bio_X509(to, &certificate) == 1; });
-  const RevocationsPtr list(X509_CRL_new());
-  write_revocations(folder + "/revoked.pem", *list, made);
-  return Authority(folder);
-}
-
-Authority::Authority(std::string folder) : folder_(std::move(folder)) { read_authority(folder_); }
-
-std::string Authority::issue(const NodeId& node, Days validity) {
-  if (node.is_any()) throw Error(ErrorCode::invalid_argument, "a certificate needs a node id");
-  const Identity authority = read_authority(folder_);
+std::string Authority::issue(const NodeId& node, Days validity, const std::string& name) {
+  check_name(name);
+  const Identity signer = Work::signer(*this);
   const KeyPtr key = make_key();
-  const CertificatePtr made = make_certificate(subject_of(node), *key, validity);
-  X509_set_issuer_name(made.get(), X509_get_subject_name(authority.certificate.get()));
-  add_extension(*made, *authority.certificate, NID_basic_constraints, "critical,CA:FALSE");
-  add_extension(*made, *authority.certificate, NID_key_usage, "critical,digitalSignature");
-  add_extension(*made, *authority.certificate, NID_subject_key_identifier, "hash");
-  add_extension(*made, *authority.certificate, NID_authority_key_identifier, "keyid:always");
-  add_mark(*made, Mark::node);
-  check(X509_sign(made.get(), authority.key.get(), EVP_sha256()) > 0);
+  const CertificatePtr made = make_node_certificate(node, *key, signer, validity);
+  Work work(*this);
+  work.add(described(*made, node, name));
   const std::string stem = folder_ + "/nodes/" + node.text();
-  write_file(stem + ".pem", secret, [&](BIO* to) {
-    return PEM_write_bio_X509(to, made.get()) == 1 && print_key(to, key.get());
-  });
-  const std::string friendly = subject_of(node);
-  STACK_OF(X509)* const above = sk_X509_new_null();
-  sk_X509_push(above, authority.certificate.get());
-  const std::unique_ptr<PKCS12, Releases<PKCS12_free>> bundle(
-      PKCS12_create("", friendly.c_str(), key.get(), made.get(), above, 0, 0, 0, 0, 0));
-  sk_X509_free(above);
-  check(bundle != nullptr);
-  write_file(stem + ".p12", secret, [&](BIO* to) { return i2d_PKCS12_bio(to, bundle.get()) == 1; });
+  write_identity(stem, *made, *key, *signer.certificate, node);
   return stem + ".pem";
 }
 
-void Authority::revoke(const NodeId& node) {
-  const Identity authority = read_authority(folder_);
-  const std::string file = folder_ + "/nodes/" + node.text() + ".pem";
+std::string Authority::renew(const NodeId& node, RenewedKey key, Days validity,
+                             const std::string& name) {
+  check_name(name);
+  const std::string stem = folder_ + "/nodes/" + node.text();
+  const Identity before = read_identity(stem + ".pem", "");
+  if (key == RenewedKey::another) return issue(node, validity, name);
+  const Identity signer = Work::signer(*this);
+  const CertificatePtr made = make_node_certificate(node, *before.key, signer, validity);
+  Work work(*this);
+  work.add(described(*made, node, name));
+  write_identity(stem, *made, *before.key, *signer.certificate, node);
+  return stem + ".pem";
+}
+
+std::string Authority::sign(const std::string& request_file, Days validity,
+                            const std::string& name) {
+  check_name(name);
+  const RequestPtr request = read_request(request_file);
+  const NodeId node = channel::node_of(*request);
+  const Identity signer = Work::signer(*this);
+  const CertificatePtr made =
+      make_node_certificate(node, *X509_REQ_get0_pubkey(request.get()), signer, validity);
+  Work work(*this);
+  work.add(described(*made, node, name));
+  const std::string file = folder_ + "/nodes/" + node.text() + ".cert.pem";
+  replace_file(file, certificate_text(*made), public_file);
+  return file;
+}
+
+std::vector<IssuedCertificate> Authority::issued() const { return Work(*this).index(); }
+
+std::size_t Authority::revoke(const NodeId& node) {
+  const Identity signer = Work::signer(*this);
+  Work work(*this);
+  const auto is_meant = [&](const IssuedCertificate& each) { return each.node == node; };
+  if (std::none_of(work.index().begin(), work.index().end(), is_meant)) {
+    throw Error(ErrorCode::invalid_argument,
+                "`" + folder_ + "` has issued no certificate for node " + node.text());
+  }
+  return work.revoke(signer, is_meant);
+}
+
+std::size_t Authority::revoke_earlier(const NodeId& node) {
+  const Identity signer = Work::signer(*this);
+  Work work(*this);
+  std::string newest;
+  for (const IssuedCertificate& each : work.index()) {
+    if (each.node == node) newest = each.serial;
+  }
+  return work.revoke(signer, [&](const IssuedCertificate& each) {
+    return each.node == node && each.serial != newest;
+  });
+}
+
+std::size_t Authority::revoke_serial(const std::string& serial) {
+  const std::string wanted = serial_in(serial);
+  const Identity signer = Work::signer(*this);
+  Work work(*this);
+  const auto is_meant = [&](const IssuedCertificate& each) { return each.serial == wanted; };
+  if (wanted.empty() || std::none_of(work.index().begin(), work.index().end(), is_meant)) {
+    throw Error(ErrorCode::invalid_argument,
+                "`" + folder_ + "` has issued no certificate with the serial `" + serial + "`");
+  }
+  return work.revoke(signer, is_meant);
+}
+
+std::size_t Authority::revoke_file(const std::string& file) {
   const CertificatePtr certificate = std::move(read_certificates(file).front());
-  std::vector<RevocationsPtr> lists = read_revocations(revocation_file());
-  X509_CRL& list = *lists.front();
-  X509_REVOKED* known = nullptr;
-  if (X509_CRL_get0_by_serial(&list, &known, X509_get_serialNumber(certificate.get())) == 1) return;
-  std::unique_ptr<X509_REVOKED, Releases<X509_REVOKED_free>> entry(X509_REVOKED_new());
-  const std::unique_ptr<ASN1_TIME, Releases<ASN1_TIME_free>> now(X509_gmtime_adj(nullptr, 0));
-  X509_REVOKED_set_serialNumber(entry.get(), X509_get_serialNumber(certificate.get()));
-  X509_REVOKED_set_revocationDate(entry.get(), now.get());
-  check(X509_CRL_add0_revoked(&list, entry.get()) == 1);
-  static_cast<void>(entry.release());  // the list's now
-  write_revocations(revocation_file(), list, authority);
+  const Identity signer = Work::signer(*this);
+  const auto node = channel::node_of(*certificate);
+  if (!node || X509_verify(certificate.get(), signer.key.get()) != 1) {
+    throw Error(ErrorCode::invalid_argument,
+                "`" + file + "`: the certificate is not one of this authority for a node");
+  }
+  Work work(*this);
+  const std::string serial = serial_of(*certificate);
+  const auto is_meant = [&](const IssuedCertificate& each) { return each.serial == serial; };
+  // An index may have got lost; what was signed with the key can be revoked all the same.
+  if (std::none_of(work.index().begin(), work.index().end(), is_meant)) {
+    work.add(described(*certificate, *node, {}));
+  }
+  return work.revoke(signer, is_meant);
+}
+
+void Authority::refresh(std::optional<Days> validity) {
+  const Identity signer = Work::signer(*this);
+  Work(*this).write_list(signer, validity);
+}
+
+IssuedCertificate::Time Authority::list_runs_out() const {
+  return revocations_of(*read_revocations(revocation_file()).front()).runs_out;
+}
+
+CertificateRequest request_certificate(const std::string& folder, const NodeId& node,
+                                       bool keeps_key) {
+  if (!std::filesystem::exists(folder)) make_private_folder(folder);
+  const std::string stem = folder + "/" + node.text();
+  CertificateRequest made{stem + ".key", stem + ".csr", {}};
+  KeyPtr key;
+  if (keeps_key) {
+    key = read_key(made.key_file, {});
+  } else {
+    key = make_key();
+  }
+  made.fingerprint = key_fingerprint(*key);
+  const RequestPtr request = make_request(node, *key);
+  if (!keeps_key) {
+    std::string text = key_text(*key, {});
+    create_file(made.key_file, text, secret_file);
+    wipe(text);
+  }
+  replace_file(made.request_file,
+               printed([&](BIO* to) { return PEM_write_bio_X509_REQ(to, request.get()) == 1; }),
+               public_file);
+  return made;
+}
+
+std::pair<NodeId, std::string> read_certificate_request(const std::string& request_file) {
+  const RequestPtr request = read_request(request_file);
+  return {channel::node_of(*request), key_fingerprint(*X509_REQ_get0_pubkey(request.get()))};
 }
 
 }  // namespace rr

@@ -20,16 +20,22 @@ constexpr std::string_view subject_prefix = "Robot Raconteur Node ";
 // More is no certificate of a node.
 constexpr long largest_file = 1024 * 1024;
 
-struct Frees {
-  void operator()(BIO* file) const { BIO_free(file); }
-};
-using FilePtr = std::unique_ptr<BIO, Frees>;
-
 [[noreturn]] void refuse(const std::string& file, const std::string& why) {
   throw Error(ErrorCode::invalid_configuration, "`" + file + "`: " + why);
 }
 
-FilePtr open_file(const std::string& name) {
+// Nobody is asked for a password.
+int no_password(char* /*to*/, int /*size*/, int /*is_writing*/, void* /*context*/) { return -1; }
+
+std::string identifier_of(const ASN1_OBJECT* object) {
+  std::array<char, 128> text{};
+  OBJ_obj2txt(text.data(), text.size(), object, 1);
+  return text.data();
+}
+
+}  // namespace
+
+FilePtr open_certificate_file(const std::string& name) {
   FilePtr file(BIO_new_file(name.c_str(), "rb"));
   if (!file) refuse(name, "it cannot be read");
   if (BIO_seek(file.get(), 0) == 0) {
@@ -43,17 +49,6 @@ FilePtr open_file(const std::string& name) {
   }
   return file;
 }
-
-// Nobody is asked for a password.
-int no_password(char* /*to*/, int /*size*/, int /*is_writing*/, void* /*context*/) { return -1; }
-
-std::string identifier_of(const ASN1_OBJECT* object) {
-  std::array<char, 128> text{};
-  OBJ_obj2txt(text.data(), text.size(), object, 1);
-  return text.data();
-}
-
-}  // namespace
 
 std::string library_error() {
   const unsigned long code = ERR_peek_last_error();
@@ -99,10 +94,9 @@ std::string subject_of(const NodeId& node) {
   return std::string(subject_prefix) + node.text_with_braces();
 }
 
-std::optional<NodeId> node_of(const X509& certificate) {
-  X509_NAME* const subject = X509_get_subject_name(&certificate);
-  if (X509_NAME_entry_count(subject) != 1) return std::nullopt;
-  X509_NAME_ENTRY* const entry = X509_NAME_get_entry(subject, 0);
+std::optional<NodeId> node_in(const X509_NAME& subject) {
+  if (X509_NAME_entry_count(&subject) != 1) return std::nullopt;
+  X509_NAME_ENTRY* const entry = X509_NAME_get_entry(&subject, 0);
   if (OBJ_obj2nid(X509_NAME_ENTRY_get_object(entry)) != NID_commonName) return std::nullopt;
   const ASN1_STRING* const name = X509_NAME_ENTRY_get_data(entry);
   const std::string_view text(reinterpret_cast<const char*>(ASN1_STRING_get0_data(name)),
@@ -114,17 +108,25 @@ std::optional<NodeId> node_of(const X509& certificate) {
   return node;
 }
 
-std::string fingerprint_of(const X509& certificate) {
+std::optional<NodeId> node_of(const X509& certificate) {
+  return node_in(*X509_get_subject_name(&certificate));
+}
+
+std::string hexadecimal(std::span<const unsigned char> bytes) {
   constexpr std::string_view digits = "0123456789abcdef";
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned size = 0;
   std::string text;
-  if (X509_digest(&certificate, EVP_sha256(), digest.data(), &size) == 0) return text;
-  for (unsigned i = 0; i < size; ++i) {
-    text += digits[digest[i] >> 4U];
-    text += digits[digest[i] & 0x0FU];
+  for (const unsigned char each : bytes) {
+    text += digits[each >> 4U];
+    text += digits[each & 0x0FU];
   }
   return text;
+}
+
+std::string fingerprint_of(const X509& certificate) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned size = 0;
+  if (X509_digest(&certificate, EVP_sha256(), digest.data(), &size) == 0) return {};
+  return hexadecimal(std::span(digest).first(size));
 }
 
 std::string text_of(const ASN1_TIME* time) {
@@ -138,7 +140,7 @@ std::string text_of(const ASN1_TIME* time) {
 namespace {
 
 Identity read_pkcs12(const std::string& name) {
-  const FilePtr file = open_file(name);
+  const FilePtr file = open_certificate_file(name);
   const std::unique_ptr<PKCS12, Releases<PKCS12_free>> bundle(d2i_PKCS12_bio(file.get(), nullptr));
   if (!bundle) refuse(name, "it is no PKCS #12 file");
   EVP_PKEY* key = nullptr;
@@ -158,7 +160,7 @@ Identity read_pkcs12(const std::string& name) {
 }  // namespace
 
 std::vector<CertificatePtr> read_certificates(const std::string& name) {
-  const FilePtr file = open_file(name);
+  const FilePtr file = open_certificate_file(name);
   std::vector<CertificatePtr> certificates;
   while (X509* const next = PEM_read_bio_X509(file.get(), nullptr, no_password, nullptr)) {
     certificates.emplace_back(next);
@@ -169,7 +171,7 @@ std::vector<CertificatePtr> read_certificates(const std::string& name) {
 }
 
 std::vector<RevocationsPtr> read_revocations(const std::string& name) {
-  const FilePtr file = open_file(name);
+  const FilePtr file = open_certificate_file(name);
   std::vector<RevocationsPtr> lists;
   while (X509_CRL* const next = PEM_read_bio_X509_CRL(file.get(), nullptr, no_password, nullptr)) {
     lists.emplace_back(next);
@@ -189,7 +191,7 @@ Identity read_identity(const std::string& certificate_file, const std::string& k
     certificates.erase(certificates.begin());
     identity.chain = std::move(certificates);
     const std::string& name = key_file.empty() ? certificate_file : key_file;
-    const FilePtr file = open_file(name);
+    const FilePtr file = open_certificate_file(name);
     identity.key.reset(PEM_read_bio_PrivateKey(file.get(), nullptr, no_password, nullptr));
     if (!identity.key) refuse(name, "it has no private key without a password");
   }

@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,12 +41,20 @@ bool has_only_known_criticals(const X509& certificate);
 
 /// The name that a node's certificate is for.
 std::string subject_of(const NodeId& node);
+/// The node that a subject names; nothing when it is another one.
+std::optional<NodeId> node_in(const X509_NAME& subject);
 /// The node that a certificate is for; nothing when its subject is another one.
 std::optional<NodeId> node_of(const X509& certificate);
+/// Bytes as hexadecimal digits in lower case.
+std::string hexadecimal(std::span<const unsigned char> bytes);
 /// The SHA-256 of a certificate, as hexadecimal digits in lower case.
 std::string fingerprint_of(const X509& certificate);
 /// A time of a certificate, for people.
 std::string text_of(const ASN1_TIME* time);
+
+using FilePtr = std::unique_ptr<BIO, Releases<BIO_free>>;
+/// A file of 1 MiB at most, to be read. Throws rr::Error (invalid_configuration).
+FilePtr open_certificate_file(const std::string& name);
 
 /// What a file of PEM or `.p12` has.
 struct Identity {

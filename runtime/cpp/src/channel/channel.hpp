@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <map>
@@ -12,37 +11,34 @@
 
 #include "rr/options.hpp"
 #include "rr/url.hpp"
+#include "runtime/cpp/src/channel/account.hpp"
+#include "runtime/cpp/src/channel/admission.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 
 namespace rr::channel {
 
-/// How many incoming connections a node has.
-class AcceptedCount {
- public:
-  /// 0: no limit.
-  explicit AcceptedCount(std::size_t limit) : limit_(limit) {}
-  /// False when there are as many as may be.
-  bool add() {
-    if (count_.fetch_add(1) < limit_ || limit_ == 0) return true;
-    --count_;
-    return false;
-  }
-  void remove() { --count_; }
-
- private:
-  const std::size_t limit_;
-  std::atomic<std::size_t> count_{0};
-};
-
 class Tls;
 class WebSockets;
 
+/// What the peers of a node may make it hold.
+struct Pools {
+  std::shared_ptr<Pool> before_session;
+  std::shared_ptr<Pool> sessions;
+};
+/// Those that the options describe.
+Pools make_pools(const NodeOptions& options);
+/// Gives memory back to the system when much has been given back to the pools (memory_return.cpp).
+void watch_pools(const Pools& pools, const std::shared_ptr<Reactor>& reactor);
+/// See Budget::fixes_heap_thresholds. Once for the process.
+void fix_heap_thresholds();
+
 /// What channels work with.
-struct Ground {
+struct ChannelContext {
   std::shared_ptr<Reactor> reactor;
   std::shared_ptr<const NodeOptions> options;  ///< with the id filled in
-  std::shared_ptr<AcceptedCount> accepted;
+  std::shared_ptr<Admission> accepted;
+  Pools pools{};
   std::shared_ptr<const Tls> tls{};           ///< always, in a node
   std::shared_ptr<WebSockets> web_sockets{};  ///< likewise
 };
@@ -78,18 +74,18 @@ class Channel {
 
 /// What can be used with an `rr::Node`: scheme and channel, ours and those of the options. Throws
 /// rr::Error (invalid_argument) when the options give one of our schemes to another channel.
-std::map<std::string, std::shared_ptr<Channel>> all_channels(const Ground& ground);
+std::map<std::string, std::shared_ptr<Channel>> all_channels(const ChannelContext& context);
 
-std::shared_ptr<Channel> make_tcp_channel(Ground ground);
-std::shared_ptr<Channel> make_local_channel(Ground ground);
+std::shared_ptr<Channel> make_tcp_channel(ChannelContext context);
+std::shared_ptr<Channel> make_local_channel(ChannelContext context);
 /// A channel over one that carries whole messages.
-std::shared_ptr<Channel> make_message_channel(Ground ground, std::string scheme,
+std::shared_ptr<Channel> make_message_channel(ChannelContext context, std::string scheme,
                                               std::shared_ptr<MessageChannel> channel);
 
 /// A connection over one end of a connected stream socket, as a server: for tests, fuzzing, and
 /// sockets that come from elsewhere. Takes over the descriptor. Throws rr::Error (connection_error)
 /// when the node has as many connections as it may, and what `accept` throws.
-std::shared_ptr<Connection> adopt_socket(const Ground& ground, int descriptor,
+std::shared_ptr<Connection> adopt_socket(const ChannelContext& context, int descriptor,
                                          const AcceptHandler& accept);
 
 }  // namespace rr::channel

@@ -10,7 +10,7 @@
 namespace rr::channel {
 
 /// Makes a client's connection of what was agreed, and gives it its receiver.
-std::shared_ptr<Connection> connected(const Ground& ground, Agreed agreed, LinkTerms terms,
+std::shared_ptr<Connection> connected(const ChannelContext& context, Agreed agreed, LinkTerms terms,
                                       const AcceptHandler& make_receiver);
 
 }  // namespace rr::channel

@@ -16,26 +16,28 @@
 #include "rr/reader.hpp"
 #include "rr/wire.hpp"
 #include "rr/writer.hpp"
+#include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/sleep_word.hpp"
+#include "runtime/cpp/src/channel/thread_share.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 
 namespace rr::channel {
 
 /// What was found while reading and may run user code, which must wait until reading is given up.
-using Laters = std::vector<std::function<void()>>;
+using DeferredCallbacks = std::vector<std::function<void()>>;
 
 /// What gets the messages of a connection: the endpoint layer.
 class Receiver {
  public:
   virtual ~Receiver() = default;
   /// An entry that answers a request. On whichever thread reads, in the order of arrival; may not
-  /// wait nor run user code, but leave that in `laters`.
+  /// wait nor run user code, but leave that in `deferred`.
   virtual void take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
-                           Laters& laters) = 0;
+                           DeferredCallbacks& deferred) = 0;
   /// A packet of which only the newest counts, if it is alone in its message: the same holds. False
   /// when it is to go to handle() as others do.
   virtual bool take_packet(const Message& /*message*/, const Entry& /*entry*/,
-                           const MemoryRef& /*owner*/, Laters& /*laters*/) {
+                           const MemoryRef& /*owner*/, DeferredCallbacks& /*deferred*/) {
     return false;
   }
   /// A message that handle() gets in its turn, and that ends something for which answers may come
@@ -46,7 +48,7 @@ class Receiver {
   /// handles something else may be waiting for the call that they are a part of.
   virtual void handle(const Message& message, const Entry& first, const MemoryRef& owner) = 0;
   /// The connection is gone: requests fail. At once, on any thread; may not run user code.
-  virtual void lost(const Error& why, Laters& laters) = 0;
+  virtual void lost(const Error& why, DeferredCallbacks& deferred) = 0;
   /// The last call: comes in order behind the last message. May run user code.
   virtual void closed() = 0;
 };
@@ -80,6 +82,10 @@ enum class Priority : std::uint8_t {
   fixed,   ///< nothing, and nothing overtakes it or what waits before it
 };
 
+/// What one connection has brought is handled by a polling thread for so long before it serves
+/// others.
+inline constexpr std::chrono::microseconds longest_turn{250};
+
 /// Carries messages to and from one other node. Any thread may send.
 ///
 /// Reading has no thread of its own: a thread that waits for an answer reads the connection itself
@@ -96,8 +102,23 @@ class Connection {
   [[nodiscard]] const std::string& remote_name() const { return remote_name_; }
   /// The address of this side as it may stand in a URL: `rr+tcp://10.0.0.5:2355`; empty if unknown.
   [[nodiscard]] virtual std::string local_url() const = 0;
+  /// Who is at the other end: an IP address without its port, `uid 1000` for a local socket,
+  /// `intra` within the process, the scheme for a channel of the program's own; empty if unknown.
+  [[nodiscard]] virtual std::string remote_address() const { return {}; }
+  /// The node that the other side has proved to be by its certificate; zero without one. Once it
+  /// has said who it is.
+  [[nodiscard]] virtual NodeId certified_node() const { return {}; }
   /// What the way between the two sides is like.
   [[nodiscard]] virtual ChannelTraits traits() const = 0;
+
+  /// What the other side makes this one hold; null where nobody counts it.
+  [[nodiscard]] const std::shared_ptr<Account>& account() const { return account_; }
+  /// Before the connection is used.
+  void set_account(std::shared_ptr<Account> account) { account_ = std::move(account); }
+
+  /// The threads that what the other side asks may take; null where nobody counts them, as for a
+  /// client's connection.
+  [[nodiscard]] const std::shared_ptr<ThreadShare>& threads() const { return threads_; }
 
   /// The two endpoints that the connection carries: what a message without them is taken to have.
   void set_endpoints(std::uint32_t own, std::uint32_t remote) {
@@ -107,15 +128,24 @@ class Connection {
   [[nodiscard]] std::uint32_t own_endpoint() const {
     return own_endpoint_.load(std::memory_order_relaxed);
   }
-  /// Messages may have full size from now on.
-  void set_authorised() { is_authorised_.store(true, std::memory_order_relaxed); }
+  /// Whether the other side is in a session and, where users are needed, logged in. Only then may
+  /// messages have full size, and what it makes this node hold counts as that of a session.
+  void set_authorised(bool is_authorised) {
+    if (is_authorised_.exchange(is_authorised) == is_authorised) return;
+    if (on_authorised_) on_authorised_(is_authorised);
+  }
+  /// Before the connection is used: called when that has changed.
+  void set_on_authorised(std::function<void(bool)> on_authorised) {
+    on_authorised_ = std::move(on_authorised);
+  }
 
   /// Throws rr::Error when a message, or an entry of one, cannot be sent: protocol_error for one
   /// that is too large, or what the writer has failed with.
   virtual void check_size(const Writer& message) const = 0;
   /// Sends a finished message now, or as soon as the other side takes it; never blocks. The writer
   /// can be used again at once. Throws rr::Error: protocol_error for one that is too large,
-  /// connection_error when the connection is gone. `now` need not be exact.
+  /// connection_error when the connection is gone; out_of_system_resource when so much waits to be
+  /// sent to peers that a large one may not wait, too. `now` need not be exact.
   virtual void send(Writer& message, Time now, Priority priority) = 0;
   void send(Writer& message, Time now) { send(message, now, Priority::usual); }
   void send(Writer& message) { send(message, coarse_now()); }
@@ -135,7 +165,7 @@ class Connection {
   /// connection is gone.
   virtual bool wait_sent(std::size_t bytes, Time deadline) = 0;
   /// The same for an answer, from Receiver::handle(): it leaves together with other answers to what
-  /// one receive has brought. Throws only when it is too large.
+  /// one receive has brought. Throws only when it is too large, or may not wait (see send()).
   virtual void reply(Writer& message, Priority priority) = 0;
   void reply(Writer& message) { reply(message, Priority::usual); }
 
@@ -160,8 +190,20 @@ class Connection {
   /// and nothing happens, on a thread that does not handle a message of this connection, and when
   /// too many are in there already. Until it comes back the thread may not call reply().
   virtual bool give_up_turn() = 0;
-  /// Must follow give_up_turn(): waits until this is again the thread that handles messages.
-  virtual void take_turn_again() = 0;
+  /// Must follow give_up_turn(): waits until this is again the thread that handles messages. False
+  /// when that was not so in time: then this thread goes on beside the one that is, as far as the
+  /// next await_turn().
+  virtual bool take_turn_again(Time deadline) = 0;
+  /// Before what only the thread does that handles messages: waits until this is that thread, if it
+  /// has been. The connection calls it when Receiver::handle() has returned.
+  virtual void await_turn() = 0;
+
+  /// From Receiver::handle(), which then returns: the message is handled once more, and those
+  /// behind it wait, after resume(). False, and nothing happens, on a thread that does not handle a
+  /// message of this connection in its turn.
+  virtual bool put_off() { return false; }
+  /// Once for each put_off(), on any thread, even before the handler has returned.
+  virtual void resume() {}
 
   /// Ends the connection. Never blocks; Receiver::closed() follows.
   virtual void close(const Error& why) = 0;
@@ -176,6 +218,9 @@ class Connection {
   std::atomic<std::uint32_t> own_endpoint_{0};
   std::atomic<std::uint32_t> remote_endpoint_{0};
   std::atomic<std::uint64_t> next_stream_{1};
+  std::shared_ptr<Account> account_;
+  std::function<void(bool)> on_authorised_;
+  std::shared_ptr<ThreadShare> threads_;
   NodeId remote_node_;  // written once, by the first message
   std::string remote_name_;
 };

@@ -22,6 +22,9 @@ class StreamConnection::Turn {
   static Turn* current(const StreamConnection& connection);
 
   [[nodiscard]] Scratch& scratch() { return scratch_; }
+  /// The message that is handled now is to be handled again; by this thread.
+  [[nodiscard]] bool is_put_off() const { return is_put_off_; }
+  void set_put_off(bool is_put_off) { is_put_off_ = is_put_off; }
   [[nodiscard]] bool has_next() const { return next_ < scratch_.waiting.size(); }
   Frame next() { return std::move(scratch_.waiting[next_++]); }
   /// The last of those that are still to come.
@@ -33,12 +36,26 @@ class StreamConnection::Turn {
   /// False while others have the turn; changed under the connection's lock, by this thread.
   [[nodiscard]] bool is_held() const { return is_held_; }
   void set_held(bool is_held) { is_held_ = is_held; }
+  /// Whether it is time to let others go first. Asked between messages, from the first one on.
+  [[nodiscard]] bool is_over() {
+    const Time now = Clock::now();
+    if (until_ == Time::min()) until_ = now + longest_turn;
+    return now >= until_;
+  }
+  void count(std::size_t requests) { requests_ += requests; }
+  /// Whether a few requests have taken a tick of the coarse clock.
+  [[nodiscard]] bool is_slow() const { return requests_ < many_requests && coarse_now() != begin_; }
 
  private:
   StreamConnection& connection_;
   Scratch& scratch_;
   std::size_t next_ = 0;
   bool is_held_ = true;
+  bool is_put_off_ = false;
+  static constexpr std::size_t many_requests = 16;
+  const Time begin_ = coarse_now();
+  Time until_ = Time::min();
+  std::size_t requests_ = 0;
   Turn* const outer_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <sched.h>
 
+#include <system_error>
 #include <utility>
 
 namespace rr::channel {
@@ -14,7 +15,11 @@ void Flusher::add(std::shared_ptr<Flushable> flushable) {
     const std::lock_guard lock(mutex_);
     if (is_stopping_) return;
     due_.push_back(std::move(flushable));
-    if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+    try {
+      if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+    } catch (const std::system_error&) {
+      // Tried again with the next one; what is left until then goes with the next message.
+    }
   }
   wake_.notify_one();
 }

@@ -17,11 +17,14 @@
 
 namespace rr::channel {
 
+struct PeerProof;
+
 /// A way to another node on which both sides have agreed how to talk.
 struct Agreed {
   Descriptor socket;
-  std::unique_ptr<Carrier> carrier;  // null: none
-  NodeId certified_node;             // what the other side has proved to be; zero: nothing
+  std::unique_ptr<Carrier> carrier;          // null: none
+  NodeId certified_node;                     // what the other side has proved to be; zero: nothing
+  std::shared_ptr<const PeerProof> proof{};  // and with what
   NodeId remote_node;
   std::string remote_name;
   Agreement agreement;

@@ -18,12 +18,25 @@ namespace rr::channel {
 /// scratch; one that is not complete gets memory of its exact size, placed so that the payload of
 /// its largest array is aligned, and the rest is received straight into it. Between messages an
 /// inbox holds nothing.
+///
+/// With an account a message that is not complete is charged as its bytes come: memory that has
+/// been allocated and not been written to costs nothing.
 class Inbox {
  public:
+  /// Before it is used: who pays for messages that are not complete; null for nobody.
+  void set_account(std::shared_ptr<Account> account) { account_ = std::move(account); }
+  /// To be called before room(): false when the account has no room for more of the message.
+  [[nodiscard]] bool may_grow();
   /// Where the next bytes are to be received.
   std::span<std::byte> room(Scratch& scratch);
   /// True when room() is the rest of one message, so that it pays to wait for all of it.
   [[nodiscard]] bool is_assembling() const { return assembly_ != nullptr; }
+  /// Bytes of the message that room() is the rest of; 0 when it is of none.
+  [[nodiscard]] std::size_t assembled_size() const {
+    return assembly_ == nullptr ? 0 : assembly_->whole;
+  }
+  /// Forgets what has come.
+  void clear();
 
   /// Takes `size` bytes that were received into room(). Calls `take(frame)` for each whole message;
   /// false from it ends the walk. Returns false when the bytes are no messages within the limits.
@@ -32,7 +45,7 @@ class Inbox {
     if (assembly_ != nullptr) {
       if (!fill(size)) return false;
       if (assembly_->have != assembly_->whole) return true;
-      const Frame frame = finish();
+      Frame frame = finish();
       take(frame);
       return true;
     }
@@ -42,7 +55,8 @@ class Inbox {
       const std::size_t whole = next_size(bytes, limits);
       if (whole == 0) return false;
       if (whole > bytes.size()) return begin(bytes, whole);
-      if (!take(Frame{bytes.first(whole), {}})) return true;
+      Frame frame{bytes.first(whole)};
+      if (!take(frame)) return true;
       bytes = bytes.subspan(whole);
     }
     return keep(bytes);
@@ -59,6 +73,8 @@ class Inbox {
     std::byte* bytes = nullptr;
     std::size_t whole = 0;
     std::size_t have = 0;
+    std::size_t granted = 0;  // of the account: so many bytes may come
+    Charge charge;
     int checks_left = 8;  // what contradicts itself does so in its first bytes
   };
 
@@ -68,6 +84,7 @@ class Inbox {
   Frame finish();
   bool keep(std::span<const std::byte> bytes);
 
+  std::shared_ptr<Account> account_;
   std::unique_ptr<Assembly> assembly_;
   std::array<std::byte, smallest_header> kept_;
   std::uint8_t kept_size_ = 0;

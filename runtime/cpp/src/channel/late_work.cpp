@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <system_error>
 #include <utility>
 
 namespace rr::channel {
@@ -22,7 +23,11 @@ struct LateWork::Queue {
       std::function<void()> next = std::move(work.front());
       work.pop_front();
       lock.unlock();
-      next();
+      try {
+        next();
+      } catch (...) {
+        // Nobody is left who could be told.
+      }
       next = nullptr;
       lock.lock();
     }
@@ -42,9 +47,8 @@ void LateWork::add(std::function<void()> work) {
   if (std::exchange(queue_->has_thread, true)) return;
   try {
     std::thread([queue = queue_] { queue->run(); }).detach();
-  } catch (...) {
-    queue_->has_thread = false;
-    throw;
+  } catch (const std::system_error&) {
+    queue_->has_thread = false;  // then whoever waits does it
   }
 }
 
@@ -52,6 +56,10 @@ void LateWork::wait() {
   std::unique_lock lock(queue_->mutex);
   if (queue_->runner == std::this_thread::get_id()) return;
   queue_->ended.wait(lock, [&] { return !queue_->has_thread; });
+  if (queue_->work.empty()) return;
+  queue_->has_thread = true;
+  lock.unlock();
+  queue_->run();
 }
 
 bool LateWork::is_own_thread() const {

@@ -17,8 +17,8 @@ class LateWork {
   LateWork(const LateWork&) = delete;
   LateWork& operator=(const LateWork&) = delete;
 
-  /// Runs `work` soon, behind what was added before. Throws std::system_error when there can be no
-  /// thread.
+  /// Runs `work` soon, behind what was added before; when there can be no thread, in the next
+  /// wait().
   void add(std::function<void()> work);
   /// Waits until there is none left; not when called by it.
   void wait();

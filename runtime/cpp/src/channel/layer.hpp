@@ -2,12 +2,15 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "rr/node_id.hpp"
 
 namespace rr::channel {
+
+struct PeerProof;
 
 using Bytes = std::vector<std::byte>;
 
@@ -35,6 +38,8 @@ class Layer {
   [[nodiscard]] virtual bool is_encrypted() const { return false; }
   /// The node that the other side has proved to be; zero when it has not.
   [[nodiscard]] virtual NodeId certified_node() const { return {}; }
+  /// What it has proved that with, when it is open: once, then null.
+  virtual std::shared_ptr<const PeerProof> take_proof() { return nullptr; }
 };
 
 }  // namespace rr::channel

@@ -71,6 +71,14 @@ NodeId LayeredCarrier::certified_node() const {
   return {};
 }
 
+std::shared_ptr<const PeerProof> LayeredCarrier::take_proof() {
+  const std::lock_guard lock(mutex_);
+  for (const auto& layer : layers_) {
+    if (auto proof = layer->take_proof()) return proof;
+  }
+  return nullptr;
+}
+
 std::string LayeredCarrier::failure() const {
   const std::lock_guard lock(mutex_);
   return failure_;

@@ -29,6 +29,8 @@ class LayeredCarrier final : public Carrier {
   [[nodiscard]] bool is_encrypted() const;
   /// The node that the other side has proved to be; zero when it has not.
   [[nodiscard]] NodeId certified_node() const;
+  /// What it has proved that with: once, then null.
+  std::shared_ptr<const PeerProof> take_proof();
 
   [[nodiscard]] bool carries_messages() const override { return false; }
   std::ptrdiff_t receive(std::span<std::byte> room, bool may_block) override;

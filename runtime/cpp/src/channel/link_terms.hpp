@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -25,6 +28,8 @@ struct LinkTerms {
   // What the first bytes of a client may ask for; null: nothing of that.
   std::shared_ptr<WebSockets> web_sockets{};
   std::shared_ptr<const Tls> tls{};
+  /// Of local sockets: this user and root may connect, nobody else; nothing: all who can.
+  std::optional<uid_t> only_user{};
   /// Nothing but TLS is served.
   bool is_tls_required = false;
 };

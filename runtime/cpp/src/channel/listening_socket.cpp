@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/listening_socket.hpp"
 
+#include <fcntl.h>
 #include <sys/epoll.h>
 #include <sys/socket.h>
 
 #include <cerrno>
+#include <system_error>
 #include <utility>
 
 #include "rr/error.hpp"
@@ -14,50 +16,130 @@ namespace rr::channel {
 namespace {
 
 // After a failure to accept, for want of descriptors, it is tried again.
-constexpr Milliseconds accept_pause{100};
+constexpr Milliseconds accept_pause{20};
+// So long a connection that gives way may take to release its descriptor.
+constexpr Milliseconds giving_way{200};
+
+// After so many at once others get their chance: who opens connections without end slows down
+// nobody but those who connect.
+constexpr int accepts_at_once = 16;
+
+Descriptor any_descriptor() { return Descriptor(::open("/dev/null", O_RDONLY | O_CLOEXEC)); }
 
 }  // namespace
 
-ListeningSocket::ListeningSocket(Ground ground, Descriptor socket, LinkTerms terms,
+ListeningSocket::ListeningSocket(ChannelContext context, Descriptor socket, LinkTerms terms,
                                  AcceptHandler accept)
-    : ground_(std::move(ground)),
+    : context_(std::move(context)),
       socket_(std::move(socket)),
       terms_(std::move(terms)),
-      accept_(std::move(accept)) {}
+      accept_(std::move(accept)),
+      spare_(any_descriptor()) {}
 
-ListeningSocket::~ListeningSocket() { ground_.reactor->cancel(*this); }
+ListeningSocket::~ListeningSocket() { context_.reactor->cancel(*this); }
 
-void ListeningSocket::start() { ground_.reactor->add(socket_.get(), EPOLLIN, *this); }
+void ListeningSocket::start() { context_.reactor->add(socket_.get(), EPOLLIN, *this); }
 
 void ListeningSocket::stop() {
   is_stopped_ = true;
-  ground_.reactor->remove(socket_.get());
+  context_.reactor->remove(socket_.get());
   ::shutdown(socket_.get(), SHUT_RDWR);
-  ground_.reactor->retire(shared_from_this());
+  context_.reactor->retire(shared_from_this());
 }
 
 void ListeningSocket::on_ready(std::uint32_t /*events*/) {
-  while (!is_stopped_) {
+  for (int left = accepts_at_once; !is_stopped_; --left) {
+    if (left == 0) {
+      ask_again();
+      return;
+    }
+    if (!keep_spare()) {
+      if (may_give_way()) context_.accepted->give_way();
+      context_.reactor->schedule(*this, weak_from_this(), Clock::now() + accept_pause);
+      return;
+    }
     Descriptor accepted(accept4(socket_.get(), nullptr, nullptr, SOCK_CLOEXEC));
     if (accepted) {
       take(std::move(accepted));
       continue;
     }
     if (errno == EINTR || errno == ECONNABORTED) continue;
-    if (errno != EAGAIN && errno != EWOULDBLOCK && !is_stopped_) {
-      ground_.reactor->schedule(*this, weak_from_this(), Clock::now() + accept_pause);
+    if (errno == EAGAIN || errno == EWOULDBLOCK || is_stopped_) return;
+    if ((errno == EMFILE || errno == ENFILE) && take_with_spare()) {
+      look_again();  // when the one that gave way has released its descriptor
+    } else {
+      context_.reactor->schedule(*this, weak_from_this(), Clock::now() + accept_pause);
     }
     return;
   }
 }
 
-void ListeningSocket::on_timer() {
-  ground_.reactor->post([self = shared_from_this()] { self->on_ready(EPOLLIN); });
+bool ListeningSocket::keep_spare() {
+  const std::lock_guard lock(mutex_);
+  if (!spare_) spare_ = any_descriptor();
+  return static_cast<bool>(spare_);
+}
+
+// The descriptor of the one that gave way last may not be free yet.
+bool ListeningSocket::may_give_way() {
+  const std::lock_guard lock(mutex_);
+  const Time now = Clock::now();
+  if (now < gave_way_ + giving_way) return false;
+  gave_way_ = now;
+  return true;
+}
+
+// For want of descriptors. True when there may soon be one.
+bool ListeningSocket::take_with_spare() {
+  Descriptor accepted;
+  {
+    const std::lock_guard lock(mutex_);
+    gave_way_ = Clock::now();
+    spare_ = Descriptor();
+    accepted = Descriptor(accept4(socket_.get(), nullptr, nullptr, SOCK_CLOEXEC));
+  }
+  const bool has_room = context_.accepted->give_way();
+  if (accepted && has_room) {
+    take(std::move(accepted));
+    return true;
+  }
+  context_.accepted->warn("a connection is refused: the process has no more file descriptors");
+  accepted = Descriptor();
+  return keep_spare();
+}
+
+// The reactor tells of those who are left once more, behind what else there is.
+void ListeningSocket::ask_again() {
+  try {
+    context_.reactor->change(socket_.get(), EPOLLIN, *this);
+  } catch (const std::system_error&) {
+    // It has been stopped.
+  }
+}
+
+void ListeningSocket::on_timer() { look_again(); }
+
+void ListeningSocket::look_again() {
+  context_.reactor->post([self = shared_from_this()] { self->on_ready(EPOLLIN); });
+}
+
+// Whoever may write to a private folder is still not its user.
+bool ListeningSocket::is_welcome(const Descriptor& accepted) const {
+  if (!terms_.only_user) return true;
+  const auto client = peer_user(accepted.get());
+  if (client && (*client == *terms_.only_user || *client == 0)) return true;
+  if (context_.options->log) {
+    context_.options->log(LogLevel::warning,
+                          "a local connection was refused: it is of user " +
+                              (client ? std::to_string(*client) : std::string("unknown")));
+  }
+  return false;
 }
 
 void ListeningSocket::take(Descriptor accepted) {
+  if (!is_welcome(accepted)) return;
   try {
-    accept_connection(ground_, std::move(accepted), terms_, nullptr, accept_);
+    accept_connection(context_, std::move(accepted), terms_, nullptr, accept_);
   } catch (const std::exception&) {
     // It has been closed; who has connected finds that out.
   }

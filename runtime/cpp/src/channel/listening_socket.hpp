@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 
 #include "runtime/cpp/src/channel/channel.hpp"
 #include "runtime/cpp/src/channel/link_terms.hpp"
@@ -11,13 +12,15 @@
 
 namespace rr::channel {
 
-/// A socket that listens, and makes connections of those who come.
+/// A socket that listens, and makes connections of those who come. When the process has no more
+/// descriptors the oldest connection without a session gives way; a descriptor that is kept for
+/// this lets the new one in at once, or refuses it.
 class ListeningSocket final : public Pollable,
                               public Timer,
                               public std::enable_shared_from_this<ListeningSocket> {
  public:
   /// The socket must listen, and not block.
-  ListeningSocket(Ground ground, Descriptor socket, LinkTerms terms, AcceptHandler accept);
+  ListeningSocket(ChannelContext context, Descriptor socket, LinkTerms terms, AcceptHandler accept);
   ~ListeningSocket();
 
   void start();
@@ -30,12 +33,21 @@ class ListeningSocket final : public Pollable,
  private:
   void on_timer() override;
   void take(Descriptor accepted);
+  [[nodiscard]] bool is_welcome(const Descriptor& accepted) const;
+  bool keep_spare();
+  bool may_give_way();
+  bool take_with_spare();
+  void look_again();
+  void ask_again();
 
-  const Ground ground_;
+  const ChannelContext context_;
   const Descriptor socket_;
   const LinkTerms terms_;
   const AcceptHandler accept_;
   std::atomic<bool> is_stopped_{false};
+  std::mutex mutex_;  // guards what follows
+  Descriptor spare_;
+  Time gave_way_{};
 };
 
 }  // namespace rr::channel

@@ -8,7 +8,9 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "rr/error.hpp"
@@ -18,6 +20,7 @@
 #include "runtime/cpp/src/channel/node_files.hpp"
 #include "runtime/cpp/src/channel/tcp_connect.hpp"
 #include "runtime/cpp/src/channel/texts.hpp"
+#include "runtime/cpp/src/channel/trusted_folder.hpp"
 
 namespace rr::channel {
 namespace {
@@ -44,33 +47,63 @@ Address address_of(const std::string& path) {
               "cannot listen at `" + path + "`: " + std::strerror(error));
 }
 
-// Nobody answers at a socket that was left behind.
-bool is_dead(const Address& address) {
+// A socket that a node of this user has left behind: nobody answers there. Anything else is not
+// ours to remove.
+bool is_dead(const std::string& path, const Address& address) {
+  struct stat found {};
+  if (lstat(path.c_str(), &found) != 0 || !S_ISSOCK(found.st_mode) || found.st_uid != geteuid()) {
+    return false;
+  }
   const Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   return connect(socket.get(), reinterpret_cast<const sockaddr*>(&address.storage), address.size) !=
              0 &&
          errno == ECONNREFUSED;
 }
 
-Descriptor open_listening(const std::string& path, bool may_replace) {
-  const Address address = address_of(path);
-  Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  if (!socket) fail(path, errno);
-  const auto* const at = reinterpret_cast<const sockaddr*>(&address.storage);
-  int result = bind(socket.get(), at, address.size);
-  if (result != 0 && errno == EADDRINUSE && may_replace && is_dead(address)) {
-    unlink(path.c_str());
-    result = bind(socket.get(), at, address.size);
+// A socket that listens, and its place in the file system, which goes with it.
+class PlacedSocket {
+ public:
+  // Throws rr::Error when there is something already, unless it may be replaced and is dead.
+  PlacedSocket(std::string path, mode_t mode, bool may_replace) : path_(std::move(path)) {
+    const Address address = address_of(path_);
+    socket_ = Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+    if (!socket_) fail(path_, errno);
+    const auto* const at = reinterpret_cast<const sockaddr*>(&address.storage);
+    int result = bind(socket_.get(), at, address.size);
+    if (result != 0 && errno == EADDRINUSE && may_replace && is_dead(path_, address)) {
+      unlink(path_.c_str());
+      result = bind(socket_.get(), at, address.size);
+    }
+    if (result != 0) fail(path_, errno);
+    struct stat made {};
+    lstat(path_.c_str(), &made);
+    device_ = made.st_dev;
+    number_ = made.st_ino;
+    // Before it listens, so that nobody comes in whom the mask would have let.
+    if (chmod(path_.c_str(), mode) != 0 || ::listen(socket_.get(), backlog) != 0) {
+      const int error = errno;
+      remove();
+      fail(path_, error);
+    }
   }
-  if (result != 0) fail(path, errno);
-  // Before it listens, so that nobody comes in whom the mask would have let.
-  if (chmod(path.c_str(), 0770) != 0 || ::listen(socket.get(), backlog) != 0) {
-    const int error = errno;
-    unlink(path.c_str());
-    fail(path, error);
+  PlacedSocket(PlacedSocket&&) = default;
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+  Descriptor take() { return std::move(socket_); }
+  // Another node may have put its own there since.
+  void remove() const {
+    struct stat found {};
+    if (lstat(path_.c_str(), &found) == 0 && found.st_dev == device_ && found.st_ino == number_) {
+      unlink(path_.c_str());
+    }
   }
-  return socket;
-}
+
+ private:
+  std::string path_;
+  Descriptor socket_;
+  dev_t device_ = 0;
+  ino_t number_ = 0;
+};
 
 LinkTerms local_terms(const NodeOptions& options) {
   LinkTerms terms;
@@ -83,38 +116,56 @@ LinkTerms local_terms(const NodeOptions& options) {
   return terms;
 }
 
+PlacedSocket open_at(const std::string& path, mode_t mode) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  if (!open_trusted_folder(folder, {})) fail(path, ENOENT);
+  return {path, mode, true};
+}
+
+PlacedSocket open_any(const NodeFolder& folder, mode_t mode) {
+  for (int attempt = 1;; ++attempt) {
+    try {
+      return {folder.sockets + "/" + random_letters() + ".sock", mode, false};
+    } catch (const Error& error) {
+      if (attempt == attempts || error.code() == ErrorCode::invalid_argument) throw;
+    }
+  }
+}
+
 class LocalListener final : public Listener {
  public:
-  LocalListener(const Ground& ground, const Url& url, AcceptHandler accept) {
-    const NodeOptions& options = *ground.options;
+  LocalListener(const ChannelContext& context, const Url& url, AcceptHandler accept) {
+    const NodeOptions& options = *context.options;
     const bool is_public = url.query.find("public=true") != std::string::npos;
-    Descriptor socket;
+    // The user's group too, as far as the folder lets it in: who may connect is asked again.
+    constexpr mode_t mode = 0770;
     if (url.path.size() > 1) {
-      path_ = url.path;
-      socket = open_listening(path_, true);
-      url_ = "rr+local://" + path_;
+      socket_.emplace(open_at(url.path, mode));
+      url_ = "rr+local://" + url.path;
     } else {
       const NodeFolder folder =
           is_public ? public_folder(options.local, own_user_name()) : private_folder(options.local);
       make_folder(folder);
       clean_up(folder);
-      socket = open_any(folder);
+      socket_.emplace(open_any(folder, mode));
       url_ = is_public ? "rr+local://" + own_user_name() + "@localhost" : "rr+local://";
       try {
-        files_ =
-            std::make_unique<NodeFiles>(folder, options.id, options.name, path_, random_letters());
+        files_ = std::make_unique<NodeFiles>(folder, options.id, options.name, socket_->path(),
+                                             random_letters());
       } catch (const Error&) {
-        unlink(path_.c_str());
+        socket_->remove();
         throw;
       }
     }
-    listening_ = std::make_shared<ListeningSocket>(ground, std::move(socket), local_terms(options),
+    LinkTerms terms = local_terms(options);
+    if (!is_public) terms.only_user = geteuid();
+    listening_ = std::make_shared<ListeningSocket>(context, socket_->take(), std::move(terms),
                                                    std::move(accept));
     listening_->start();
   }
   ~LocalListener() override {
     listening_->stop();
-    unlink(path_.c_str());
+    socket_->remove();
   }
 
   [[nodiscard]] std::vector<std::string> urls() const override { return {url_}; }
@@ -124,18 +175,7 @@ class LocalListener final : public Listener {
   }
 
  private:
-  Descriptor open_any(const NodeFolder& folder) {
-    for (int attempt = 1;; ++attempt) {
-      path_ = folder.sockets + "/" + random_letters() + ".sock";
-      try {
-        return open_listening(path_, false);
-      } catch (const Error& error) {
-        if (attempt == attempts || error.code() == ErrorCode::invalid_argument) throw;
-      }
-    }
-  }
-
-  std::string path_;
+  std::optional<PlacedSocket> socket_;
   std::string url_;
   std::mutex mutex_;
   std::unique_ptr<NodeFiles> files_;
@@ -144,40 +184,42 @@ class LocalListener final : public Listener {
 
 class LocalChannel final : public Channel {
  public:
-  explicit LocalChannel(Ground ground) : ground_(std::move(ground)) {}
+  explicit LocalChannel(ChannelContext context) : context_(std::move(context)) {}
 
   [[nodiscard]] ChannelTraits traits(std::string_view /*scheme*/) const override {
-    return {.message_limit = ground_.options->limits.message_size, .is_local = true};
+    return {.message_limit = context_.options->limits.message_size, .is_local = true};
   }
 
   std::shared_ptr<Connection> connect(const Url& url, Time deadline,
                                       const AcceptHandler& make_receiver) override {
     std::vector<Address> addresses;
-    for (const std::string& path : find_sockets(ground_.options->local, url)) {
-      addresses.push_back(address_of(path));
+    for (FoundSocket& found : find_sockets(context_.options->local, url)) {
+      addresses.push_back(address_of(found.path));
+      addresses.back().servers = std::move(found.servers);
     }
     if (addresses.empty()) {
-      throw Error(ErrorCode::node_not_found,
-                  "no node " +
-                      (url.node_id.is_any() ? "`" + url.node_name + "`" : url.node_id.text()) +
-                      " listens on this machine");
+      throw Error(ErrorCode::node_not_found, "no node " +
+                                                 (url.path.size() > 1    ? "at `" + url.path + "`"
+                                                  : url.node_id.is_any() ? "`" + url.node_name + "`"
+                                                                         : url.node_id.text()) +
+                                                 " listens on this machine");
     }
-    Agreed agreed = connect_stream(addresses, url, ground_, deadline);
-    return connected(ground_, std::move(agreed), local_terms(*ground_.options), make_receiver);
+    Agreed agreed = connect_stream(addresses, url, context_, deadline);
+    return connected(context_, std::move(agreed), local_terms(*context_.options), make_receiver);
   }
 
   std::unique_ptr<Listener> listen(const Url& url, AcceptHandler accept) override {
-    return std::make_unique<LocalListener>(ground_, url, std::move(accept));
+    return std::make_unique<LocalListener>(context_, url, std::move(accept));
   }
 
  private:
-  const Ground ground_;
+  const ChannelContext context_;
 };
 
 }  // namespace
 
-std::shared_ptr<Channel> make_local_channel(Ground ground) {
-  return std::make_shared<LocalChannel>(std::move(ground));
+std::shared_ptr<Channel> make_local_channel(ChannelContext context) {
+  return std::make_shared<LocalChannel>(std::move(context));
 }
 
 }  // namespace rr::channel

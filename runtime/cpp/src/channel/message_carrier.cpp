@@ -73,7 +73,7 @@ class MessageCarrier::User final : public LinkUser {
       }
       must_ring = messages_.empty();
       bytes_ += message.size();
-      messages_.push_back({message, std::move(owner)});
+      messages_.push_back({message, std::move(owner), {}});
     }
     if (must_ring) ring();
     return true;

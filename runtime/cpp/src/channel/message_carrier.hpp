@@ -22,7 +22,9 @@ class MessageGather {
   std::size_t add(std::span<const std::byte> bytes);
   /// True when a message is whole, until take().
   [[nodiscard]] bool is_whole() const { return size_ != 0 && have_ == size_; }
-  [[nodiscard]] Frame message() const { return {{memory_.bytes + shift_, size_}, memory_.owner}; }
+  [[nodiscard]] Frame message() const {
+    return {{memory_.bytes + shift_, size_}, memory_.owner, {}};
+  }
   void drop();
 
  private:

@@ -21,12 +21,12 @@ namespace {
 /// The channel of one scheme.
 class MessageLinks final : public Channel, public std::enable_shared_from_this<MessageLinks> {
  public:
-  MessageLinks(Ground ground, std::string scheme, std::shared_ptr<MessageChannel> channel)
-      : ground_(std::move(ground)), scheme_(std::move(scheme)), channel_(std::move(channel)) {}
+  MessageLinks(ChannelContext context, std::string scheme, std::shared_ptr<MessageChannel> channel)
+      : context_(std::move(context)), scheme_(std::move(scheme)), channel_(std::move(channel)) {}
 
   [[nodiscard]] ChannelTraits traits(std::string_view /*scheme*/) const override {
     ChannelTraits traits = channel_->traits();
-    const std::uint32_t limit = ground_.options->limits.message_size;
+    const std::uint32_t limit = context_.options->limits.message_size;
     if (traits.message_limit == 0 || traits.message_limit > limit) traits.message_limit = limit;
     return traits;
   }
@@ -39,7 +39,7 @@ class MessageLinks final : public Channel, public std::enable_shared_from_this<M
     LinkTerms terms = terms_of(*link);
     agreed.carrier = std::make_unique<MessageCarrier>(std::move(link), agreed.socket);
     agree(url, deadline, agreed);
-    return connected(ground_, std::move(agreed), std::move(terms), make_receiver);
+    return connected(context_, std::move(agreed), std::move(terms), make_receiver);
   }
 
   std::string service_at(const Url& url, Time deadline) override {
@@ -65,7 +65,7 @@ class MessageLinks final : public Channel, public std::enable_shared_from_this<M
 
  private:
   LinkTerms terms_of(const MessageLink& link) const {
-    LinkTerms terms = tcp_terms(*ground_.options, scheme_);
+    LinkTerms terms = tcp_terms(*context_.options, scheme_);
     terms.traits = channel_->traits();
     terms.local_url = link.local_url();
     if (terms.local_url.empty()) terms.local_url = scheme_ + "://";
@@ -78,14 +78,14 @@ class MessageLinks final : public Channel, public std::enable_shared_from_this<M
       Descriptor socket;
       LinkTerms terms = terms_of(*link);
       auto carrier = std::make_unique<MessageCarrier>(std::move(link), socket);
-      accept_connection(ground_, std::move(socket), std::move(terms), std::move(carrier), accept);
+      accept_connection(context_, std::move(socket), std::move(terms), std::move(carrier), accept);
     } catch (const std::exception&) {
       // It has been closed, which the other side finds out.
     }
   }
 
   void agree(const Url& url, Time deadline, Agreed& agreed) const {
-    agreed.request = create_connection_request(url, *ground_.options);
+    agreed.request = create_connection_request(url, *context_.options);
     const iovec piece{agreed.request.data(), agreed.request.size()};
     if (agreed.carrier->send({&piece, 1}) != static_cast<std::ptrdiff_t>(agreed.request.size())) {
       throw Error(ErrorCode::connection_error, "the connection by `" + scheme_ + "` broke");
@@ -94,7 +94,7 @@ class MessageLinks final : public Channel, public std::enable_shared_from_this<M
       Frame answer;
       const std::ptrdiff_t size = agreed.carrier->receive(answer, false);
       if (size > 0) {
-        check_create_connection(answer.bytes, url, *ground_.options, "`" + scheme_ + "`", agreed);
+        check_create_connection(answer.bytes, url, *context_.options, "`" + scheme_ + "`", agreed);
         return;
       }
       if (size == 0 || (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)) {
@@ -117,16 +117,16 @@ class MessageLinks final : public Channel, public std::enable_shared_from_this<M
     }
   }
 
-  const Ground ground_;
+  const ChannelContext context_;
   const std::string scheme_;
   const std::shared_ptr<MessageChannel> channel_;
 };
 
 }  // namespace
 
-std::shared_ptr<Channel> make_message_channel(Ground ground, std::string scheme,
+std::shared_ptr<Channel> make_message_channel(ChannelContext context, std::string scheme,
                                               std::shared_ptr<MessageChannel> channel) {
-  return std::make_shared<MessageLinks>(std::move(ground), std::move(scheme), std::move(channel));
+  return std::make_shared<MessageLinks>(std::move(context), std::move(scheme), std::move(channel));
 }
 
 }  // namespace rr::channel

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/node_files.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include "rr/error.hpp"
 
@@ -73,7 +76,9 @@ void clean_up(const NodeFolder& folder) {
     const bool is_ours =
         std::filesystem::path(socket).parent_path() == folder.sockets && socket.ends_with(".sock");
     if (!is_ours || LockedFile::is_held(path)) continue;
-    std::filesystem::remove(socket, error);
+    if (std::filesystem::is_socket(std::filesystem::symlink_status(socket, error))) {
+      std::filesystem::remove(socket, error);
+    }
   }
 }
 
@@ -96,19 +101,49 @@ std::string socket_in(const NodeFolder& folder, const Url& url) {
   return is_same ? socket_of(info) : std::string();
 }
 
+// Nothing when it does not exist.
+std::optional<FoundSocket> trusted_socket(const std::string& path, const FolderRule& rule) {
+  const auto folder = open_trusted_folder(std::filesystem::path(path).parent_path().string(), rule);
+  if (!folder) return std::nullopt;
+  return FoundSocket{path, {0, geteuid(), folder->owner}};
+}
+
+// Who names a path means what its folder's owner has there.
+std::vector<FoundSocket> socket_at(const std::string& path) {
+  struct stat folder {};
+  const std::string name = std::filesystem::path(path).parent_path().string();
+  FolderRule rule;
+  if (stat(name.c_str(), &folder) == 0) rule.owner = folder.st_uid;
+  auto socket = trusted_socket(path, rule);
+  if (!socket) return {};
+  return {std::move(*socket)};
+}
+
+std::optional<FoundSocket> socket_in_trusted(const NodeFolder& folder, const Url& url) {
+  if (!open_trusted_folder(folder.base, folder.rule)) return std::nullopt;
+  const std::string path = socket_in(folder, url);
+  if (!path.starts_with('/')) return std::nullopt;
+  return trusted_socket(path, folder.rule);
+}
+
 }  // namespace
 
-std::vector<std::string> find_sockets(const LocalOptions& options, const Url& url) {
-  if (url.path.size() > 1) return {url.path};
+std::vector<FoundSocket> find_sockets(const LocalOptions& options, const Url& url) {
+  if (url.path.size() > 1) return socket_at(url.path);
   if (url.node_id.is_any() && url.node_name.empty()) {
     throw Error(ErrorCode::invalid_argument,
                 "a local URL needs `nodeid`, `nodename`, or the path of a socket");
   }
-  std::vector<std::string> sockets;
+  std::vector<FoundSocket> sockets;
+  std::optional<Error> failure;
   for (const NodeFolder& folder : folders_for_host(options, url.host)) {
-    std::string socket = socket_in(folder, url);
-    if (!socket.empty()) sockets.push_back(std::move(socket));
+    try {
+      if (auto socket = socket_in_trusted(folder, url)) sockets.push_back(std::move(*socket));
+    } catch (const Error& error) {
+      if (!failure) failure = error;
+    }
   }
+  if (sockets.empty() && failure) throw Error(*failure);
   return sockets;
 }
 

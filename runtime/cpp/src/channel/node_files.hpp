@@ -41,8 +41,16 @@ class NodeFiles {
 /// Removes the sockets that nodes have left behind which live no more.
 void clean_up(const NodeFolder& folder);
 
-/// The sockets at which the node of a URL may be, in the order in which to try them. Throws
-/// rr::Error (invalid_argument) when the URL names no node.
-std::vector<std::string> find_sockets(const LocalOptions& options, const Url& url);
+/// A socket at which a node may be.
+struct FoundSocket {
+  std::string path;
+  /// Who may listen there: the system and the folder's owner. Somebody else has taken the place of
+  /// the one who is wanted.
+  std::vector<uid_t> servers;
+};
+/// Those of the node of a URL, in the order in which to try them. Throws rr::Error:
+/// invalid_argument when the URL names no node, system_resource_error when it is in none of the
+/// folders and another user could have changed one of them.
+std::vector<FoundSocket> find_sockets(const LocalOptions& options, const Url& url);
 
 }  // namespace rr::channel

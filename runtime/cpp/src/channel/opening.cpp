@@ -34,13 +34,14 @@ std::vector<OpeningStep> opening_steps(std::string_view scheme) {
   return steps;
 }
 
-Opening::Opening(const Address& address, const Url& url, const Ground& ground)
+Opening::Opening(const Address& address, const Url& url, const ChannelContext& context)
     : url_(url),
-      ground_(ground),
-      options_(*ground.options),
+      context_(context),
+      options_(*context.options),
       steps_(opening_steps(url.scheme)),
       socket_(::socket(address.family(), SOCK_STREAM | SOCK_CLOEXEC, 0)),
-      place_(address.text()) {
+      place_(address.text()),
+      servers_(address.servers) {
   if (!socket_) fail(std::strerror(errno));
   // The socket blocks, which connecting must not.
   const timeval no_time{0, 1};
@@ -77,7 +78,7 @@ std::optional<Agreed> Opening::go_on() {
     if (!receive_answer()) return std::nullopt;
     said_node_ = check_start_tls(answer_, url_, options_, place_);
     request_.clear();
-    begin_layer(ground_.tls->make_client(said_node_));
+    begin_layer(context_.tls->make_client(said_node_));
     return std::nullopt;
   }
   if (step == OpeningStep::start_tls) {
@@ -90,10 +91,21 @@ std::optional<Agreed> Opening::go_on() {
 
 void Opening::connected() {
   is_connected_ = true;
+  check_server();
   const timeval for_ever{};
   setsockopt(socket_.get(), SOL_SOCKET, SO_SNDTIMEO, &for_ever, sizeof for_ever);
   set_stream_options(socket_.get());
   next_step();
+}
+
+// Before anything is said: another user can have put a socket where there was none.
+void Opening::check_server() const {
+  if (servers_.empty()) return;
+  const auto server = peer_user(socket_.get());
+  if (server && std::find(servers_.begin(), servers_.end(), *server) != servers_.end()) return;
+  fail(place_ + " is served by " +
+       (server ? "user " + std::to_string(*server) : std::string("nobody who can be named")) +
+       ", to whom its folder does not belong");
 }
 
 LayeredCarrier& Opening::carrier() {
@@ -108,13 +120,15 @@ void Opening::next_step() {
   answer_size_ = 0;
   switch (steps_[step_]) {
     case OpeningStep::web_tls:
-      begin_layer(ground_.tls->make_web_client(url_.host));
+      // With TLS of nodes inside, that one proves the node.
+      begin_layer(context_.tls->make_web_client(url_.host,
+                                                url_.scheme == "rr+wss" ? url_.node_id : NodeId()));
       break;
     case OpeningStep::web_socket:
-      begin_layer(ground_.web_sockets->make_client(url_));
+      begin_layer(context_.web_sockets->make_client(url_));
       break;
     case OpeningStep::start_tls:
-      request_ = start_tls_request(url_, ground_.tls->has_certificate());
+      request_ = start_tls_request(url_, context_.tls->has_certificate());
       send(request_);
       break;
     case OpeningStep::agree:
@@ -185,8 +199,15 @@ bool Opening::receive_answer() {
 
 std::optional<Agreed> Opening::finish() {
   Agreed agreed;
-  if (carrier_) agreed.certified_node = carrier_->certified_node();
+  if (carrier_) {
+    agreed.certified_node = carrier_->certified_node();
+    agreed.proof = carrier_->take_proof();
+  }
   check_create_connection(answer_, url_, options_, place_, agreed);
+  if (carrier_ && carrier_->is_encrypted() && agreed.certified_node.is_any() &&
+      context_.tls->is_pinned(agreed.remote_node)) {
+    fail("the node at " + place_ + " says that it is one whose certificate is another");
+  }
   agreed.socket = std::move(socket_);
   agreed.carrier = std::move(carrier_);
   agreed.request = std::move(request_);

@@ -23,8 +23,8 @@ namespace rr::channel {
 /// rr::Error, which ends it.
 class Opening {
  public:
-  /// Ground and URL must live as long.
-  Opening(const Address& address, const Url& url, const Ground& ground);
+  /// ChannelContext and URL must live as long.
+  Opening(const Address& address, const Url& url, const ChannelContext& context);
 
   /// What it waits for.
   [[nodiscard]] pollfd wanted() const;
@@ -33,6 +33,7 @@ class Opening {
 
  private:
   void connected();
+  void check_server() const;
   void next_step();
   void begin_layer(std::unique_ptr<Layer> layer);
   bool go_on_with_layer();
@@ -44,13 +45,14 @@ class Opening {
   LayeredCarrier& carrier();
 
   const Url& url_;
-  const Ground& ground_;
+  const ChannelContext& context_;
   const NodeOptions& options_;
   const std::vector<OpeningStep> steps_;
   std::size_t step_ = 0;
   Descriptor socket_;
   std::unique_ptr<LayeredCarrier> carrier_;
   std::string place_;
+  const std::vector<uid_t> servers_;
   bool is_connected_ = false;
   NodeId said_node_;  // what the other side claimed before TLS
   std::vector<std::byte> request_;

@@ -7,8 +7,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <iterator>
 #include <system_error>
 #include <utility>
+
+#include "runtime/cpp/src/channel/reactor_polling.hpp"
 
 namespace rr::channel {
 namespace {
@@ -19,8 +22,8 @@ namespace {
 constexpr std::chrono::microseconds look_period{2500};
 constexpr int looks_until_stuck = 2;
 constexpr int looks_until_quiet = 10;
-// A thread without a duty ends after this time.
-constexpr std::chrono::seconds idle_time{10};
+// Of so many threads one is kept for sessions that hold none.
+constexpr unsigned threads_for_one_in_reserve = 8;
 
 [[noreturn]] void fail(const char* what) {
   throw std::system_error(errno, std::generic_category(), what);
@@ -28,17 +31,14 @@ constexpr std::chrono::seconds idle_time{10};
 
 }  // namespace
 
-struct Reactor::Polling {
-  Reactor* reactor;
-  std::uint64_t turn;
-};
+constinit thread_local Reactor::Polling* Reactor::current_polling = nullptr;
+constinit thread_local const Reactor* Reactor::current_reactor = nullptr;
 
-thread_local Reactor::Polling* Reactor::current_polling = nullptr;
-thread_local const Reactor* Reactor::current_reactor = nullptr;
-
-Reactor::Reactor(unsigned max_threads)
-    : max_threads_(std::max(max_threads, 2U)),
+Reactor::Reactor(Terms terms)
+    : terms_(std::move(terms)),
+      max_threads_(std::max(terms_.max_threads, duties)),
       max_stays_(std::min(std::max(std::thread::hardware_concurrency(), 1U), max_threads_ / 4)),
+      reserve_(max_threads_ / threads_for_one_in_reserve),
       events_(std::make_unique<epoll_event[]>(events_at_once)) {
   epoll_ = epoll_create1(EPOLL_CLOEXEC);
   if (epoll_ < 0) fail("epoll_create1");
@@ -62,9 +62,12 @@ Reactor::~Reactor() {
 
 void Reactor::start() {
   const std::lock_guard lock(mutex_);
-  if (is_stopping_ || !threads_.empty()) return;
-  add_thread();
-  add_thread();
+  if (is_stopping_) return;
+  while (live_threads_ < duties) {
+    if (!add_thread()) {
+      throw std::system_error(EAGAIN, std::generic_category(), "the node's threads");
+    }
+  }
 }
 
 void Reactor::stop() {
@@ -76,18 +79,25 @@ void Reactor::stop() {
     is_stay_over_ = true;
     threads.swap(threads_);
     ended_.clear();
-    for (std::function<void()>& work : posted_) late_.add(std::move(work));
-    posted_.clear();
+    for (std::deque<Posted>* const queue : {&posted_, &waiting_}) {
+      for (Posted& posted : *queue) late_.add(std::move(posted.work));
+      queue->clear();
+    }
   }
   idle_.notify_all();
   watch_.notify_all();
   wake_polling_thread();
   for (std::thread& thread : threads) thread.join();
   late_.wait();
-  std::vector<std::shared_ptr<void>> retired;
+  std::vector<std::shared_ptr<Pollable>> retired;
   const std::lock_guard lock(mutex_);
   has_ended_ = true;
   retired.swap(retired_);
+}
+
+bool Reactor::is_stopping() const {
+  const std::lock_guard lock(mutex_);
+  return is_stopping_;
 }
 
 bool Reactor::is_own_thread() const { return current_reactor == this || late_.is_own_thread(); }
@@ -111,7 +121,7 @@ void Reactor::remove(int descriptor) {
   epoll_ctl(epoll_, EPOLL_CTL_DEL, descriptor, &event);
 }
 
-void Reactor::retire(std::shared_ptr<void> pollable) {
+void Reactor::retire(std::shared_ptr<Pollable> pollable) {
   {
     const std::lock_guard lock(mutex_);
     if (has_ended_) return;
@@ -121,14 +131,14 @@ void Reactor::retire(std::shared_ptr<void> pollable) {
   wake_polling_thread();
 }
 
-void Reactor::post(std::function<void()> work) {
+void Reactor::post(Posted posted) {
   {
     const std::lock_guard lock(mutex_);
     if (is_stopping_) {
-      late_.add(std::move(work));
+      late_.add(std::move(posted.work));
       return;
     }
-    posted_.push_back(std::move(work));
+    posted_.push_back(std::move(posted));
     has_work_.store(true, std::memory_order_release);
   }
   wake_polling_thread();
@@ -162,112 +172,37 @@ void Reactor::wake_watching_thread() {
   watch_.notify_one();
 }
 
-// Threads
-
-void Reactor::add_thread() {
-  reap();
-  threads_.emplace_back([this] { run_thread(); });
-  ++live_threads_;
-}
-
-// Sees to it that somebody takes up a duty that nobody has now.
-void Reactor::need_thread() {
-  if (is_stopping_) return;
-  if (idle_threads_ > wanted_threads_) {
-    ++wanted_threads_;
-    idle_.notify_one();
-  } else if (live_threads_ < max_threads_) {
-    add_thread();
-  } else {
-    is_stay_over_ = stays_ != 0;
-  }
-}
-
-// Whether there is, or can be, one for another duty. If not, those that stay are called back.
-bool Reactor::has_spare_thread() {
-  if (idle_threads_ > wanted_threads_ || live_threads_ < max_threads_) return true;
-  if (stays_ != 0) is_stay_over_ = true;
-  return false;
-}
-
-// Joins threads that have ended.
-void Reactor::reap() {
-  for (const std::thread::id id : ended_) {
-    const auto found = std::find_if(threads_.begin(), threads_.end(),
-                                    [id](const std::thread& t) { return t.get_id() == id; });
-    if (found == threads_.end()) continue;
-    found->join();
-    threads_.erase(found);
-  }
-  ended_.clear();
-}
-
-void Reactor::run_thread() {
-  current_reactor = this;
-  std::unique_lock lock(mutex_);
-  while (!is_stopping_) {
-    if (!is_polled_) {
-      is_polled_ = true;
-      const std::uint64_t turn = turn_.load(std::memory_order_relaxed) / 2;
-      lock.unlock();
-      poll(turn);
-      lock.lock();
-    } else if (!is_watched_) {
-      is_watched_ = true;
-      if (watch(lock)) {
-        const std::uint64_t turn = turn_.load(std::memory_order_relaxed) / 2;
-        lock.unlock();
-        poll(turn);
-        lock.lock();
-      }
-    } else {
-      ++idle_threads_;
-      const Time until = Clock::now() + idle_time;
-      while (wanted_threads_ == 0 && !is_stopping_ && Clock::now() < until) {
-        wait_until(idle_, lock, until);
-      }
-      --idle_threads_;
-      if (wanted_threads_ != 0) {
-        --wanted_threads_;
-      } else if (is_polled_ && is_watched_) {
-        break;
-      }
-    }
-  }
-  --live_threads_;
-  if (!is_stopping_) ended_.push_back(std::this_thread::get_id());
-}
-
 // Polling
 
-void Reactor::poll(std::uint64_t turn) {
-  Polling polling{this, turn};
+void Reactor::poll(Polling& polling) {
   current_polling = &polling;
   while (handle_events(polling)) {
     if (has_work_.load(std::memory_order_acquire) && !run_posted(polling)) break;
     if (is_stopping_.load(std::memory_order_acquire)) break;
-    const int found = epoll_wait(epoll_, events_.get(), events_at_once, -1);
+    const int patience = has_work_.load(std::memory_order_acquire) ? 0 : -1;
+    const int found = epoll_wait(epoll_, events_.get(), events_at_once, patience);
     event_count_ = found > 0 ? static_cast<std::size_t>(found) : 0;
     next_event_ = 0;
   }
   current_polling = nullptr;
 }
 
-// Whoever takes the turn away does so between these two only.
-void Reactor::enter(const Polling& polling, Pollable* pollable) {
+// Whoever takes the turn away does so between these two only, and from the handler that it saw.
+void Reactor::enter(Polling& polling, Pollable* pollable) {
   handling_ = pollable;
-  turn_.store(polling.turn * 2 + 1, std::memory_order_release);
-  handled_.fetch_add(1);
+  turn_.store(++polling.turn);
   if (watching_thread_sleeps_.load()) wake_watching_thread();
 }
 
 // False when the turn has been lost meanwhile, here and below.
-bool Reactor::leave(const Polling& polling) {
-  std::uint64_t expected = polling.turn * 2 + 1;
-  return turn_.compare_exchange_strong(expected, polling.turn * 2);
+bool Reactor::leave(Polling& polling) {
+  std::uint64_t expected = polling.turn;
+  if (!turn_.compare_exchange_strong(expected, polling.turn + 1)) return false;
+  ++polling.turn;
+  return true;
 }
 
-bool Reactor::handle_events(const Polling& polling) {
+bool Reactor::handle_events(Polling& polling) {
   while (next_event_ != event_count_) {
     const epoll_event& event = events_[next_event_++];
     if (event.data.ptr == nullptr) continue;  // a wake-up; edge-triggered, so it need not be read
@@ -280,28 +215,63 @@ bool Reactor::handle_events(const Polling& polling) {
   return true;
 }
 
-bool Reactor::run_posted(const Polling& polling) {
-  std::vector<std::shared_ptr<void>> retired;
-  {
-    const std::lock_guard lock(mutex_);
-    has_work_.store(false, std::memory_order_relaxed);
-    retired.swap(retired_);  // no event is left that could name them
-  }
-  retired.clear();
-  while (true) {
-    std::function<void()> work;
-    {
-      const std::lock_guard lock(mutex_);
-      if (posted_.empty()) return true;
-      work = std::move(posted_.front());
-      posted_.pop_front();
-      if (!posted_.empty()) has_work_.store(true, std::memory_order_release);
-    }
-    enter(polling, nullptr);
+// One at a time, then it is polled: connections that always have more to read post that again and
+// again, and whoever has little to say need not wait for all of them.
+bool Reactor::run_posted(Polling& polling) {
+  take_retired().clear();
+  Posted next;
+  Handling admission{};
+  if (!next_posted(next, admission)) return true;
+  polling.posted_for = std::move(next.share);
+  enter(polling, next.pollable.get());
+  if (admission == Handling::aside) give_way();
+  run(next.work);
+  next.work = nullptr;
+  if (!leave(polling)) return false;
+  polling.posted_for = nullptr;
+  return true;
+}
+
+// No event is left that could name them. A thread that has lost its turn may still be about to
+// enter the handler of one.
+std::vector<std::shared_ptr<Pollable>> Reactor::take_retired() {
+  const std::lock_guard lock(mutex_);
+  has_work_.store(false, std::memory_order_relaxed);
+  const auto kept = std::partition(retired_.begin(), retired_.end(), [&](const auto& pollable) {
+    return std::find(inside_.begin(), inside_.end(), pollable.get()) != inside_.end();
+  });
+  std::vector<std::shared_ptr<Pollable>> retired(std::make_move_iterator(kept),
+                                                 std::make_move_iterator(retired_.end()));
+  retired_.erase(kept, retired_.end());
+  return retired;
+}
+
+// What throws here is code of the program that nobody guards: the node goes on.
+void Reactor::run(const std::function<void()>& work) const {
+  try {
     work();
-    work = nullptr;
-    if (!leave(polling)) return false;
+  } catch (const std::exception& error) {
+    if (terms_.report) terms_.report(std::string("work of the node has thrown: ") + error.what());
+  } catch (...) {
+    if (terms_.report) terms_.report("work of the node has thrown something that is no exception");
   }
+}
+
+// False when there is none that may run now.
+bool Reactor::next_posted(Posted& next, Handling& admission) {
+  const std::lock_guard lock(mutex_);
+  while (!posted_.empty()) {
+    next = std::move(posted_.front());
+    posted_.pop_front();
+    admission = next.share ? admit(*next.share) : Handling::in_place;
+    if (admission != Handling::later) {
+      if (!posted_.empty()) has_work_.store(true, std::memory_order_release);
+      return true;
+    }
+    waiting_.push_back(std::move(next));
+    call_back_stays();
+  }
+  return false;
 }
 
 void Reactor::about_to_wait() {
@@ -310,32 +280,55 @@ void Reactor::about_to_wait() {
   Reactor& reactor = *polling->reactor;
   Pollable* handling = nullptr;
   {
-    const std::lock_guard lock(reactor.mutex_);
-    if (!reactor.hand_over(*polling)) return;
-    handling = reactor.handling_;  // nobody else's yet
-    reactor.need_thread();
+    std::unique_lock lock(reactor.mutex_);
+    const bool is_handed_over = reactor.hand_over(*polling, true);
+    if (is_handed_over) handling = reactor.handling_;  // nobody else's yet
+    reactor.report_missing_thread(lock);
+    if (!is_handed_over) return;
   }
   if (handling != nullptr) handling->on_stuck();
 }
 
-// Gives up the turn to poll, for the next thread that is free.
-bool Reactor::hand_over(const Polling& polling) {
-  if (is_stopping_ || !has_spare_thread()) return false;
-  std::uint64_t expected = polling.turn * 2 + 1;
-  if (!turn_.compare_exchange_strong(expected, (polling.turn + 1) * 2)) return false;
+void Reactor::give_way() {
+  Polling* const polling = current_polling;
+  if (polling == nullptr) return;
+  Reactor& reactor = *polling->reactor;
+  std::unique_lock lock(reactor.mutex_);
+  reactor.hand_over(*polling, true);
+  reactor.report_missing_thread(lock);
+}
+
+bool Reactor::is_polling() const {
+  const Polling* const polling = current_polling;
+  return polling != nullptr && polling->reactor == this &&
+         turn_.load(std::memory_order_relaxed) == polling->turn;
+}
+
+// Whether the thread has the turn, and is in a handler.
+bool Reactor::is_inside(const Polling& polling) const {
+  return polling.turn % 2 != 0 && turn_.load() == polling.turn;
+}
+
+// Gives up the turn to poll, for the next thread that is free. False when the caller keeps it, or
+// has lost it already.
+bool Reactor::hand_over(Polling& polling, bool is_held) {
+  if (!is_inside(polling) || !secure_thread()) return false;
+  std::uint64_t expected = polling.turn;
+  if (!turn_.compare_exchange_strong(expected, polling.turn + 1)) return false;
   is_polled_ = false;
+  note_loss(polling);
+  if (is_held) hold(polling);
   return true;
 }
 
 bool Reactor::begin_stay() {
-  const Polling* const polling = current_polling;
+  Polling* const polling = current_polling;
   if (polling == nullptr || polling->reactor != this) return false;
   const std::lock_guard lock(mutex_);
-  if (stays_ >= max_stays_ || is_stay_over_) return false;
-  if (turn_.load() != polling->turn * 2 + 1 || event_count_ > 1) return false;
-  if (!hand_over(*polling)) return false;
+  if (stays_ >= max_stays_ || is_stay_over_ || is_tight_) return false;
+  if (!is_inside(*polling) || event_count_ > 1) return false;
+  if (!hand_over(*polling, false)) return false;
   ++stays_;
-  need_thread();
   return true;
 }
 
@@ -349,24 +342,39 @@ unsigned Reactor::stays() const {
   return stays_;
 }
 
+unsigned Reactor::held() const {
+  const std::lock_guard lock(mutex_);
+  return held_;
+}
+
+unsigned Reactor::live_threads() const {
+  const std::lock_guard lock(mutex_);
+  return live_threads_;
+}
+
+std::size_t Reactor::waiting() const {
+  const std::lock_guard lock(mutex_);
+  return waiting_.size();
+}
+
 // Watching
 
 // Returns true when this thread is to poll from now on.
 bool Reactor::watch(std::unique_lock<std::mutex>& lock) {
-  std::uint64_t handled = handled_.load();
+  std::uint64_t last_turn = turn_.load();
   int stuck_looks = 0;
   int quiet_looks = 0;
   while (!is_stopping_) {
+    report_missing_thread(lock);
     const Time next_timer = run_timers(lock);
+    if (is_stopping_) break;  // since the lock was given up
     const std::uint64_t turn = turn_.load();
-    const std::uint64_t now_handled = handled_.load();
     const bool is_busy = turn % 2 != 0;
-    stuck_looks = is_busy && now_handled == handled ? stuck_looks + 1 : 0;
-    quiet_looks = !is_busy && now_handled == handled ? quiet_looks + 1 : 0;
-    handled = now_handled;
+    stuck_looks = is_busy && turn == last_turn ? stuck_looks + 1 : 0;
+    quiet_looks = !is_busy && turn == last_turn ? quiet_looks + 1 : 0;
+    last_turn = turn;
     if (stuck_looks >= looks_until_stuck && take_over(turn)) {
       is_watched_ = false;
-      need_thread();
       Pollable* const stuck = handling_;
       lock.unlock();
       if (stuck != nullptr) stuck->on_stuck();
@@ -376,7 +384,7 @@ bool Reactor::watch(std::unique_lock<std::mutex>& lock) {
     Time until = std::min(next_timer, Clock::now() + look_period);
     if (quiet_looks >= looks_until_quiet) {
       watching_thread_sleeps_.store(true);
-      if (handled_.load() == handled) until = next_timer;
+      if (turn_.load() == turn) until = next_timer;
     }
     wait_until(watch_, lock, until);
     watching_thread_sleeps_.store(false, std::memory_order_relaxed);
@@ -385,84 +393,42 @@ bool Reactor::watch(std::unique_lock<std::mutex>& lock) {
   return false;
 }
 
+// Not when nobody would watch then: timers would stand still, too.
 bool Reactor::take_over(std::uint64_t turn) {
-  if (!has_spare_thread()) return false;
-  return turn_.compare_exchange_strong(turn, (turn / 2 + 1) * 2);
+  if (!secure_thread()) return false;
+  if (!turn_.compare_exchange_strong(turn, turn + 1)) return false;
+  note_loss(*poller_);
+  hold(*poller_);
+  if (poller_->held_by) poller_->held_by->note_stall(coarse_now());
+  return true;
 }
 
-// Timers: a binary heap whose items know their places.
+// Timers
 
 void Reactor::schedule(Timer& timer, std::weak_ptr<void> owner, Time when) {
   const std::lock_guard lock(mutex_);
-  take_out(timer);
-  if (when == never || is_stopping_) return;
-  timer.due_ = when;
-  timer.owner_ = std::move(owner);
-  timers_.push_back(&timer);
-  timer.place_ = timers_.size() - 1;
-  sift_up(timer.place_);
-  if (timer.place_ == 0) watch_.notify_one();
+  const bool is_first = timers_.schedule(timer, std::move(owner), is_stopping_ ? never : when);
+  if (is_first) watch_.notify_one();
 }
 
 void Reactor::cancel(Timer& timer) {
   const std::lock_guard lock(mutex_);
-  take_out(timer);
+  timers_.cancel(timer);
 }
 
 // Returns when the next one is due.
 Time Reactor::run_timers(std::unique_lock<std::mutex>& lock) {
-  while (!timers_.empty()) {
-    Timer* const timer = timers_.front();
-    if (timer->due_ > Clock::now()) return timer->due_;
-    std::shared_ptr<void> owner = timer->owner_.lock();
-    take_out(*timer);
-    lock.unlock();
-    if (owner) timer->on_timer();
-    owner.reset();
+  Time next = timers_.next_due();
+  while (next != never && next <= Clock::now()) {
+    {
+      TimerHeap::Due due = timers_.take_first();
+      lock.unlock();
+      due.run();
+    }
     lock.lock();
+    next = timers_.next_due();
   }
-  return never;
-}
-
-void Reactor::put(std::size_t place, Timer* timer) {
-  timers_[place] = timer;
-  timer->place_ = place;
-}
-
-void Reactor::sift_up(std::size_t place) {
-  Timer* const timer = timers_[place];
-  while (place != 0) {
-    const std::size_t parent = (place - 1) / 2;
-    if (timers_[parent]->due_ <= timer->due_) break;
-    put(place, timers_[parent]);
-    place = parent;
-  }
-  put(place, timer);
-}
-
-void Reactor::sift_down(std::size_t place) {
-  Timer* const timer = timers_[place];
-  while (true) {
-    std::size_t child = 2 * place + 1;
-    if (child >= timers_.size()) break;
-    if (child + 1 < timers_.size() && timers_[child + 1]->due_ < timers_[child]->due_) ++child;
-    if (timers_[child]->due_ >= timer->due_) break;
-    put(place, timers_[child]);
-    place = child;
-  }
-  put(place, timer);
-}
-
-void Reactor::take_out(Timer& timer) {
-  const std::size_t place = std::exchange(timer.place_, Timer::unscheduled);
-  if (place == Timer::unscheduled) return;
-  timer.owner_.reset();
-  Timer* const last = timers_.back();
-  timers_.pop_back();
-  if (last == &timer) return;
-  put(place, last);
-  sift_down(place);
-  sift_up(last->place_);
+  return next;
 }
 
 }  // namespace rr::channel

@@ -10,12 +10,17 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <string>
+#include <string_view>
 #include <thread>
+#include <unordered_map>
 #include <vector>
 
 #include "runtime/cpp/src/channel/flusher.hpp"
 #include "runtime/cpp/src/channel/late_work.hpp"
+#include "runtime/cpp/src/channel/thread_share.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
+#include "runtime/cpp/src/channel/timer_heap.hpp"
 
 struct epoll_event;
 
@@ -29,29 +34,11 @@ class Pollable {
   /// While on_ready() has been in user code for long on another thread: what was held back to leave
   /// together with more is to leave now.
   virtual void on_stuck() {}
+  /// Whose threads on_ready() takes when it blocks; null where nobody counts them.
+  [[nodiscard]] virtual std::shared_ptr<ThreadShare> thread_share() const { return nullptr; }
 
  protected:
   ~Pollable() = default;
-};
-
-/// Something that is due at a time. A member of what it belongs to.
-class Timer {
- public:
-  Timer() = default;
-  Timer(const Timer&) = delete;
-  Timer& operator=(const Timer&) = delete;
-
- protected:
-  ~Timer() = default;
-  /// On the watching thread, under no lock. Must be short and must not run user code.
-  virtual void on_timer() = 0;
-
- private:
-  friend class Reactor;
-  static constexpr std::size_t unscheduled = static_cast<std::size_t>(-1);
-  Time due_ = never;
-  std::size_t place_ = unscheduled;
-  std::weak_ptr<void> owner_;
 };
 
 /// Waits for many descriptors with few threads.
@@ -62,11 +49,25 @@ class Timer {
 /// watches. A slow handler therefore holds up nobody but its own client. The watching thread also
 /// runs the timers, so that polling needs no time-outs; it sleeps while there is nothing to watch.
 ///
+/// A thread that is inside user code and does not poll any more is held, by the session whose
+/// handler it is. A session holds so many at most, and those of one remote address leave some to
+/// others; what comes on top waits for one to be released (thread_share.hpp).
+///
 /// A thread that has found one busy connection alone may stay with it, in receive calls that block,
 /// which are a third cheaper than epoll's; somebody else polls from then on.
 class Reactor {
  public:
-  explicit Reactor(unsigned max_threads);
+  /// What a program, or a test, says of the threads.
+  struct Terms {
+    unsigned max_threads = 32;
+    unsigned session_threads = 16;  ///< those that one session may hold
+    /// Makes a thread; throws std::system_error when there can be none.
+    std::function<std::thread(std::function<void()>)> make_thread{};
+    /// Hears what nobody else can be told. On any thread, under no lock; must not throw.
+    std::function<void(std::string_view)> report{};
+  };
+  explicit Reactor(unsigned max_threads) : Reactor(Terms{.max_threads = max_threads}) {}
+  explicit Reactor(Terms terms);
   ~Reactor();
   Reactor(const Reactor&) = delete;
   Reactor& operator=(const Reactor&) = delete;
@@ -76,6 +77,8 @@ class Reactor {
   /// Waits until all threads have ended and posted work is done; handlers that run are waited for.
   /// Not from one of them.
   void stop();
+  /// True once stop() has been called.
+  [[nodiscard]] bool is_stopping() const;
   /// True on a thread that belongs to this reactor, work posted after stop() included.
   [[nodiscard]] bool is_own_thread() const;
 
@@ -85,11 +88,20 @@ class Reactor {
   void change(int descriptor, std::uint32_t events, Pollable& pollable);
   void remove(int descriptor);
   /// Keeps what is no longer watched until no event can name it any more.
-  void retire(std::shared_ptr<void> pollable);
+  void retire(std::shared_ptr<Pollable> pollable);
 
   /// Runs `work` soon: on the polling thread or, once the threads have been told to stop, on one
   /// that is made for it. Never in place. May run user code.
-  void post(std::function<void()> work);
+  void post(std::function<void()> work) { post({std::move(work), nullptr, nullptr}); }
+  /// The same for what takes the threads of a session: it waits while these are too many.
+  void post(std::function<void()> work, std::shared_ptr<ThreadShare> share) {
+    post({std::move(work), std::move(share), nullptr});
+  }
+  /// The same for what `pollable` would do in on_ready(): it does not wait for threads, but should
+  /// it block, the pollable is told so, and it takes a thread of the pollable's share.
+  void post_for(std::shared_ptr<Pollable> pollable, std::function<void()> work) {
+    post({std::move(work), nullptr, std::move(pollable)});
+  }
 
   // A connection counts from when it has a receiver until it has told that one of its end.
   void begin_connection();
@@ -108,6 +120,24 @@ class Reactor {
   /// is a reactor's polling thread, another one polls from now on.
   static void about_to_wait();
 
+  /// A share for a connection from a remote address (remote_key()).
+  std::shared_ptr<ThreadShare> open_share(const std::string& key);
+  /// How what a connection has brought may be handled on this thread. Takes a lock only where the
+  /// answer may be another than `in_place`.
+  [[nodiscard]] Handling admission(const std::shared_ptr<ThreadShare>& share) {
+    if (share == nullptr) return Handling::in_place;
+    const bool is_tight = is_tight_.load(std::memory_order_relaxed);
+    return share->is_inconspicuous() && !is_tight ? Handling::in_place : look_up(*share);
+  }
+  /// Before a handler that is expected to take long: another thread polls from now on, if this one
+  /// has until now. Nothing happens when there is none.
+  static void give_way();
+  /// True while the calling thread polls: what it does holds up others.
+  [[nodiscard]] bool is_polling() const;
+  /// What waits for threads of a share is looked at again.
+  void reconsider();
+  [[nodiscard]] unsigned session_threads() const { return terms_.session_threads; }
+
   /// On the polling thread, while it handles an event: true when another one polls from now on, and
   /// this one may receive for the event's connection alone, until end_stay(). False when there
   /// were events of others, too, or threads are needed for other things.
@@ -115,44 +145,67 @@ class Reactor {
   void end_stay();
   /// True when threads that stay are to come back soon.
   [[nodiscard]] bool is_stay_over() const { return is_stay_over_.load(std::memory_order_relaxed); }
-  /// How many threads stay. For tests.
+  // For tests: how many threads stay, are held, exist; how much work waits for threads.
   [[nodiscard]] unsigned stays() const;
+  [[nodiscard]] unsigned held() const;
+  [[nodiscard]] unsigned live_threads() const;
+  [[nodiscard]] std::size_t waiting() const;
 
  private:
   struct Polling;  // what a thread knows while it polls
-  static thread_local Polling* current_polling;
-  static thread_local const Reactor* current_reactor;
+  // Constants at first, so that other files reach them without a call.
+  static constinit thread_local Polling* current_polling;
+  static constinit thread_local const Reactor* current_reactor;
 
+  struct Posted {
+    std::function<void()> work;
+    std::shared_ptr<ThreadShare> share;  // whose threads it takes, and waits for
+    std::shared_ptr<Pollable> pollable;  // whose handler it is
+  };
+
+  void post(Posted posted);
   void run_thread();
-  void poll(std::uint64_t turn);
+  void poll_until_lost(std::unique_lock<std::mutex>& lock);
+  void poll(Polling& polling);
   bool watch(std::unique_lock<std::mutex>& lock);
   bool take_over(std::uint64_t turn);
-  bool hand_over(const Polling& polling);
-  [[nodiscard]] bool has_spare_thread();
-  void enter(const Polling& polling, Pollable* pollable);
-  bool leave(const Polling& polling);
-  bool handle_events(const Polling& polling);
-  bool run_posted(const Polling& polling);
-  void add_thread();
-  void need_thread();
+  bool hand_over(Polling& polling, bool is_held);
+  void note_loss(Polling& polling);
+  std::vector<std::shared_ptr<Pollable>> take_retired();
+  void hold(Polling& polling);
+  void release(Polling& polling);
+  [[nodiscard]] Handling look_up(const ThreadShare& share);
+  [[nodiscard]] Handling admit(const ThreadShare& share) const;
+  void move_waiting();
+  void note_free();
+  [[nodiscard]] unsigned free_threads() const;
+  void enter(Polling& polling, Pollable* pollable);
+  bool leave(Polling& polling);
+  [[nodiscard]] bool is_inside(const Polling& polling) const;
+  bool handle_events(Polling& polling);
+  bool run_posted(Polling& polling);
+  bool next_posted(Posted& next, Handling& admission);
+  void run(const std::function<void()>& work) const;
+  bool add_thread();
+  bool secure_thread();
+  void call_back_stays();
+  void report_missing_thread(std::unique_lock<std::mutex>& lock);
   void reap();
   void wake_watching_thread();
   void wake_polling_thread();
   Time run_timers(std::unique_lock<std::mutex>& lock);
-  void sift_up(std::size_t place);
-  void sift_down(std::size_t place);
-  void put(std::size_t place, Timer* timer);
-  void take_out(Timer& timer);
 
+  const Terms terms_;
   const unsigned max_threads_;
   const unsigned max_stays_;
+  const unsigned reserve_;  // threads for sessions that hold none
   Flusher flusher_;
   int epoll_ = -1;
   int wake_ = -1;
 
-  // Whose turn it is to poll, times two, plus one while the thread is inside a handler.
+  // The turn to poll. It counts what is done with it: one up when a handler is entered, one when it
+  // is left or the turn is taken from it. Odd while the thread that has it is in a handler.
   std::atomic<std::uint64_t> turn_{0};
-  std::atomic<std::uint64_t> handled_{0};  // counts entries into handlers
   std::atomic<bool> watching_thread_sleeps_{false};
   std::atomic<bool> has_work_{false};  // posted or retired
 
@@ -170,6 +223,13 @@ class Reactor {
   bool has_ended_ = false;                // no thread is left that could name what is retired
   bool is_polled_ = false;
   bool is_watched_ = false;
+  Polling* poller_ = nullptr;           // of the thread whose turn it is
+  unsigned held_ = 0;                   // threads that do not poll any more and are in a handler
+  std::atomic<bool> is_tight_{false};   // hardly any thread is left; written under mutex_
+  Time no_thread_until_ = Time::min();  // none could be made a moment ago
+  bool must_report_ = false;            // and nobody has been told
+  std::unordered_map<std::string, std::weak_ptr<AddressThreads>> addresses_;
+  std::size_t swept_addresses_ = 0;  // that were left of them
   unsigned idle_threads_ = 0;
   unsigned wanted_threads_ = 0;  // idle ones that have been woken
   unsigned live_threads_ = 0;
@@ -177,9 +237,11 @@ class Reactor {
   std::atomic<bool> is_stay_over_{false};  // written under mutex_
   std::list<std::thread> threads_;
   std::vector<std::thread::id> ended_;
-  std::vector<Timer*> timers_;  // a heap, earliest first
-  std::deque<std::function<void()>> posted_;
-  std::vector<std::shared_ptr<void>> retired_;
+  TimerHeap timers_;
+  std::deque<Posted> posted_;
+  std::deque<Posted> waiting_;  // for threads of their shares
+  std::vector<std::shared_ptr<Pollable>> retired_;
+  std::vector<const Pollable*> inside_;  // whose handlers threads are in that do not poll any more
   std::size_t connections_ = 0;
   std::condition_variable no_connection_;
   LateWork late_;  // what is posted from is_stopping_ on

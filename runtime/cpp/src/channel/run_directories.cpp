@@ -5,9 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/directories.hpp"
@@ -21,30 +21,14 @@ namespace {
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
-void make_directory(const std::string& path, mode_t mode, bool is_exact) {
+void make_shared_directory(const std::string& path) {
+  constexpr mode_t mode = S_ISGID | 0750;
   if (mkdir(path.c_str(), mode) == 0) {
     // Without what the mask took away.
-    if (is_exact && chmod(path.c_str(), mode) != 0) fail(path, std::strerror(errno));
+    if (chmod(path.c_str(), mode) != 0) fail(path, std::strerror(errno));
     return;
   }
   if (errno != EEXIST) fail(path, std::strerror(errno));
-}
-
-void make_directories(const std::string& path) {
-  constexpr mode_t usual = 0777;  // and the mask
-  for (std::size_t at = path.find('/', 1);; at = path.find('/', at + 1)) {
-    make_directory(path.substr(0, at), usual, false);
-    if (at == std::string::npos) return;
-  }
-}
-
-// What others could have made for us to walk into is refused.
-void check_owner(const std::string& path) {
-  struct stat found {};
-  if (lstat(path.c_str(), &found) != 0) fail(path, std::strerror(errno));
-  if (!S_ISDIR(found.st_mode)) fail(path, "it is no folder");
-  if (found.st_uid != geteuid()) fail(path, "it belongs to another user");
-  if ((found.st_mode & S_IWOTH) != 0) fail(path, "everybody may write to it");
 }
 
 }  // namespace
@@ -68,12 +52,13 @@ std::string user_run_directory(const LocalOptions& options) {
 
 NodeFolder private_folder(const LocalOptions& options) {
   const std::string run = user_run_directory(options);
-  return {run + "/transport/local", run + "/socket", false};
+  return {run + "/transport/local", run + "/socket", run, false, {.is_private = true}};
 }
 
 NodeFolder public_folder(const LocalOptions& options, std::string_view user) {
-  const std::string base = system_run_directory(options) + "/transport/local/" + std::string(user);
-  return {base, base + "/socket", true};
+  const std::string run = system_run_directory(options);
+  const std::string base = run + "/transport/local/" + std::string(user);
+  return {base, base + "/socket", run, true, {.owner = user_of(std::string(user))}};
 }
 
 std::vector<NodeFolder> folders_for_host(const LocalOptions& options, std::string_view host) {
@@ -94,18 +79,18 @@ std::vector<NodeFolder> folders_for_host(const LocalOptions& options, std::strin
 }
 
 void make_folder(const NodeFolder& folder) {
-  constexpr mode_t shared = S_ISGID | 0750;
+  const std::array parts = {folder.base + "/by-nodeid", folder.base + "/by-nodename",
+                            folder.sockets};
   if (!folder.is_public) {
-    make_directories(folder.base);
-    make_directories(folder.sockets);
-    check_owner(folder.sockets);
-    check_owner(folder.base);
-  } else if (!std::filesystem::is_directory(folder.base)) {
+    for (const std::string& part : parts) make_trusted_folder(part, folder.rule, folder.run);
+    return;
+  }
+  if (!open_trusted_folder(folder.base, folder.rule)) {
     fail(folder.base, "it does not exist; the machine's administrator makes it for public nodes");
   }
-  for (const std::string& part :
-       {folder.base + "/by-nodeid", folder.base + "/by-nodename", folder.sockets}) {
-    make_directory(part, folder.is_public ? shared : 0777, folder.is_public);
+  for (const std::string& part : parts) {
+    make_shared_directory(part);
+    open_trusted_folder(part, folder.rule);  // one that was there may be another's
   }
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "rr/options.hpp"
+#include "runtime/cpp/src/channel/trusted_folder.hpp"
 
 /// Where nodes of one machine leave what others find them by (04, section 7.1).
 namespace rr::channel {
@@ -23,7 +24,9 @@ std::string system_run_directory(const LocalOptions& options);
 struct NodeFolder {
   std::string base;  ///< has `by-nodeid` and `by-nodename`
   std::string sockets;
+  std::string run;  ///< both are in it
   bool is_public = false;
+  FolderRule rule{};  ///< whom it may belong to
 };
 NodeFolder private_folder(const LocalOptions& options);
 NodeFolder public_folder(const LocalOptions& options, std::string_view user);
@@ -31,8 +34,9 @@ NodeFolder public_folder(const LocalOptions& options, std::string_view user);
 /// (invalid_argument).
 std::vector<NodeFolder> folders_for_host(const LocalOptions& options, std::string_view host);
 
-/// Makes what is missing of a folder. Throws rr::Error: a public one must have been made by the
-/// machine's administrator.
+/// Makes what is missing of a folder, a private one for its user alone. Throws rr::Error
+/// (system_resource_error) for one that another user could change; a public one must have been made
+/// by the machine's administrator.
 void make_folder(const NodeFolder& folder);
 
 }  // namespace rr::channel

@@ -132,8 +132,10 @@ std::vector<Address> resolve(const std::string& host, std::uint16_t port) {
 
 std::vector<Address> resolve_for_listening(const std::string& host, std::uint16_t port) {
   const bool is_any = host.empty() || host == "*";
-  std::vector<Address> addresses =
-      is_any ? look_up({}, AI_PASSIVE | AI_NUMERICHOST) : resolve(host, port);
+  const bool is_own = host == "localhost";  // which needs nobody to look it up
+  std::vector<Address> addresses = is_any || is_own
+                                       ? look_up({}, AI_NUMERICHOST | (is_any ? AI_PASSIVE : 0))
+                                       : resolve(host, port);
   for (Address& address : addresses) address.set_port(port);
   return addresses;
 }
@@ -156,6 +158,13 @@ Address address_of(int descriptor, int (*ask)(int, sockaddr*, socklen_t*)) {
 }
 
 }  // namespace
+
+std::optional<uid_t> peer_user(int descriptor) {
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  if (getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) return std::nullopt;
+  return peer.uid;
+}
 
 Address local_address(int descriptor) {
   return address_of(descriptor, [](int each, sockaddr* address, socklen_t* size) {

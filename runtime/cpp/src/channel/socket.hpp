@@ -2,9 +2,11 @@
 #pragma once
 
 #include <sys/socket.h>
+#include <sys/types.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -37,6 +39,8 @@ class Descriptor {
 struct Address {
   sockaddr_storage storage{};
   socklen_t size = 0;
+  /// Of a local socket: the users who may listen there. Empty: nobody asks.
+  std::vector<uid_t> servers{};
 
   [[nodiscard]] int family() const { return storage.ss_family; }
   [[nodiscard]] std::uint16_t port() const;
@@ -54,6 +58,9 @@ std::vector<Address> resolve(const std::string& host, std::uint16_t port);
 
 /// Addresses to listen at for a host as written in a URL: empty and `*` mean all of both families.
 std::vector<Address> resolve_for_listening(const std::string& host, std::uint16_t port);
+
+/// The user at the other end of a local socket: who listens, or who has connected.
+std::optional<uid_t> peer_user(int descriptor);
 
 Address local_address(int descriptor);
 Address remote_address(int descriptor);

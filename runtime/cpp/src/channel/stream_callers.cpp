@@ -3,6 +3,7 @@
 // wait, and the others follow.
 #include <poll.h>
 
+#include <algorithm>
 #include <thread>
 #include <utility>
 
@@ -82,7 +83,7 @@ void StreamConnection::let_others_come() {
 
 void StreamConnection::claim(Waiter& waiter) {
   const std::lock_guard lock(turns_);
-  if (is_closing_ || is_read_) return;
+  if (is_closing_ || is_read_ || !may_callers_read()) return;
   begin_lead(waiter);
 }
 
@@ -96,10 +97,14 @@ void StreamConnection::begin_lead(Waiter& waiter) {
 }
 
 void StreamConnection::wait(Waiter& waiter, Time deadline, Time now) {
-  if (waiter.is_reader()) {
-    lead(waiter, deadline, now);
-  } else if (follow(waiter, deadline)) {
-    lead(waiter, deadline, coarse_now());
+  bool may_lead = waiter.is_reader();
+  if (!may_lead) {
+    may_lead = follow(waiter, deadline);
+    now = coarse_now();
+  }
+  while (may_lead && !lead(waiter, deadline, now)) {
+    may_lead = follow(waiter, deadline);
+    now = coarse_now();
   }
 }
 
@@ -137,7 +142,7 @@ void StreamConnection::find_reader() {
   {
     const std::lock_guard lock(turns_);
     if (!lacks_reader_.exchange(false) || is_read_ || is_closing_) return;
-    next = choose_next();
+    if (may_callers_read()) next = choose_next();
     is_read_ = next != nullptr;
     if (!is_read_) park_or_watch();
   }
@@ -167,7 +172,7 @@ bool StreamConnection::follow(Waiter& waiter, Time deadline) {
 bool StreamConnection::begin_following(Waiter& waiter) {
   const std::lock_guard lock(turns_);
   if (waiter.is_done()) return false;
-  if (!is_read_ && !is_closing_) {
+  if (!is_read_ && !is_closing_ && may_callers_read()) {
     begin_lead(waiter);
     return false;
   }
@@ -196,11 +201,13 @@ const SleepWord* StreamConnection::choose_next() {
   return &oldest->state;
 }
 
-void StreamConnection::lead(Waiter& waiter, Time deadline, Time now) {
+// False when the connection must not be read for a while.
+bool StreamConnection::lead(Waiter& waiter, Time deadline, Time now) {
   Reactor::about_to_wait();
   limit_receive_time();
   // Nearly always the first receive brings the answer.
   bool may_block = deadline - now > 2 * receive_pause;
+  bool is_over = true;
   {
     const ScratchLease scratch;
     while (!waiter.is_done() && !is_closing_.load(std::memory_order_relaxed)) {
@@ -208,12 +215,21 @@ void StreamConnection::lead(Waiter& waiter, Time deadline, Time now) {
       bool is_full = false;
       const Received received = receive(*scratch, may_block, is_full);
       may_block = false;
-      if (!scratch->waiting.empty() || !scratch->laters.empty()) leave_to_reactor(*scratch);
-      if (received == Received::end) break;
-      if (received == Received::nothing && Clock::now() >= deadline) break;
+      const bool is_left = !scratch->waiting.empty() || !scratch->deferred.empty();
+      if (is_left) leave_to_reactor(*scratch);
+      if (received == Received::end || waiter.is_done()) break;
+      if (is_left && role_ == Role::client) wait_until_handled(waiter, deadline);
+      // What others send without end must not keep the call from its end.
+      if (Clock::now() >= deadline) break;
+      if (role_ == Role::server) {
+        const std::lock_guard lock(turns_);
+        is_over = may_callers_read();
+        if (!is_over) break;
+      }
     }
   }
   resign(waiter);
+  return is_over;
 }
 
 // What a caller has read that is not for callers.
@@ -223,9 +239,24 @@ void StreamConnection::leave_to_reactor(Scratch& scratch) {
     const std::lock_guard lock(turns_);
     hand_on(scratch, false, must_post);
   }
-  if (must_post) reactor_->post([self = shared_from_this()] { self->drain_posted(); });
-  for (std::function<void()>& later : scratch.laters) reactor_->post(std::move(later));
-  scratch.laters.clear();
+  if (must_post) drain_soon();
+  for (std::function<void()>& later : scratch.deferred) reactor_->post(std::move(later));
+  scratch.deferred.clear();
+}
+
+// A client's callers read on, whatever waits to be handled, until that is more than the service may
+// make the client hold.
+void StreamConnection::wait_until_handled(const Waiter& waiter, Time deadline) {
+  constexpr Milliseconds look_period{5};
+  while (!waiter.is_done() && !is_closing_.load(std::memory_order_relaxed)) {
+    {
+      const std::lock_guard lock(turns_);
+      if (!is_overdrawn()) return;
+    }
+    const Time now = Clock::now();
+    if (now >= deadline) return;
+    std::this_thread::sleep_until(std::min(deadline, now + look_period));
+  }
 }
 
 // A blocking receive would be late for a deadline that is near: then poll() waits for bytes.

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <utility>
 
+#include "rr/printable.hpp"
 #include "runtime/cpp/src/channel/stream_connection.hpp"
 
 namespace rr::channel {
@@ -55,7 +56,8 @@ StreamConnection::Received StreamConnection::receive_bytes(Scratch& scratch, boo
                                                            bool& is_full) {
   Received result = Received::nothing;
   do {
-    const std::span<std::byte> room = inbox_.room(scratch);
+    if (!inbox_.may_grow()) return wait_for_memory();
+    const std::span<std::byte> room = this->room(scratch);
     const std::ptrdiff_t size = carrier_->receive(room, may_block);
     if (is_nothing_yet(size)) return result;
     if (size <= 0) {
@@ -64,14 +66,15 @@ StreamConnection::Received StreamConnection::receive_bytes(Scratch& scratch, boo
         return fail_reading({ErrorCode::connection_error, "the other side closed the connection"});
       }
       if (options_->log) {
-        options_->log(LogLevel::warning, "a connection was refused, or has failed: " + failure);
+        options_->log(LogLevel::warning,
+                      "a connection was refused, or has failed: " + printable(failure));
       }
       return fail_reading({ErrorCode::connection_error, failure});
     }
     last_received_.store(coarse_now(), std::memory_order_relaxed);
     may_block = false;
     is_full = true;  // the socket may have more
-    if (!was_heard_ && is_layered_) certified_node_ = layers().certified_node();
+    if (!was_heard_ && is_layered_ && !is_proven_) note_peer();
     result = take_bytes(scratch, static_cast<std::size_t>(size));
     if (result != Received::some) return result;
   } while (carrier_->has_received());

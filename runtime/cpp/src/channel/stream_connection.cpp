@@ -8,7 +8,18 @@
 #include <algorithm>
 #include <utility>
 
+#include "runtime/cpp/src/channel/remote_address.hpp"
+
 namespace rr::channel {
+namespace {
+
+std::string remote_address_of(int descriptor, const LinkTerms& terms) {
+  std::string address = channel::remote_address_of(descriptor);
+  if (!address.empty()) return address;
+  return terms.scheme == "rr+intra" ? "intra" : terms.scheme;
+}
+
+}  // namespace
 
 static_assert(std::atomic<Time>::is_always_lock_free);
 
@@ -29,17 +40,20 @@ StreamConnection::StreamConnection(Role role, Descriptor socket, std::shared_ptr
                         ? options_->limits.message_size
                         : std::min(options_->limits.message_size, terms_.traits.message_limit)),
       carrier_(std::move(carrier)),
+      remote_address_(remote_address_of(socket_.get(), terms_)),
       tap_(options_->tap.get()),
       last_sent_(coarse_now()),
       last_received_(coarse_now()),
       created_(coarse_now()) {
   set_stream_options(socket_.get());
+  if (role_ == Role::server) threads_ = reactor_->open_share(remote_key(remote_address_));
   if (tap_ != nullptr) open_tap();
 }
 
 StreamConnection::~StreamConnection() {
   reactor_->cancel(life_timer_);
   reactor_->cancel(park_timer_);
+  reactor_->cancel(look_timer_);
 }
 
 void StreamConnection::set_agreement(const NodeId& remote_node, std::string remote_name,
@@ -68,6 +82,9 @@ void StreamConnection::start(std::shared_ptr<Receiver> receiver) {
     const std::lock_guard lock(turns_);
     if (is_closing_) return;
     receiver_ = std::move(receiver);
+    // A message on its way to a client is one at most, and may be what a caller waits for.
+    if (role_ == Role::server) inbox_.set_account(account_);
+    outbox_charge_ = Charge(account_);
     if (carrier_) {
       carrier_->set_on_room([reactor = reactor_.get(), weak = weak_from_this()] {
         if (const auto self = weak.lock()) reactor->post([self] { self->flush(); });
@@ -129,7 +146,12 @@ void StreamConnection::look_after() {
     return;
   }
   const Time last_sent = last_sent_;
-  if (last_sent - last_received_.load() > terms_.receive_timeout) {
+  bool is_stalled = false;  // then it is not the other side that is slow
+  {
+    const std::lock_guard lock(turns_);
+    is_stalled = is_stalled_;
+  }
+  if (!is_stalled && last_sent - last_received_.load() > terms_.receive_timeout) {
     close(Error(ErrorCode::connection_error, "the other side does not answer any more"));
     return;
   }
@@ -173,13 +195,20 @@ void StreamConnection::begin_close(const Error& why) {
 void StreamConnection::finish_close() {
   reactor_->cancel(life_timer_);
   reactor_->cancel(park_timer_);
-  Laters laters;
+  reactor_->cancel(look_timer_);
+  inbox_.clear();
+  drop_unsent();
+  DeferredCallbacks deferred;
   if (tap_ != nullptr) tap_->closed(tap_number_, why_closed_->code(), why_closed_->message());
-  if (receiver_) receiver_->lost(*why_closed_, laters);  // receiver_ stays until closed() is due
+  if (receiver_) receiver_->lost(*why_closed_, deferred);  // receiver_ stays until closed() is due
   std::shared_ptr<StreamConnection> self;
   bool must_post = false;
+  std::unique_ptr<std::deque<Frame>> dropped;
+  std::shared_ptr<ThreadShare> callbacks;
   {
     const std::lock_guard lock(turns_);
+    if (is_departed()) dropped = take_queue();
+    callbacks = callback_threads_;
     self = std::move(self_);
     if (is_watched_) reactor_->remove(socket_.get());
     is_watched_ = false;
@@ -188,10 +217,16 @@ void StreamConnection::finish_close() {
     must_post = is_closed_pending_ && !is_dispatched_ && absent_ == 0;
     if (must_post) loosen_turn();
   }
+  dropped.reset();
+  for (const auto& share : {threads_, callbacks}) {
+    if (!share) continue;
+    share->depart();
+    reactor_->reconsider();
+  }
   if (carrier_) carrier_->end();
   if (on_gone_) on_gone_(*this);
-  if (must_post) laters.emplace_back([keep = shared_from_this()] { keep->drain_posted(); });
-  for (std::function<void()>& later : laters) reactor_->post(std::move(later));
+  if (must_post) deferred.emplace_back([keep = shared_from_this()] { keep->drain_posted(); });
+  for (std::function<void()>& later : deferred) reactor_->post(std::move(later));
   if (self) reactor_->retire(std::move(self));
 }
 

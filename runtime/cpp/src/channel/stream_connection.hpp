@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <deque>
 #include <memory>
@@ -46,6 +47,11 @@ namespace rr::channel {
 /// In the same way a thread of the reactor stays with a connection that brings one message after
 /// the other while no caller reads, and waits for the next one in a receive that blocks. A timer
 /// puts the socket back under watch when a handler takes long.
+///
+/// A server's connection is paused, which is not read by anybody, while too many requests wait for
+/// their handlers, while too many answers wait to be sent, or while its account has no room for
+/// more of a message. What waits is charged to the account; a message that is handled where it was
+/// received, and answered at once, never touches it.
 class StreamConnection final : public Connection,
                                public Pollable,
                                public Flushable,
@@ -67,15 +73,24 @@ class StreamConnection final : public Connection,
   /// Before set_agreement(): the messages that did it, when the node has a tap.
   void tell_handshake(std::span<const std::byte> request, std::span<const std::byte> answer);
   /// Before start(): what the other side has proved to be.
-  void set_certified_node(const NodeId& node) { certified_node_ = node; }
+  void set_certified_node(const NodeId& node) {
+    certified_node_ = node;
+    is_proven_.store(!node.is_any(), std::memory_order_release);
+  }
   /// Before start(): called once when the connection has ended, on any thread.
   void set_on_gone(std::function<void(StreamConnection&)> on_gone) {
     on_gone_ = std::move(on_gone);
   }
+  /// From the function of set_on_gone().
+  [[nodiscard]] const Error& why_closed() const { return *why_closed_; }
   /// Messages go to `receiver` from now on; the reactor watches the socket.
   void start(std::shared_ptr<Receiver> receiver);
 
   [[nodiscard]] std::string local_url() const override;
+  [[nodiscard]] std::string remote_address() const override { return remote_address_; }
+  [[nodiscard]] NodeId certified_node() const override {
+    return is_proven_.load(std::memory_order_acquire) ? certified_node_ : NodeId();
+  }
   [[nodiscard]] ChannelTraits traits() const override;
   void check_size(const Writer& message) const override;
   using Connection::reply;
@@ -94,7 +109,10 @@ class StreamConnection final : public Connection,
   void expect() override;
   void nudge() override;
   bool give_up_turn() override;
-  void take_turn_again() override;
+  bool take_turn_again(Time deadline) override;
+  void await_turn() override;
+  bool put_off() override;
+  void resume() override;
   void close(const Error& why) override;
   void close_after(Milliseconds delay) override;
   [[nodiscard]] bool is_closed() const override {
@@ -103,6 +121,7 @@ class StreamConnection final : public Connection,
 
   void on_ready(std::uint32_t events) override;
   void on_stuck() override { flush(); }
+  [[nodiscard]] std::shared_ptr<ThreadShare> thread_share() const override { return threads_; }
   void flush_streamed() override { flush(); }
 
  private:
@@ -129,12 +148,23 @@ class StreamConnection final : public Connection,
     StreamConnection& connection_;
   };
 
+  class LookTimer final : public Timer {
+   public:
+    explicit LookTimer(StreamConnection& connection) : connection_(connection) {}
+    void on_timer() override { connection_.look_at_message(); }
+
+   private:
+    StreamConnection& connection_;
+  };
+
   // Sending (stream_sending.cpp, stream_streaming.cpp)
   // What is known of a message that is to be sent.
   struct Sending {
     Time now;
     Priority priority = Priority::usual;
     const Newest* newest = nullptr;
+    ErrorCode refusal = ErrorCode::out_of_system_resource;  // when it may not wait
+    bool is_reply = false;
   };
   void send(Writer& message, const Sending& how);
   void send_or_queue(Writer& message, const Sending& how);
@@ -151,8 +181,12 @@ class StreamConnection final : public Connection,
   void note_waiting();
   [[nodiscard]] std::size_t waiting_bytes() const;
   [[noreturn]] void fail_sending();
+  void fail_later();
   void flush();
   void watch_for_room();
+  [[nodiscard]] bool admit(std::size_t size, ErrorCode refusal);
+  void settle();
+  void drop_unsent();
   void send_own(Writer& message);  // of the connection itself; failures are ignored
 
   // The tap (stream_tap.cpp): all of it only with one.
@@ -166,25 +200,58 @@ class StreamConnection final : public Connection,
   Received receive_once(Scratch& scratch, bool may_block, bool& is_full);
   Received take_bytes(Scratch& scratch, std::size_t received);
   Received fail_reading(const Error& why);
-  bool take(Scratch& scratch, const Frame& frame);
+  bool take(Scratch& scratch, Frame& frame);
   bool take_packet(Scratch& scratch, const Frame& frame);
   void take_answers(const Message& message, const Entry& first, const MemoryRef& owner,
-                    Laters& laters);
+                    DeferredCallbacks& deferred);
   void refuse_stream(const Scratch& scratch, std::size_t size);
   bool take_read_turn(bool until_end = false);
   void read_as_reactor(bool until_end);
+  void read_soon(bool until_end);
   bool leave_read_turn(Scratch& scratch, bool may_dispatch);
   bool hand_on(Scratch& scratch, bool may_dispatch, bool& must_post);
-  void enqueue(const Frame& frame);
-  void dispatch(Turn& turn);
+  void enqueue(Frame frame);
+  void charge(Frame& frame);
+  bool dispatch(Turn& turn);
   bool drain(Turn& turn);
+  void handle_in_turn(Turn& turn, Handling admission, bool& is_again);
+  void run_laters(DeferredCallbacks& deferred, Handling admission);
   void drain_posted();
-  [[nodiscard]] static Frame keep(const Frame& frame);
+  [[nodiscard]] static Frame keep(Frame frame);
+  void drain_soon();
+  void note_pace(const Turn& turn);
+
+  // When a server does not read on, nor hands on (stream_pausing.cpp)
+  [[nodiscard]] bool is_paused() const;
+  [[nodiscard]] bool may_callers_read() const;
+  [[nodiscard]] bool is_overdrawn() const;
+  std::span<std::byte> room(Scratch& scratch);
+  Received wait_for_memory();
+  void note_assembly();
+  void schedule_look(Time when);
+  void look_at_message();
+  void read_late(Time asked);
+  void give_time();
+  [[nodiscard]] bool has_many_answers() const;
+  bool answers_wait();
+  [[nodiscard]] std::size_t unsent() const { return outbox_.size() + carrier_unsent(); }
+  [[nodiscard]] std::size_t most_answers() const;
+  // Under sending_: bytes of answers that wait, at most. Events and packets do not count: a client
+  // that takes them slowly may still ask, and be it to stop something.
+  [[nodiscard]] std::size_t waiting_answers() const { return std::min(answer_bytes_, unsent()); }
+  void go_on();
+  void put_back(Turn& turn);
+  [[nodiscard]] std::unique_ptr<std::deque<Frame>> take_queue();
+  [[nodiscard]] bool is_departed() const;
 
   // The dispatch turn while its holder waits, and what does without it (dispatch_turn.cpp)
   void loosen_turn();
-  void handle_aside(const Frame& frame);
+  void handle_aside(Frame frame);
+  [[nodiscard]] bool must_yield(Turn& turn) const;
+  bool is_suspended(Turn& turn, Frame frame);
+  [[nodiscard]] bool may_be_absent() const;
   bool begin_absence();
+  [[nodiscard]] std::shared_ptr<ThreadShare> callback_share();
   void end_absence();
   void handle_frame(Scratch& scratch, const Frame& frame, bool is_parsed);
   void complete(Message& message) const;
@@ -200,9 +267,11 @@ class StreamConnection final : public Connection,
   LayeredCarrier& layers();
   void answer_start_tls(const Message& message, const Entry& entry);
   Received begin_tls();
+  void note_peer();
   [[nodiscard]] bool is_encrypted() const;
   [[nodiscard]] std::string scheme() const;
   [[nodiscard]] bool is_certified(const Message& message) const;
+  [[nodiscard]] const NodeId& sender_of(const Message& message) const;
 
   [[nodiscard]] std::size_t carrier_unsent() const {
     return carrier_ == nullptr ? 0 : carrier_->unsent();
@@ -215,9 +284,10 @@ class StreamConnection final : public Connection,
   Gathered gather_call(Writer& message);
   void let_others_come();
   void begin_lead(Waiter& waiter);
-  void lead(Waiter& waiter, Time deadline, Time now);
+  bool lead(Waiter& waiter, Time deadline, Time now);
   bool may_block_until(Time deadline);
   void leave_to_reactor(Scratch& scratch);
+  void wait_until_handled(const Waiter& waiter, Time deadline);
   bool follow(Waiter& waiter, Time deadline);
   bool begin_following(Waiter& waiter);
   bool unlink(Waiter& waiter);
@@ -259,6 +329,8 @@ class StreamConnection final : public Connection,
 
   // So much is worth a system call at once.
   static constexpr std::size_t stream_chunk = 64 * 1024;
+  // What a message that waits costs besides its bytes.
+  static constexpr std::size_t bytes_beside_frame = 128;
   // A receive returns after this time to look at the deadline, or to give the thread back to the
   // reactor; set once per socket, which is cheaper than waiting with poll() each time.
   static constexpr Milliseconds receive_pause{100};
@@ -271,6 +343,7 @@ class StreamConnection final : public Connection,
   const std::uint32_t largest_size_;  // of a message
   // Null for plain bytes; written with the read turn and under sending_.
   std::unique_ptr<Carrier> carrier_;
+  const std::string remote_address_;
   Tap* const tap_;  // of the options; null: none
   std::uint32_t tap_number_ = 0;
   std::shared_ptr<Receiver> receiver_;
@@ -285,9 +358,15 @@ class StreamConnection final : public Connection,
   bool read_again_ = false;     // there is more than the thread with the read turn may have seen
   bool is_dispatched_ = false;  // the dispatch turn is taken
   bool is_turn_loose_ = false;  // but by no thread yet: posted work, or one that returns, takes it
-  unsigned absent_ = 0;         // threads in the receiver, now or soon, without the turn
-  Returning* returning_ = nullptr;  // those of them that want it back
-  bool is_stalled_ = false;         // not read on because of queued requests
+  // A message was put off: the turn is taken, by no thread, until the end of that.
+  enum class PutOff : std::uint8_t { no, begun, resumed, suspended };
+  PutOff put_off_ = PutOff::no;
+  unsigned absent_ = 0;  // threads in the receiver, now or soon, without the turn
+  std::shared_ptr<ThreadShare> callback_threads_;  // of a client, from its first callback on
+  Returning* returning_ = nullptr;                 // those of them that want it back
+  bool is_stalled_ = false;                        // not read on because of queued requests
+  bool is_refused_ = false;                        // nor for want of memory
+  Time look_due_ = never;                          // of look_timer_
   bool is_closed_pending_ = false;
   std::atomic<bool> is_closing_{false};  // written under turns_
   Watch watch_ = Watch::off;
@@ -306,24 +385,31 @@ class StreamConnection final : public Connection,
   std::unique_ptr<const Error> why_closed_;
 
   Inbox inbox_;                 // with the read turn
+  Time refused_since_ = never;  // with the read turn
   Waiter* answered_ = nullptr;  // with the read turn: followers to be woken
   Waiter** answered_end_ = &answered_;
-  bool has_woken_ = false;            // the caller that reads has woken others; with the read turn
-  bool had_message_ = false;          // with the read turn
-  bool begins_tls_ = false;           // with the read turn: after the message that asked for it
-  bool is_mutual_ = false;            // with the read turn: and of the client wants a certificate
-  bool has_more_behind_ = false;      // with the read turn: bytes behind that message
-  bool is_layered_ = false;           // with the read turn: the carrier is a LayeredCarrier
-  NodeId certified_node_;             // what the other side has proved to be; with the read turn
-  bool has_receive_timeout_ = false;  // with the read turn
-  bool acknowledges_late_ = true;     // with the read turn
-  unsigned busy_receives_ = 0;        // with the read turn
-  std::uint32_t busy_leads_ = 0;      // with the read turn
-  bool holds_back_answers_ = false;   // with the dispatch turn
+  bool has_woken_ = false;        // the caller that reads has woken others; with the read turn
+  bool had_message_ = false;      // with the read turn
+  bool begins_tls_ = false;       // with the read turn: after the message that asked for it
+  bool is_mutual_ = false;        // with the read turn: and of the client wants a certificate
+  bool has_more_behind_ = false;  // with the read turn: bytes behind that message
+  bool is_layered_ = false;       // with the read turn: the carrier is a LayeredCarrier
+  NodeId certified_node_;  // what the other side has proved to be; once, before is_proven_ is set
+  std::atomic<bool> is_proven_{false};
+  bool has_receive_timeout_ = false;     // with the read turn
+  bool acknowledges_late_ = true;        // with the read turn
+  std::atomic<bool> takes_long_{false};  // written by who has just read
+  unsigned busy_receives_ = 0;           // with the read turn
+  std::uint32_t busy_leads_ = 0;         // with the read turn
+  bool holds_back_answers_ = false;      // with the dispatch turn
 
   std::mutex sending_;
-  Outbox outbox_;                        // under sending_
-  std::atomic<bool> has_unsent_{false};  // the socket took not all
+  Outbox outbox_;                          // under sending_
+  Charge outbox_charge_;                   // under sending_: for what the socket did not take
+  std::size_t answer_bytes_ = 0;           // under sending_: of answers, since nothing has waited
+  std::atomic<bool> is_over_{false};       // written under sending_: the account refused that
+  std::atomic<bool> answers_wait_{false};  // written under sending_: too many
+  std::atomic<bool> has_unsent_{false};    // the socket took not all
   std::atomic<std::size_t> outbox_bytes_{0};
 
   std::mutex streaming_;  // after sending_
@@ -337,6 +423,8 @@ class StreamConnection final : public Connection,
 
   std::atomic<Time> last_sent_;
   std::atomic<Time> last_received_;
+  std::atomic<Time> message_due_{never};      // of the message that has begun
+  std::atomic<Milliseconds> message_time_{};  // that it may take
   std::atomic<bool> is_end_in_sight_{false};  // the reactor has been told of it, once
   std::atomic<bool> was_heard_{false};        // a whole message has come
   // What a client has put around its messages.
@@ -348,6 +436,7 @@ class StreamConnection final : public Connection,
   const Time created_;
   LifeTimer life_timer_{*this};
   ParkTimer park_timer_{*this};
+  LookTimer look_timer_{*this};
 };
 
 }  // namespace rr::channel

@@ -62,6 +62,19 @@ bool StreamConnection::is_certified(const Message& message) const {
          message.sender_node == certified_node_;
 }
 
+// Whoever has proved to be a node is that node, also without saying so.
+const NodeId& StreamConnection::sender_of(const Message& message) const {
+  const bool is_silent = message.sender_node.is_any() && is_proven_.load(std::memory_order_acquire);
+  return is_silent ? certified_node_ : message.sender_node;
+}
+
+// With the read turn: what the other side has proved to be, and will be looked at again for.
+void StreamConnection::note_peer() {
+  set_certified_node(layers().certified_node());
+  auto proof = layers().take_proof();
+  if (proof && terms_.tls) terms_.tls->watch(shared_from_this(), std::move(proof));
+}
+
 // What was received is for a layer, not for the inbox.
 StreamConnection::Received StreamConnection::upgrade(Scratch& scratch, std::size_t size,
                                                      std::unique_ptr<Layer> layer) {

@@ -104,7 +104,8 @@ void StreamConnection::answer_stream_op(const Message& message, const Entry& ent
 
 void StreamConnection::answer_create_connection(const Message& message, const Entry& entry) {
   const bool is_first = remote_node_.is_any();
-  const bool is_same = is_first || remote_node_ == message.sender_node;
+  const NodeId& sender = sender_of(message);
+  const bool is_same = is_first || remote_node_ == sender;
   const bool is_target =
       (message.receiver_node.is_any() || message.receiver_node == options_->id) &&
       (message.receiver_name.empty() || message.receiver_name == options_->name);
@@ -124,7 +125,7 @@ void StreamConnection::answer_create_connection(const Message& message, const En
   if (lacks_tls) error = ErrorCode::connection_error;
 
   if (error == ErrorCode::none && is_first) {
-    set_agreement(message.sender_node, std::string(message.sender_name),
+    set_agreement(sender, std::string(message.sender_name),
                   answer ? answer->agreement : Agreement{});
   }
   Writer& writer = thread_writer();

@@ -41,7 +41,9 @@ std::size_t StreamConnection::waiting_bytes() const {
 
 // Under sending_.
 void StreamConnection::note_waiting() {
-  outbox_bytes_.store(outbox_.size() + carrier_unsent(), std::memory_order_relaxed);
+  const std::size_t waiting = unsent();
+  if (waiting == 0) answer_bytes_ = 0;
+  outbox_bytes_.store(waiting, std::memory_order_relaxed);
 }
 
 // Under sending_: what streams have left behind is next.
@@ -93,7 +95,8 @@ void StreamConnection::stream_or_queue(Writer& message) {
   }
   // The other half is for answers.
   const std::size_t waiting = waiting_bytes();
-  if (waiting != 0 && waiting + message.size() > options_->send_queue_limit / 2) {
+  if (waiting != 0 && (waiting + message.size() > options_->send_queue_limit / 2 ||
+                       is_over_.load(std::memory_order_relaxed))) {
     throw Error(ErrorCode::buffer_limit_violation,
                 "the other side does not take packets as fast as they are sent");
   }
@@ -109,15 +112,13 @@ void StreamConnection::stream_or_queue(Writer& message) {
   {
     const std::lock_guard lock(sending_);
     had_rest = has_unsent_;
-    is_broken = !send_under_lock(message, {.now = coarse_now()}, has_rest);
+    is_broken = !send_under_lock(
+        message, {.now = coarse_now(), .refusal = ErrorCode::buffer_limit_violation}, has_rest);
   }
   if (size >= Writer::attach_threshold) message.reset(message.version());
   if (is_broken) {
     // What closes it may run what is left over, so not here, under the caller's lock.
-    reactor_->post([self = shared_from_this()] {
-      self->close(
-          Error(ErrorCode::connection_error, "the other side does not take what is sent to it"));
-    });
+    fail_later();
   } else if (has_rest && !had_rest) {
     reactor_->flusher().add(shared_from_this());  // sends it, or waits for room
   }

@@ -6,7 +6,7 @@ namespace rr::channel {
 void StreamConnection::open_tap() {
   const bool is_client = role_ == Role::client;
   const std::string own = url_of(local_address(socket_.get()));
-  const std::string remote = url_of(remote_address(socket_.get()));
+  const std::string remote = url_of(channel::remote_address(socket_.get()));
   tap_number_ = tap_->opened({.side = is_client ? TapSide::client : TapSide::service,
                               .client_url = is_client ? own : remote,
                               .service_url = is_client ? remote : own});

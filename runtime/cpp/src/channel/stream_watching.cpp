@@ -151,7 +151,7 @@ void StreamConnection::stay(Scratch& scratch) {
 
 bool StreamConnection::begin_staying(std::uint32_t& leads) {
   const std::lock_guard lock(turns_);
-  if (is_closing_ || is_read_ || is_stalled_ || watch_ != Watch::full) return false;
+  if (is_closing_ || is_read_ || is_paused() || watch_ != Watch::full) return false;
   is_stayed_with_ = true;
   set_watch(Watch::parked);
   leads = read_to_stay();
@@ -159,9 +159,10 @@ bool StreamConnection::begin_staying(std::uint32_t& leads) {
 }
 
 bool StreamConnection::go_on_staying(Received received, std::uint32_t& leads) {
+  answers_wait();
   const std::lock_guard lock(turns_);
   const bool is_lone = leads_ == leads;
-  if (received == Received::some && is_lone && !is_closing_ && !is_read_ && !is_stalled_ &&
+  if (received == Received::some && is_lone && !is_closing_ && !is_read_ && !is_paused() &&
       watch_ == Watch::parked && !reactor_->is_stay_over()) {
     leads = read_to_stay();
     return true;

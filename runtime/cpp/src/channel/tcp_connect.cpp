@@ -26,10 +26,10 @@ constexpr Milliseconds next_address_delay{5};
 // Several addresses at once: what each has come to, and what the last failure was.
 class Attempts {
  public:
-  Attempts(const Url& url, const Ground& ground) : url_(url), ground_(ground) {}
+  Attempts(const Url& url, const ChannelContext& context) : url_(url), context_(context) {}
 
   void begin(const Address& address) {
-    keep_failure([&] { attempts_.push_back(std::make_unique<Opening>(address, url_, ground_)); });
+    keep_failure([&] { attempts_.push_back(std::make_unique<Opening>(address, url_, context_)); });
   }
   [[nodiscard]] bool empty() const { return attempts_.empty(); }
 
@@ -70,16 +70,16 @@ class Attempts {
   }
 
   const Url& url_;
-  const Ground& ground_;
+  const ChannelContext& context_;
   std::vector<std::unique_ptr<Opening>> attempts_;
   std::exception_ptr failure_;
 };
 
 }  // namespace
 
-Agreed connect_stream(const std::vector<Address>& addresses, const Url& url, const Ground& ground,
-                      Time deadline) {
-  Attempts attempts(url, ground);
+Agreed connect_stream(const std::vector<Address>& addresses, const Url& url,
+                      const ChannelContext& context, Time deadline) {
+  Attempts attempts(url, context);
   std::size_t next = 0;
   Time next_at = Clock::now();
   while (true) {

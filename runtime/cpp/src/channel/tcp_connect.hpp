@@ -27,7 +27,7 @@ std::vector<OpeningStep> opening_steps(std::string_view scheme);
 
 /// Tries addresses, a new one every few milliseconds; the first with which all steps succeed wins.
 /// Throws rr::Error: operation_cancelled when an Interruption ends it.
-Agreed connect_stream(const std::vector<Address>& addresses, const Url& url, const Ground& ground,
-                      Time deadline);
+Agreed connect_stream(const std::vector<Address>& addresses, const Url& url,
+                      const ChannelContext& context, Time deadline);
 
 }  // namespace rr::channel

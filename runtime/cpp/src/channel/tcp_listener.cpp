@@ -76,15 +76,16 @@ std::vector<Descriptor> open_all(std::vector<Address> addresses, std::uint16_t w
 
 }  // namespace
 
-TcpListener::TcpListener(const Ground& ground, const Url& url, const AcceptHandler& accept) {
+TcpListener::TcpListener(const ChannelContext& context, const Url& url,
+                         const AcceptHandler& accept) {
   if (url.port == shared_port) {
     throw Error(ErrorCode::invalid_argument,
                 "port 48653 is reserved for a port sharer; choose another, or 0 for any");
   }
-  LinkTerms terms = tcp_terms(*ground.options);
-  if (ground.options->web_socket.is_enabled) terms.web_sockets = ground.web_sockets;
-  terms.tls = ground.tls;
-  terms.is_tls_required = ground.options->tls.is_required;
+  LinkTerms terms = tcp_terms(*context.options);
+  if (context.options->web_socket.is_enabled) terms.web_sockets = context.web_sockets;
+  terms.tls = context.tls;
+  terms.is_tls_required = context.options->tls.is_required;
   if (terms.is_tls_required && (!terms.tls || !terms.tls->has_certificate())) {
     throw Error(ErrorCode::invalid_configuration,
                 "TLS is required of clients, and the node has no certificate");
@@ -92,7 +93,7 @@ TcpListener::TcpListener(const Ground& ground, const Url& url, const AcceptHandl
   if (!terms.is_tls_required) schemes_.emplace_back("rr+tcp");
   if (terms.tls && terms.tls->has_certificate()) schemes_.emplace_back("rrs+tcp");
   for (Descriptor& socket : open_all(resolve_for_listening(url.host, url.port), url.port)) {
-    ports_.push_back(std::make_shared<ListeningSocket>(ground, std::move(socket), terms, accept));
+    ports_.push_back(std::make_shared<ListeningSocket>(context, std::move(socket), terms, accept));
   }
   if (ports_.empty()) {
     throw Error(ErrorCode::connection_error,

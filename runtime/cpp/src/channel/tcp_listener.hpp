@@ -14,7 +14,7 @@ namespace rr::channel {
 /// Listens at all addresses of a host and accepts connections.
 class TcpListener final : public Listener {
  public:
-  TcpListener(const Ground& ground, const Url& url, const AcceptHandler& accept);
+  TcpListener(const ChannelContext& context, const Url& url, const AcceptHandler& accept);
   ~TcpListener() override;
 
   [[nodiscard]] std::vector<std::string> urls() const override;

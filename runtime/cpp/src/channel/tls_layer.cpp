@@ -12,8 +12,6 @@ namespace rr::channel {
 namespace {
 
 constexpr std::size_t record = 16 * 1024;
-// The node's, an authority's, and some between.
-constexpr int longest_chain = 6;
 
 }  // namespace
 
@@ -52,12 +50,36 @@ bool TlsLayer::shake_hands() {
   const int result = SSL_do_handshake(ssl_.get());
   if (result == 1) {
     is_open_ = true;
+    keep_proof();
     return true;
   }
   if (SSL_get_error(ssl_.get(), result) != SSL_ERROR_WANT_READ && refusal_.empty()) {
     refusal_ = failure_text();
   }
   return false;
+}
+
+int TlsLayer::verify(X509_STORE_CTX* chain, void* /*unused*/) {
+  const int index = SSL_get_ex_data_X509_STORE_CTX_idx();
+  auto* const ssl = static_cast<SSL*>(X509_STORE_CTX_get_ex_data(chain, index));
+  auto& layer = *static_cast<TlsLayer*>(SSL_get_app_data(ssl));
+  Judgement judgement = judge(*chain, layer.rules_, layer.peer_);
+  layer.certified_node_ = judgement.node;
+  layer.refusal_ = std::move(judgement.refusal);
+  return layer.refusal_.empty() ? 1 : 0;
+}
+
+// What the connection is looked at again by; nothing when the other side has shown nothing.
+void TlsLayer::keep_proof() {
+  X509* const certificate = SSL_get0_peer_certificate(ssl_.get());
+  if (certificate == nullptr) return;
+  X509_up_ref(certificate);
+  auto proof = std::make_shared<PeerProof>();
+  proof->peer = peer_;
+  proof->certificate.reset(certificate);
+  STACK_OF(X509)* const sent = SSL_get_peer_cert_chain(ssl_.get());
+  if (sent != nullptr) proof->chain.reset(X509_chain_up_ref(sent));
+  proof_ = std::move(proof);
 }
 
 void TlsLayer::receive(std::span<const std::byte> wire, Bytes& plain, Bytes& reply) {

@@ -1,32 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "runtime/cpp/src/channel/certificate.hpp"
 #include "runtime/cpp/src/channel/layer.hpp"
+#include "runtime/cpp/src/channel/peer_judge.hpp"
 
 namespace rr::channel {
-
-/// Whom a node trusts besides its authorities.
-struct TlsRules {
-  std::map<NodeId, std::string> pins;  ///< SHA-256 of certificates, hexadecimal, any case
-};
-
-/// What is expected of the other side.
-struct TlsPeer {
-  enum class Role : std::uint8_t {
-    node,    ///< a server that is a node
-    host,    ///< a server of the web
-    client,  ///< a client
-  };
-  Role role = Role::node;
-  NodeId expected{};      ///< of a node: which one; zero: any
-  std::string host{};     ///< of a server of the web: its name
-  bool is_asked = false;  ///< of a client: whether it has to prove who it is
-};
 
 /// TLS around a stream.
 class TlsLayer final : public Layer {
@@ -42,6 +25,8 @@ class TlsLayer final : public Layer {
   [[nodiscard]] bool is_encrypted() const override { return true; }
   [[nodiscard]] NodeId certified_node() const override { return certified_node_; }
 
+  std::shared_ptr<const PeerProof> take_proof() override { return std::move(proof_); }
+
   /// What a context of this has as its verify callback.
   static int verify(X509_STORE_CTX* chain, void* unused);
 
@@ -51,13 +36,7 @@ class TlsLayer final : public Layer {
   void take_wire(Bytes& wire);
   [[noreturn]] void fail();
   [[nodiscard]] std::string failure_text() const;
-  bool judge(X509_STORE_CTX& chain);
-  bool judge_node(X509_STORE_CTX& chain, const X509& certificate);
-  bool judge_host(X509_STORE_CTX& chain, X509& certificate);
-  bool judge_chain(X509_STORE_CTX& chain);
-  bool judge_marks(X509_STORE_CTX& chain);
-  bool judge_pinned(X509_STORE_CTX& chain, const X509& certificate, const std::string& pin);
-  bool refuse(X509_STORE_CTX& chain, int code, std::string why);
+  void keep_proof();
 
   const TlsRules& rules_;
   const TlsPeer peer_;
@@ -67,6 +46,7 @@ class TlsLayer final : public Layer {
   bool is_open_ = false;
   bool has_ended_ = false;
   NodeId certified_node_;
+  std::shared_ptr<const PeerProof> proof_;  // once it is open
   std::string refusal_;
 };
 

@@ -41,6 +41,12 @@ bool matches(const std::string& origin, const std::string& pattern) {
 
 }  // namespace
 
+std::vector<std::string> allowed_origins(const WebSocketOptions& options) {
+  std::vector<std::string> origins = options.origins;
+  if (options.allow_local_pages) origins.insert(origins.end(), {"null", "file://"});
+  return origins;
+}
+
 bool is_allowed_origin(std::string_view origin, const std::vector<std::string>& allowed) {
   const std::string wanted = plain(origin);
   return std::any_of(allowed.begin(), allowed.end(),

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "rr/options.hpp"
 #include "rr/url.hpp"
 #include "runtime/cpp/src/channel/layer.hpp"
 
@@ -30,6 +31,9 @@ class WebSockets : public std::enable_shared_from_this<WebSockets> {
   const std::vector<std::string> origins_;
   const std::unique_ptr<Home> home_;
 };
+
+/// The origins that options allow.
+std::vector<std::string> allowed_origins(const WebSocketOptions& options);
 
 /// Whether a page of an origin may connect: compared without regard to case and with the scheme's
 /// default port filled in; `*.` stands for any host below, and what ends in `://` for all of that

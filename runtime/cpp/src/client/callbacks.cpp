@@ -119,6 +119,7 @@ void CallbackMember::set_function(std::unique_ptr<CallbackFunction> function) {
   if (!session) {
     throw Error(ErrorCode::invalid_operation, "the stub is not attached to a session");
   }
+  session->check_member(*stub_, *member_);
   session->callbacks().set(*stub_, *member_, std::move(function));
 }
 
@@ -130,7 +131,7 @@ void CallbackMember::clear() {
 // goes away here, where that does no harm.
 std::shared_ptr<client::CallbackSlot> Session::find_callback(const Entry& entry) {
   if (auto slot = callbacks_.find(entry.service_path, entry.member)) return slot;
-  const auto stub = known_stub(std::string(entry.service_path));
+  const auto stub = stubs_.find(std::string(entry.service_path));
   if (!stub) throw Error(ErrorCode::service_error, "the client does not use this object");
   for (const Member& member : stub->rr_object_type().members) {
     if (member.kind == MemberKind::callback && member.name == entry.member) {

@@ -39,14 +39,22 @@ std::map<std::string, std::string> ClientBase::definitions() const {
   return session_->definitions();
 }
 void ClientBase::authenticate(const std::string& username,
-                              const std::map<std::string, VarValue>& credentials) {
+                              const std::map<std::string, VarValue>& credentials,
+                              const CallOptions& options) {
+  const CallOptionsScope scope(options);
   session_->authenticate(username, credentials, std::chrono::milliseconds(0));
 }
-void ClientBase::logout() { session_->log_out(); }
-std::string ClientBase::find_object_type(const std::string& path) const {
+void ClientBase::logout(const CallOptions& options) {
+  const CallOptionsScope scope(options);
+  session_->log_out();
+}
+std::string ClientBase::find_object_type(const std::string& path,
+                                         const CallOptions& options) const {
+  const CallOptionsScope scope(options);
   return session_->ask_object_type(path, std::chrono::milliseconds(0));
 }
-std::map<std::string, VarValue> ClientBase::fetch_attributes() const {
+std::map<std::string, VarValue> ClientBase::fetch_attributes(const CallOptions& options) const {
+  const CallOptionsScope scope(options);
   return session_->ask_attributes();
 }
 

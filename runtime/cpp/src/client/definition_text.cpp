@@ -9,8 +9,13 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r\f\v";
 
-// The words of the next line that has any, a line that ends in a backslash going on in the next
-// one. False at the end.
+std::string_view last_part(std::string_view name) {
+  const std::size_t dot = name.rfind('.');
+  return dot == std::string_view::npos ? name : name.substr(dot + 1);
+}
+
+}  // namespace
+
 bool next_line(std::string_view& text, std::vector<std::string_view>& words) {
   words.clear();
   bool goes_on = false;
@@ -34,13 +39,6 @@ bool next_line(std::string_view& text, std::vector<std::string_view>& words) {
   return !words.empty();
 }
 
-std::string_view last_part(std::string_view name) {
-  const std::size_t dot = name.rfind('.');
-  return dot == std::string_view::npos ? name : name.substr(dot + 1);
-}
-
-}  // namespace
-
 DefinitionOutline outline(std::string_view text) {
   DefinitionOutline result;
   std::map<std::string, std::string, std::less<>> aliases;
@@ -53,22 +51,30 @@ DefinitionOutline outline(std::string_view text) {
   std::vector<std::string>* implements = nullptr;
   while (next_line(text, words)) {
     const std::string_view what = words[0];
-    if (what == "object" && words.size() == 2) {
-      implements = &result.objects[std::string(words[1])];
-    } else if (what == "end") {
-      implements = nullptr;
-    } else if (words.size() < 2) {
+    const bool opens_object = what == "object" && words.size() == 2;
+    const bool is_listed = implements != nullptr ? what == "implements"
+                                                 : opens_object || what == "service" ||
+                                                       what == "import" || what == "using";
+    if (what == "end") implements = nullptr;
+    if (words.size() < 2 || !(is_listed || opens_object)) continue;
+    if (words[1].size() > longest_name) {
+      result.has_long_names = true;
       continue;
+    }
+    ++result.size;
+    if (opens_object) {
+      implements = &result.objects[std::string(words[1])];
     } else if (implements != nullptr) {
-      if (what == "implements") implements->push_back(qualify(words[1]));
+      implements->push_back(qualify(words[1]));
     } else if (what == "service") {
       result.name = words[1];
     } else if (what == "import") {
       result.imports.emplace_back(words[1]);
-    } else if (what == "using") {
+    } else {
       const std::string_view alias = words.size() == 4 ? words[3] : last_part(words[1]);
       aliases[std::string(alias)] = words[1];
     }
+    if (result.size > longest_outline) break;
   }
   return result;
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "rr/error.hpp"
@@ -47,24 +48,28 @@ Outgoing call_request(const std::string& path, const Member& member, const void*
           .member = member.name,
           .parameters = member.parameters,
           .values = arguments,
-          .is_urgent = (member.access & urgent) != 0};
+          .is_urgent = (member.access & urgent) != 0,
+          .opens_generator = true};
 }
 
 // The request that ends a generator: an error that a request carries.
 class EndRequest {
  public:
   EndRequest(const std::string& path, const Member& member, const std::int32_t& index, bool aborts)
+      : EndRequest(path, member.name, index, aborts, (member.access & urgent) != 0) {}
+  EndRequest(const std::string& path, std::string_view member, const std::int32_t& index,
+             bool aborts, bool is_urgent)
       : code_(aborts ? ErrorCode::abort_operation : ErrorCode::stop_iteration),
         name_(error_name(code_)),
         text_(aborts ? "Generator abort requested" : ""),
         values_{&name_, &text_, &index},
         request_{.type = EntryType::generator_next_req,
                  .path = path,
-                 .member = member.name,
+                 .member = member,
                  .parameters = parameters,
                  .values = values_.data(),
                  .error = code_,
-                 .is_urgent = (member.access & urgent) != 0} {}
+                 .is_urgent = is_urgent} {}
   EndRequest(const EndRequest&) = delete;
   EndRequest& operator=(const EndRequest&) = delete;
 
@@ -151,10 +156,10 @@ class StepEnd final : public Completion {
   const std::unique_ptr<GeneratorStep> step_;
 };
 
-// The completion of a farewell: a generator that is gone already has ended as wished.
-class FarewellEnd final : public Completion {
+// The completion of an EndRequest: a generator that is gone already has ended as wished.
+class EndCompletion final : public Completion {
  public:
-  FarewellEnd(std::shared_ptr<GeneratorState> state, std::unique_ptr<Completion> completion)
+  EndCompletion(std::shared_ptr<GeneratorState> state, std::unique_ptr<Completion> completion)
       : state_(std::move(state)), completion_(std::move(completion)) {}
 
   void* result() override { return nullptr; }
@@ -180,7 +185,8 @@ class FarewellEnd final : public Completion {
 
 }  // namespace
 
-bool GeneratorHandle::step(const void* parameter, void* result) {
+bool GeneratorHandle::step(const void* parameter, void* result, const CallOptions& options) {
+  const CallOptionsScope scope(options);
   GeneratorState& state = need(state_);
   try {
     state.session->call(StepRequest(state.path, *state.member, state.index, parameter),
@@ -192,6 +198,34 @@ bool GeneratorHandle::step(const void* parameter, void* result) {
   return true;
 }
 
+// What was kept is the program's once it has all of it.
+void GeneratorHandle::collect(void* value, std::size_t size, const std::function<void()>& keep,
+                              const CallOptions& options) {
+  const CallOptionsScope scope(options);
+  GeneratorState& state = need(state_);
+  channel::Charge kept(state.session->connection().account());
+  std::size_t received = 0;
+  const auto read = [&](Decoder& decoder, const Message&, const Entry& entry) {
+    endpoint::read_value(decoder, entry, "return", *state.member->type, value);
+    received = entry.elements.size();
+  };
+  while (true) {
+    try {
+      state.session->call(StepRequest(state.path, *state.member, state.index, nullptr), read,
+                          state.timeout);
+    } catch (const Error& error) {
+      if (!state.is_end(error)) throw;
+      return;
+    }
+    if (!kept.add(size + received)) {
+      throw Error(ErrorCode::out_of_system_resource,
+                  "all values of `" + std::string(state.member->name) +
+                      "` are more than this client holds for a service; next() takes one");
+    }
+    keep();
+  }
+}
+
 void GeneratorHandle::start_step(const std::shared_ptr<GeneratorState>& state,
                                  const void* parameter, std::unique_ptr<GeneratorStep> step) {
   const GeneratorState& of = need(state);
@@ -201,7 +235,8 @@ void GeneratorHandle::start_step(const std::shared_ptr<GeneratorState>& state,
                     {"return", of.member->type, result}, of.timeout, std::move(end));
 }
 
-void GeneratorHandle::end(bool aborts) {
+void GeneratorHandle::end(bool aborts, const CallOptions& options) {
+  const CallOptionsScope scope(options);
   GeneratorState& state = need(state_);
   if (state.has_ended.exchange(true)) return;
   try {
@@ -215,7 +250,7 @@ void GeneratorHandle::end(bool aborts) {
 void GeneratorHandle::start_end(const std::shared_ptr<GeneratorState>& state, bool aborts,
                                 std::unique_ptr<Completion> completion) {
   GeneratorState& of = need(state);
-  auto end = std::make_shared<FarewellEnd>(state, std::move(completion));
+  auto end = std::make_shared<EndCompletion>(state, std::move(completion));
   if (of.has_ended.exchange(true)) {
     of.session->post({[end] { end->succeed(); }});
     return;
@@ -229,10 +264,20 @@ std::shared_ptr<GeneratorState> Stub::rr_open_generator(const Member& member,
   if (!rr_session_) {
     throw Error(ErrorCode::invalid_operation, "the stub is not attached to a session");
   }
+  rr_session_->check_member(*this, member);
   std::int32_t index = 0;
   rr_session_->call(call_request(rr_path_, member, arguments),
                     {"index", &type_of<std::int32_t>, &index}, rr_timeout_);
   return client::make_generator(*this, member, index);
+}
+
+void client::abort_generator(Session& session, const std::string& path, const std::string& member,
+                             std::int32_t index) noexcept {
+  try {
+    session.send(EndRequest(path, member, index, true, false), true);
+  } catch (...) {
+    // The session has ended, and all its generators with it.
+  }
 }
 
 std::shared_ptr<GeneratorState> client::make_generator(const Stub& stub, const Member& member,
@@ -246,6 +291,7 @@ void Stub::rr_start_generator(const Member& member, const void* const* arguments
   if (!rr_session_) {
     throw Error(ErrorCode::invalid_operation, "the stub is not attached to a session");
   }
+  if (rr_session_->refuse_start(*this, member, completion)) return;
   std::shared_ptr<Completion> shared = std::move(completion);
   auto* const place = static_cast<std::shared_ptr<GeneratorState>*>(shared->result());
   rr_session_->start(

@@ -28,11 +28,15 @@ void ask(const Stub& object, std::string_view operation) {
 
 }  // namespace
 
-void lock(const Stub& object, LockOwner owner) {
+void lock(const Stub& object, LockOwner owner, const CallOptions& options) {
+  const CallOptionsScope scope(options);
   ask(object, owner == LockOwner::user ? "RequestObjectLock" : "RequestClientObjectLock");
 }
 
-void unlock(const Stub& object) { ask(object, "ReleaseObjectLock"); }
+void unlock(const Stub& object, const CallOptions& options) {
+  const CallOptionsScope scope(options);
+  ask(object, "ReleaseObjectLock");
+}
 
 void enter_monitor(const Stub& object, std::chrono::milliseconds timeout) {
   constexpr std::int32_t longest = std::numeric_limits<std::int32_t>::max();

@@ -26,17 +26,24 @@ Session& session_of(const Stub& stub) {
   return *stub.rr_session();
 }
 
+// For a member that this program and the service know alike.
+Session& session_of(const Stub& stub, const Member& member) {
+  Session& session = session_of(stub);
+  session.check_member(stub, member);
+  return session;
+}
+
 void ask(const Stub& stub, const Member& member, std::string name, const Type& type, void* value) {
   const Parameter parameter{"parameter", &type_of<std::string>};
   const void* const place = &name;
-  session_of(stub).call(
-      {EntryType::memory_get_param, stub.rr_path(), member.name, {&parameter, 1}, &place},
-      Incoming{"return", &type, value}, stub.rr_timeout());
+  session_of(stub, member)
+      .call({EntryType::memory_get_param, stub.rr_path(), member.name, {&parameter, 1}, &place},
+            Incoming{"return", &type, value}, stub.rr_timeout());
 }
 
 void transfer(const Stub& stub, const Member& member, MemoryTransfer::Direction direction,
               Numbers position, Numbers count, std::byte* items, std::size_t size) {
-  Session& session = session_of(stub);
+  Session& session = session_of(stub, member);
   MemoryTransfer transfer(stub.rr_path(), member, direction, position, count, items, size,
                           session.memory_transfer_limit());
   const Session::AnswerReader read = [&transfer](Decoder& decoder, const Message&,
@@ -61,7 +68,7 @@ class AsyncTransfer final : public Completion, public std::enable_shared_from_th
                 MemoryRef owner, std::unique_ptr<Completion> completion)
       : session_(session_of(stub).shared_from_this()),
         timeout_(stub.rr_timeout()),
-        terms_(CallTerms::current()),
+        terms_(CallTerms::of_started_call()),
         owner_(std::move(owner)),
         completion_(std::move(completion)),
         transfer_(stub.rr_path(), member, direction, position, count, items, size,
@@ -69,7 +76,7 @@ class AsyncTransfer final : public Completion, public std::enable_shared_from_th
 
   void go_on() {
     // As if the thread that began the transfer made all its calls.
-    const CallScope scope(terms_.timeout, Cancellation(terms_.cancellation));
+    const CallOptionsScope scope(terms_);
     if (is_asking_) {
       session_->start(transfer_.question(), {"return", &type_of<std::uint32_t>, &limit_}, timeout_,
                       shared_from_this());
@@ -143,6 +150,7 @@ void MemoryMember::write_part(Numbers position, Numbers count, const void* items
 
 void MemoryMember::start_read(Numbers position, Numbers count, void* items, std::size_t size,
                               std::unique_ptr<Completion> completion) const {
+  if (session_of(*stub_).refuse_start(*stub_, *member_, completion)) return;
   std::make_shared<AsyncTransfer>(*stub_, *member_, MemoryTransfer::Direction::read, position,
                                   count, static_cast<std::byte*>(items), size, MemoryRef(),
                                   std::move(completion))
@@ -151,6 +159,7 @@ void MemoryMember::start_read(Numbers position, Numbers count, void* items, std:
 
 void MemoryMember::start_write(Numbers position, Numbers count, const void* items, std::size_t size,
                                MemoryRef owner, std::unique_ptr<Completion> completion) const {
+  if (session_of(*stub_).refuse_start(*stub_, *member_, completion)) return;
   std::make_shared<AsyncTransfer>(*stub_, *member_, MemoryTransfer::Direction::write, position,
                                   count, static_cast<std::byte*>(const_cast<void*>(items)), size,
                                   std::move(owner), std::move(completion))

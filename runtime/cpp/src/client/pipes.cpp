@@ -20,6 +20,8 @@ constexpr std::chrono::milliseconds close_limit{500};  // 07, section 7
 // Packets that come before their endpoint is known.
 constexpr std::size_t early_packets = 1024;
 constexpr std::size_t early_bytes = std::size_t{16} * 1024 * 1024;
+// What a packet that waits costs besides its value.
+constexpr std::size_t bytes_beside_packet = 128;
 
 constexpr Parameter index_parameter = parameter<std::int32_t>("index");
 
@@ -125,7 +127,7 @@ void Pipes::begin(const Wish& wish) {
   Early& early = early_[Key(wish.path, wish.member->name)];
   early.member = wish.member;
   early.holding = wish.holding;
-  ++early.connecting;
+  if (early.connecting++ == 0) early.charge = channel::Charge(connection().account());
 }
 
 void Pipes::finish(const Wish& wish) {
@@ -157,12 +159,12 @@ Pipes::End Pipes::open(const Wish& wish, Decoder& decoder, const Entry& entry) {
     Early& early = early_[Key(wish.path, wish.member->name)];
     std::erase_if(early.packets, [&](Early::Packet& packet) {
       if (packet.index != index) return false;
-      early.bytes -= packet.size;
+      early.charge.reduce(packet.size + bytes_beside_packet);
       has_room = end->accept(packet.number, std::move(packet.value), packet.size) && has_room;
       return true;
     });
   }
-  channel::Laters later;
+  channel::DeferredCallbacks later;
   if (predecessor) later.emplace_back([predecessor] { predecessor->finish(); });
   if (!has_room) {
     later.emplace_back([end] {
@@ -193,19 +195,22 @@ bool Pipes::keep_early(const Entry& entry, const endpoint::PipePacket& packet, D
   const auto found = early_.find(Key(entry.service_path, entry.member));
   if (found == early_.end()) return false;
   Early& early = found->second;
-  if (early.packets.size() >= early_packets || early.bytes + packet.size > early_bytes) {
-    return false;
-  }
+  const std::size_t size = packet.size + bytes_beside_packet;
+  const bool is_full = early.packets.size() >= early_packets ||
+                       early.charge.bytes() + size > early_bytes || !early.charge.add(size);
+  if (is_full) return false;
   Early::Packet kept{packet.index, packet.number, early.holding->make(), packet.size};
   Decoder reader(decoder.version(), decoder.strings(), decoder.owner(), decoder.types());
-  if (!early.member->type->read(reader, packet.value, kept.value.get())) return false;
-  early.bytes += packet.size;
+  if (!early.member->type->read(reader, packet.value, kept.value.get())) {
+    early.charge.reduce(size);
+    return false;
+  }
   early.packets.push_back(std::move(kept));
   return true;
 }
 
 void Pipes::take_packets(const Message& message, const Entry& entry, const MemoryRef& owner) {
-  endpoint::PipeArrival arrival(message, entry, owner, *session_.types());
+  endpoint::PipeArrival arrival(message, entry, owner, *session_.types(), {});
   arrival.take(
       [&](const endpoint::PipePacket& packet, Decoder& decoder) -> endpoint::PipeArrival::Taken {
         const std::lock_guard lock(mutex_);
@@ -319,13 +324,17 @@ Session& need(const Stub& stub) {
 }  // namespace
 
 PipeEnd PipeMember::connect_end(const PipeOptions& options) {
-  return need(*stub_).pipes().connect({stub_->rr_path(), member_, holding_, options},
-                                      stub_->rr_timeout());
+  Session& session = need(*stub_);
+  session.check_member(*stub_, *member_);
+  return session.pipes().connect({stub_->rr_path(), member_, holding_, options},
+                                 stub_->rr_timeout());
 }
 
 void PipeMember::start_connect(const PipeOptions& options, std::unique_ptr<Completion> completion) {
-  need(*stub_).pipes().start_connect({stub_->rr_path(), member_, holding_, options},
-                                     stub_->rr_timeout(), std::move(completion));
+  Session& session = need(*stub_);
+  if (session.refuse_start(*stub_, *member_, completion)) return;
+  session.pipes().start_connect({stub_->rr_path(), member_, holding_, options}, stub_->rr_timeout(),
+                                std::move(completion));
 }
 
 }  // namespace rr

@@ -14,6 +14,7 @@
 
 #include "rr/pipes.hpp"
 #include "rr/reader.hpp"
+#include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/endpoint/pipe_arrival.hpp"
 #include "runtime/cpp/src/endpoint/pipe_packets.hpp"
 #include "runtime/cpp/src/endpoint/pipe_state.hpp"
@@ -76,7 +77,7 @@ class Pipes final : public endpoint::PipeSide {
     const Holding* holding = nullptr;
     std::size_t connecting = 0;
     std::deque<Packet> packets;
-    std::size_t bytes = 0;
+    channel::Charge charge;  // for the packets
   };
 
   void begin(const Wish& wish);

@@ -13,7 +13,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -26,9 +25,11 @@
 #include "rr/wire.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/client/callbacks.hpp"
-#include "runtime/cpp/src/client/definition_text.hpp"
+#include "runtime/cpp/src/client/definition_differences.hpp"
+#include "runtime/cpp/src/client/definition_texts.hpp"
 #include "runtime/cpp/src/client/notices.hpp"
 #include "runtime/cpp/src/client/pipes.hpp"
+#include "runtime/cpp/src/client/stub_cache.hpp"
 #include "runtime/cpp/src/client/subscription.hpp"
 #include "runtime/cpp/src/endpoint/call_terms.hpp"
 #include "runtime/cpp/src/endpoint/calls.hpp"
@@ -47,6 +48,7 @@ struct Outgoing {
   const void* const* values = nullptr;
   ErrorCode error = ErrorCode::none;  ///< tells the requests of a generator apart
   bool is_urgent = false;
+  bool opens_generator = false;  ///< which is ended if nobody waits for the answer any more
 };
 
 /// What is read of its answer: one element, or nothing when the type is null.
@@ -54,6 +56,13 @@ struct Incoming {
   std::string_view element;
   const Type* type = nullptr;
   void* value = nullptr;
+};
+
+/// What the service may make a session hold, in bytes, and what of definitions.
+struct SessionLimits {
+  std::size_t held = 0;
+  DefinitionLimits definitions{};
+  bool has_full_messages = true;  ///< else NodeOptions::size_before_connect stays their limit
 };
 
 /// A client's end of a connection: the session of one client with one service.
@@ -73,6 +82,10 @@ class Session final : public channel::Receiver,
   std::shared_ptr<Stub> connect(const Url& url, const ObjectType* wanted);
   /// Connects without asking whether the program knows the root's type. Throws rr::Error.
   void connect(const Url& url);
+  /// The URL came from discovery, whoever asks for the connection. Before it is connected.
+  void set_found() { is_found_ = true; }
+  /// Other limits than those of the node. Before it is connected.
+  void set_limits(const SessionLimits& limits) { limits_ = limits; }
   /// The root's stub, as above, by all definitions that the node knows now; once connected.
   std::shared_ptr<Stub> root(const ObjectType* wanted);
   /// Knows from now on what has been made known to the node after this was made.
@@ -120,6 +133,18 @@ class Session final : public channel::Receiver,
   bool take(endpoint::Pending& call) override;
   std::shared_ptr<endpoint::Caller> share() override { return shared_from_this(); }
 
+  /// Whether the service declares anything otherwise than this program knows it.
+  [[nodiscard]] bool has_differences() const {
+    return has_differences_.load(std::memory_order_acquire);
+  }
+  /// Throws rr::Error when that is so for a member of an object.
+  void check_member(const Stub& stub, const Member& member) const {
+    if (has_differences()) refuse_member(stub.rr_object_type(), member);
+  }
+  /// Fails a completion for the same reason, and returns true.
+  bool refuse_start(const Stub& stub, const Member& member,
+                    std::unique_ptr<Completion>& completion);
+
   /// The stub of the object at a path, whose type is or implements `wanted` unless that is empty.
   /// The service is asked unless there is a stub already.
   std::shared_ptr<Stub> find(const std::string& path, std::string_view wanted,
@@ -156,12 +181,12 @@ class Session final : public channel::Receiver,
 
   // From the connection
   void take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
-                   channel::Laters& laters) override;
+                   channel::DeferredCallbacks& deferred) override;
   bool take_packet(const Message& message, const Entry& entry, const MemoryRef& owner,
-                   channel::Laters& laters) override;
-  void foresee(const Message& message) override { notices_.foresee(message); }
+                   channel::DeferredCallbacks& deferred) override;
+  void foresee(const Message& message) override;
   void handle(const Message& message, const Entry& first, const MemoryRef& owner) override;
-  void lost(const Error& why, channel::Laters& laters) override;
+  void lost(const Error& why, channel::DeferredCallbacks& deferred) override;
   void closed() override;
 
   void attend(channel::Time now) override;
@@ -172,37 +197,61 @@ class Session final : public channel::Receiver,
   // Requests (session_calls.cpp)
   [[nodiscard]] Milliseconds timeout_for(Milliseconds timeout, const CallTerms& terms) const;
   void perform(const Outgoing& request, endpoint::BlockingCall& call, Milliseconds timeout);
+  // Of the next message, and whom it is for.
   struct Numbers {
     std::uint32_t request = 0;
     std::uint16_t message = 0;
     bool is_connected = false;
+    std::uint32_t remote_endpoint = 0;
+    NodeId remote_node;
+    std::string remote_name;  // where names travel
   };
   [[nodiscard]] Writer& write(const Outgoing& request) const;
-  Numbers draw(endpoint::Pending* call, bool has_number);
+  Numbers draw_numbers(bool has_name);
+  Numbers draw(endpoint::Pending& call, const Outgoing& request);
+  Numbers draw(const Outgoing& request, bool has_number);
   void number(const Outgoing& request, Writer& writer, const Numbers& numbers) const;
   void write_packet_message(Writer& writer, const EntryHeader& header, std::uint32_t element_count,
                             std::string_view metadata);
-  void fail_all(const Error& why, channel::Laters& laters);
+  void fail_all(const Error& why, channel::DeferredCallbacks& deferred);
+  void end_abandoned(const Message& message, const Entry& entry, const MemoryRef& owner,
+                     const endpoint::Asked::Opening& opening, channel::DeferredCallbacks& deferred);
 
   // Connecting (session_connect.cpp)
+  // The time of several requests that are made one behind the other, and of each.
+  struct Patience {
+    Milliseconds one;
+    channel::Time deadline;
+  };
   void establish(const Url& url, const std::function<void()>& check);
-  void connect_combined(Milliseconds timeout);
-  void connect_in_steps(Milliseconds timeout);
-  void pull_definition(const std::string& name, Milliseconds timeout);
-  void pull_imports(Milliseconds timeout);
-  void keep_definition(std::string_view text);
+  void connect_combined(const Patience& patience);
+  void connect_in_steps(const Patience& patience);
+  [[nodiscard]] Patience patience_for(Milliseconds timeout) const;
+  void ask(const Outgoing& request, const AnswerReader& read, const Patience& patience);
+  void authenticate(const std::string& username, const std::map<std::string, VarValue>& credentials,
+                    const Patience& patience);
   void take_remote(const Message& message, bool is_success);
+  void check_channel(const Url& url, const ChannelTraits& traits);
+  void check_credentials() const;
+
+  // Definitions (session_definitions.cpp)
+  void pull_definition(const std::string& name, const Patience& patience);
+  void pull_imports(const Patience& patience);
+  void keep_definition(std::string_view text);
+  void compare_definitions(const TypeRegistry& known);
+  void refuse_member(const ObjectType& type, const Member& member) const;
 
   // Objects (session_objects.cpp)
   std::shared_ptr<Stub> make_stub(const std::string& told, const std::string& path,
                                   std::string_view wanted,
                                   const std::vector<std::string>& implements,
                                   const ObjectType* preferred = nullptr);
+  [[nodiscard]] std::shared_ptr<Stub> keep_found(const client::StubCache::Lookup& lookup,
+                                                 const std::string& told, std::string_view wanted);
   [[nodiscard]] std::vector<std::string> implemented(const std::string& type) const;
   [[nodiscard]] std::vector<std::string> all_types(
       const std::string& told, const std::vector<std::string>& implements) const;
   void pull_type(const std::string& type, Milliseconds timeout);
-  std::shared_ptr<Stub> known_stub(const std::string& path);
   void release_path(std::string_view path, std::uint64_t notice);
   void handle_event(const Message& message, const Entry& entry, const MemoryRef& owner);
 
@@ -221,12 +270,16 @@ class Session final : public channel::Receiver,
   std::string service_;  // fixed before anything is sent
   ConnectOptions options_;
   std::shared_ptr<channel::Connection> connection_;
+  SessionLimits limits_;  // fixed before it is connected
 
-  // Written while connecting, by one thread.
+  // Written while connecting, by one thread, and never again.
+  bool is_found_ = false;             // the URL came from discovery
+  bool may_send_credentials_ = true;  // or somebody else could read them, or be meant
   std::uint32_t endpoint_ = 0;
-  std::uint32_t remote_endpoint_ = 0;
+  std::uint32_t remote_endpoint_ = 0;  // this and the next two under mutex_ until connected
   NodeId remote_node_;
   std::string remote_name_;
+  bool has_remote_ = false;
   std::string object_type_;
   std::vector<std::string> object_implements_;
   std::map<std::string, VarValue> attributes_;
@@ -236,15 +289,18 @@ class Session final : public channel::Receiver,
   std::atomic<const std::shared_ptr<const TypeRegistry>*> types_;
   endpoint::PendingTable pending_;
   std::atomic<std::uint16_t> next_message_id_{0};
-  bool is_connected_ = false;  // the service knows this client
-  bool is_ending_ = false;     // one side has said that the session ends
+  bool is_connected_ = false;             // the service knows this client
+  bool is_ending_ = false;                // one side has said that the session ends
+  std::atomic<bool> is_given_up_{false};  // what waits to be handled is dropped
   std::optional<Error> why_closed_;
-  std::string user_;  // who is logged in
-  std::unordered_map<std::string, std::weak_ptr<Stub>> stubs_;
+  std::string user_;         // who is logged in
+  client::StubCache stubs_;  // with a lock of its own
   std::vector<std::shared_ptr<client::EventSubscription>> handlers_;
   client::Callbacks callbacks_;  // with a lock of its own
-  std::map<std::string, std::string> texts_;
-  std::map<std::string, client::DefinitionOutline> outlines_;
+  client::DefinitionTexts texts_;
+  client::DefinitionDifferences differences_;
+  std::atomic<bool> has_differences_{false};
+  std::atomic<bool> has_told_foreign_{false};  // answers to something else are logged once
   client::Notices notices_;
   client::Pipes pipes_{*this};
   std::uint16_t seen_message_id_ = 0;  // at quiet_since_

@@ -6,6 +6,7 @@
 #include "rr/type.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
+#include "runtime/cpp/src/client/generator.hpp"
 #include "runtime/cpp/src/client/session.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
 #include "runtime/cpp/src/endpoint/requests.hpp"
@@ -44,12 +45,12 @@ Writer& Session::write(const Outgoing& request) const {
 }
 
 void Session::perform(const Outgoing& request, endpoint::BlockingCall& call, Milliseconds timeout) {
-  const CallTerms terms = CallTerms::current();
+  const CallTerms terms = CallTerms::of_blocking_call();
   const channel::Time now = channel::coarse_now();
   const channel::Time deadline = channel::after(now, timeout_for(timeout, terms));
   Writer& writer = write(request);
   call.perform(terms, deadline, now, [&](endpoint::Pending& open) {
-    number(request, writer, draw(&open, true));
+    number(request, writer, draw(open, request));
     connection_->send_call(writer, now, endpoint::priority_of(request.type, request.is_urgent));
   });
 }
@@ -68,13 +69,13 @@ void Session::start(const Outgoing& request, const Incoming& answer, Millisecond
 
 void Session::start(const Outgoing& request, AnswerReader read, Milliseconds timeout,
                     std::shared_ptr<Completion> completion) {
-  const CallTerms terms = CallTerms::current();
+  const CallTerms terms = CallTerms::of_started_call();
   const auto call = std::make_shared<endpoint::AsyncCall>(shared_from_this(), std::move(read),
                                                           std::move(completion));
   call->start(
       timeout_for(timeout, terms), terms, [&]() -> Writer& { return write(request); },
       [&](endpoint::Pending& open, Writer& writer) {
-        number(request, writer, draw(&open, true));
+        number(request, writer, draw(open, request));
         const auto priority = endpoint::priority_of(request.type, request.is_urgent);
         if (priority == channel::Priority::usual) {
           connection_->stream(writer);  // it may be one of many
@@ -86,7 +87,7 @@ void Session::start(const Outgoing& request, AnswerReader read, Milliseconds tim
 
 void Session::send(const Outgoing& request, bool has_number) {
   Writer& writer = write(request);
-  number(request, writer, draw(nullptr, has_number));
+  number(request, writer, draw(request, has_number));
   connection_->send(writer, channel::coarse_now(),
                     endpoint::priority_of(request.type, request.is_urgent));
 }
@@ -107,18 +108,41 @@ void Session::refuse_ended() const {
   refuse_closed(why_closed_.value());
 }
 
-// The numbers of the next message; a request that waits for its answer is open from now on.
-Session::Numbers Session::draw(endpoint::Pending* call, bool has_number) {
-  const std::lock_guard lock(mutex_);
+// Under the lock.
+Session::Numbers Session::draw_numbers(bool has_name) {
   if (why_closed_) refuse_closed(*why_closed_);
-  Numbers numbers;
-  if (call != nullptr) {
-    numbers.request = pending_.add(*call);
-  } else if (has_number) {
-    numbers.request = pending_.skip();
-  }
-  numbers.message = next_message_id_++;
-  numbers.is_connected = is_connected_;
+  Numbers numbers{.message = next_message_id_++,
+                  .is_connected = is_connected_,
+                  .remote_endpoint = remote_endpoint_,
+                  .remote_node = remote_node_,
+                  .remote_name = {}};
+  if (has_name) numbers.remote_name = remote_name_;
+  return numbers;
+}
+
+namespace {
+
+// Node names travel with what may not have found its session yet.
+bool is_special(EntryType type) { return static_cast<std::uint16_t>(type) < 500; }
+
+}  // namespace
+
+// A request that waits for its answer is open from now on.
+Session::Numbers Session::draw(endpoint::Pending& call, const Outgoing& request) {
+  using endpoint::Asked;
+  const Asked asked = request.opens_generator
+                          ? Asked::opening(request.type, request.path, request.member)
+                          : Asked(request.type, request.path, request.member);
+  const std::lock_guard lock(mutex_);
+  Numbers numbers = draw_numbers(is_special(request.type));
+  numbers.request = pending_.add(call, asked);
+  return numbers;
+}
+
+Session::Numbers Session::draw(const Outgoing& request, bool has_number) {
+  const std::lock_guard lock(mutex_);
+  Numbers numbers = draw_numbers(is_special(request.type));
+  if (has_number) numbers.request = pending_.skip();
   return numbers;
 }
 
@@ -130,20 +154,21 @@ void Session::number(const Outgoing& request, Writer& writer, const Numbers& num
                 .request_id = numbers.request,
                 .error = static_cast<std::uint16_t>(request.error)},
                static_cast<std::uint32_t>(request.parameters.size()), 0);
-  const bool is_special = static_cast<std::uint16_t>(request.type) < 500;
+  const bool has_names = is_special(request.type);
   MessageHeader header{.sender_node = core_->options().id,
-                       .receiver_node = remote_node_,
+                       .receiver_node = numbers.remote_node,
                        .sender_endpoint = endpoint_,
-                       .receiver_endpoint = remote_endpoint_,
+                       .receiver_endpoint = numbers.remote_endpoint,
                        .message_id = numbers.message,
-                       .routing = is_special || !numbers.is_connected};
-  if (is_special) {
+                       .routing = has_names || !numbers.is_connected};
+  if (has_names) {
     header.sender_name = core_->options().name;
-    header.receiver_name = remote_name_;
+    header.receiver_name = numbers.remote_name;
   }
   writer.message(header, 1);
 }
 
+// Of a wire, so that the service is connected and what is known of it does not change.
 void Session::send_newest(Writer& writer, const EntryHeader& header, std::uint32_t element_count,
                           const channel::Newest& newest) {
   writer.entry(header, element_count, 0);
@@ -160,12 +185,12 @@ void Session::send_newest(Writer& writer, const EntryHeader& header, std::uint32
 
 void Session::write_packet_message(Writer& writer, const EntryHeader& header,
                                    std::uint32_t element_count, std::string_view metadata) {
-  const Numbers numbers = draw(nullptr, false);
+  const Numbers numbers = draw({header.type, {}, {}}, false);
   writer.entry(header, element_count, 0);
   writer.message({.sender_node = core_->options().id,
-                  .receiver_node = remote_node_,
+                  .receiver_node = numbers.remote_node,
                   .sender_endpoint = endpoint_,
-                  .receiver_endpoint = remote_endpoint_,
+                  .receiver_endpoint = numbers.remote_endpoint,
                   .metadata = metadata,
                   .message_id = numbers.message,
                   .routing = false},
@@ -189,13 +214,13 @@ bool Session::take(endpoint::Pending& call) {
 }
 
 void Session::cancel_calls() {
-  channel::Laters laters;
-  fail_all(Error(ErrorCode::operation_cancelled, "the call was cancelled"), laters);
+  channel::DeferredCallbacks deferred;
+  fail_all(Error(ErrorCode::operation_cancelled, "the call was cancelled"), deferred);
   connection_->nudge();
-  post(std::move(laters));
+  post(std::move(deferred));
 }
 
-void Session::fail_all(const Error& why, channel::Laters& laters) {
+void Session::fail_all(const Error& why, channel::DeferredCallbacks& deferred) {
   while (true) {
     endpoint::Pending* call = nullptr;
     {
@@ -203,30 +228,53 @@ void Session::fail_all(const Error& why, channel::Laters& laters) {
       call = pending_.take_any();
     }
     if (call == nullptr) return;
-    call->fail(why, laters);
+    call->fail(why, deferred);
   }
 }
 
+// The generator was opened although nobody waits for it any more.
+void Session::end_abandoned(const Message& message, const Entry& entry, const MemoryRef& owner,
+                            const endpoint::Asked::Opening& opening,
+                            channel::DeferredCallbacks& deferred) {
+  std::int32_t index = 0;
+  try {
+    Decoder decoder(message.version, &message.strings, owner, types().get());
+    endpoint::read_value(decoder, entry, "index", type_of<std::int32_t>, &index);
+  } catch (const Error&) {
+    return;  // it has no number by which it could be ended
+  }
+  deferred.emplace_back([self = shared_from_this(), opening, index] {
+    client::abort_generator(*self, opening.path, opening.member, index);
+  });
+}
+
 void Session::take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
-                          channel::Laters& laters) {
-  endpoint::Pending* call = nullptr;
+                          channel::DeferredCallbacks& deferred) {
+  endpoint::PendingTable::Answered answered;
   {
     const std::lock_guard lock(mutex_);
-    call = pending_.take(entry.request_id);
+    answered = pending_.take_answered(entry);
   }
-  if (call != nullptr && (entry.type == EntryType::connect_client_ret ||
-                          entry.type == EntryType::connect_client_combined_ret)) {
+  if (answered.is_foreign && !has_told_foreign_.exchange(true)) {
+    deferred.push_back(
+        endpoint::tell_foreign_answer(core_, "the service `" + service_ + "`", entry));
+  }
+  if (answered.abandoned && entry.error == 0) {
+    end_abandoned(message, entry, owner, *answered.abandoned, deferred);
+  }
+  if (answered.request != nullptr && (entry.type == EntryType::connect_client_ret ||
+                                      entry.type == EntryType::connect_client_combined_ret)) {
     take_remote(message, entry.error == 0);
   }
   const bool ends_session =
       static_cast<ErrorCode>(entry.error) == ErrorCode::invalid_endpoint;  // 07, section 1
   if (ends_session) {
-    laters.emplace_back([self = shared_from_this()] { self->close(); });
-    if (call != nullptr) {
-      call->fail(Error(ErrorCode::invalid_endpoint, "Invalid Endpoint"), laters);
+    deferred.emplace_back([self = shared_from_this()] { self->close(); });
+    if (answered.request != nullptr) {
+      answered.request->fail(Error(ErrorCode::invalid_endpoint, "Invalid Endpoint"), deferred);
     }
-  } else if (call != nullptr) {
-    call->answer(message, entry, owner, laters);
+  } else if (answered.request != nullptr) {
+    answered.request->answer(message, entry, owner, deferred);
   }
 }
 

@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <utility>
 
+#include "rr/call.hpp"
 #include "rr/error.hpp"
-#include "rr/tap.hpp"
 #include "rr/type.hpp"
 #include "rr/varvalue.hpp"
+#include "runtime/cpp/src/channel/directories.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/client/definition_reader.hpp"
 #include "runtime/cpp/src/client/session.hpp"
 #include "runtime/cpp/src/endpoint/client_version.hpp"
+#include "runtime/cpp/src/endpoint/user_code.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
 
 namespace rr {
@@ -81,12 +83,31 @@ std::map<std::string, VarValue> optional_map(Decoder& decoder, const Entry& entr
   return map;
 }
 
+// Whether a local URL means a node of this user or of the system.
+bool is_own(const Url& url) {
+  if (url.path.size() > 1) return false;  // anybody can have made what is at a path
+  if (url.host.empty() || url.host == "localhost" || url.host == "root@localhost") return true;
+  return url.host == channel::own_user_name() + "@localhost";
+}
+
+SessionLimits limits_of(const NodeOptions& options) {
+  return {.held = std::max(options.budget.client_session,
+                           std::size_t{options.limits.message_size} / 2 * 7),
+          .definitions = options.definitions};
+}
+
+// In a pool that the session shares with nobody.
+std::shared_ptr<channel::Account> make_account(std::size_t limit) {
+  return std::make_shared<channel::Account>(std::make_shared<channel::Pool>(limit, limit), limit);
+}
+
 }  // namespace
 
 Session::Session(std::shared_ptr<endpoint::Core> core, const Url& url, ConnectOptions options)
     : core_(std::move(core)),
       service_(url.service),
       options_(std::move(options)),
+      limits_(limits_of(core_->options())),
       endpoint_(core_->new_endpoint()),
       remote_node_(url.node_id),
       known_types_{options_.definition_reader ? options_.definition_reader->types()
@@ -111,14 +132,21 @@ std::shared_ptr<Stub> Session::root(const ObjectType* wanted) {
   const std::string_view type = !options_.object_type.empty() ? options_.object_type
                                 : wanted != nullptr           ? wanted->name
                                                               : std::string_view();
-  return make_stub(object_type_, service_, type, object_implements_, wanted);
+  return stubs_.keep(service_, make_stub(object_type_, service_, type, object_implements_, wanted));
 }
 
+// What differs is known before there is a stub of a new type.
 void Session::learn() {
   if (options_.definition_reader) return;  // whose types grow by themselves
   auto types = core_->types();
+  const auto is_known = [&] { return known_types_.back() == types; };
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_known()) return;
+  }
+  compare_definitions(*types);
   const std::lock_guard lock(mutex_);
-  if (known_types_.back() == types) return;
+  if (is_known()) return;
   known_types_.push_back(std::move(types));
   types_.store(&known_types_.back(), std::memory_order_release);
 }
@@ -129,21 +157,24 @@ void Session::establish(const Url& url, const std::function<void()>& check) {
       channel::after(channel::Clock::now(), core_->options().connect_timeout);
   core_->start();
   channel::Channel& way = core_->channel(url.scheme);
+  check_channel(url, way.traits(url.scheme));
   if (service_.empty()) service_ = way.service_at(url, deadline);
   if (service_.empty()) throw Error(ErrorCode::invalid_argument, "the URL names no service");
   way.connect(url, deadline, [this](std::shared_ptr<channel::Connection> connection) {
     connection->set_endpoints(endpoint_, 0);
+    connection->set_account(make_account(limits_.held));
     const std::lock_guard lock(mutex_);
     connection_ = std::move(connection);
     return shared_from_this();
   });
   try {
-    const Milliseconds timeout = timeout_for(Milliseconds(0), {});
+    const Patience patience = patience_for(Milliseconds(0));
     if (connection_->may_combine()) {
-      connect_combined(timeout);
+      connect_combined(patience);
     } else {
-      connect_in_steps(timeout);
+      connect_in_steps(patience);
     }
+    compare_definitions(*types());
     check();
     core_->attend(weak_from_this());
   } catch (const Error&) {
@@ -158,7 +189,29 @@ void Session::establish(const Url& url, const std::function<void()>& check) {
   }
 }
 
-void Session::connect_combined(Milliseconds timeout) {
+// Before anything is sent.
+void Session::check_channel(const Url& url, const ChannelTraits& traits) {
+  if (core_->options().tls.is_required && !traits.is_encrypted && !traits.is_local) {
+    throw Error(ErrorCode::connection_error,
+                "this node requires TLS, and `" + url.scheme + "` does not use it" +
+                    (url.scheme.starts_with("rr+") ? ": `rrs" + url.scheme.substr(2) + "` does"
+                                                   : std::string()));
+  }
+  is_found_ = is_found_ || core_->found_urls().contains(url);
+  if (!is_found_ || options_.allow_clear_credentials) return;
+  may_send_credentials_ =
+      traits.is_encrypted || (traits.is_local && (url.scheme != "rr+local" || is_own(url)));
+  if (!options_.username.empty()) check_credentials();
+}
+
+void Session::check_credentials() const {
+  if (may_send_credentials_) return;
+  throw Error(ErrorCode::authentication_error,
+              "credentials are not sent without TLS to a URL that discovery has found; " +
+                  std::string("`allow_clear_credentials` sends them"));
+}
+
+void Session::connect_combined(const Patience& patience) {
   Texts texts;
   texts.add("clientversion", std::string(endpoint::own_version));
   texts.add("returnservicedefs", "true");
@@ -167,7 +220,7 @@ void Session::connect_combined(Milliseconds timeout) {
     texts.add("credentials", options_.credentials);
   }
   std::vector<std::string> definitions;
-  call(
+  ask(
       texts.request(EntryType::connect_client_combined, service_),
       [&](Decoder& decoder, const Message&, const Entry& entry) {
         object_type_ = required_text(decoder, entry, "objecttype");
@@ -175,46 +228,80 @@ void Session::connect_combined(Milliseconds timeout) {
         definitions = optional_texts(decoder, entry, "servicedefs");
         attributes_ = optional_map(decoder, entry, "attributes");
       },
-      timeout);
+      patience);
   for (const std::string& text : definitions) keep_definition(text);
   const std::lock_guard lock(mutex_);
   user_ = options_.username;
 }
 
-void Session::connect_in_steps(Milliseconds timeout) {
+// Requests that follow each other have a time all together, and each has its own.
+Session::Patience Session::patience_for(Milliseconds timeout) const {
+  const Milliseconds one = timeout_for(timeout, CallTerms::of_blocking_call());
+  const Milliseconds all = std::max(limits_.definitions.timeout, one);
+  return {one, channel::after(channel::Clock::now(), all)};
+}
+
+void Session::ask(const Outgoing& request, const AnswerReader& read, const Patience& patience) {
+  const auto left = std::chrono::ceil<Milliseconds>(patience.deadline - channel::Clock::now());
+  if (left.count() <= 0) throw Error(ErrorCode::request_timeout, "no answers in time");
+  const CallOptions options = within(std::min(patience.one, left));
+  const CallOptionsScope scope(options);
+  call(request, read, Milliseconds(0));
+}
+
+void Session::connect_in_steps(const Patience& patience) {
   {
     Texts texts;
     texts.add("clientversion", std::string(endpoint::own_version));
     std::string definition;
     std::vector<std::string> extra;
-    call(
+    ask(
         texts.request(EntryType::get_service_desc, service_),
         [&](Decoder& decoder, const Message&, const Entry& entry) {
           attributes_ = optional_map(decoder, entry, "attributes");
           extra = optional_texts(decoder, entry, "extraimports");
           definition = required_text(decoder, entry, "servicedef");
         },
-        timeout);
+        patience);
     keep_definition(definition);
-    pull_imports(timeout);
-    for (const std::string& name : extra) pull_definition(name, timeout);
-    pull_imports(timeout);
+    pull_imports(patience);
+    for (const std::string& name : extra) pull_definition(name, patience);
+    pull_imports(patience);
   }
-  object_type_ = ask_object_type(service_, timeout);
-  call({EntryType::connect_client, service_, {}}, Incoming{}, timeout);
+  {
+    Texts texts;
+    texts.add("clientversion", std::string(endpoint::own_version));
+    ask(
+        texts.request(EntryType::object_type_name, service_),
+        [&](Decoder& decoder, const Message&, const Entry& entry) {
+          object_type_ = required_text(decoder, entry, "objecttype");
+          object_implements_ = optional_texts(decoder, entry, "objectimplements");
+        },
+        patience);
+  }
+  const auto nothing = [](Decoder&, const Message&, const Entry&) {};
+  ask({EntryType::connect_client, service_, {}}, nothing, patience);
   if (!options_.username.empty()) {
-    authenticate(options_.username, options_.credentials, timeout);
+    authenticate(options_.username, options_.credentials, patience);
   }
 }
 
 void Session::authenticate(const std::string& username,
                            const std::map<std::string, VarValue>& credentials,
                            Milliseconds timeout) {
+  authenticate(username, credentials, patience_for(timeout));
+}
+
+void Session::authenticate(const std::string& username,
+                           const std::map<std::string, VarValue>& credentials,
+                           const Patience& patience) {
+  check_credentials();
   Texts texts;
   texts.add("username", username);
   texts.add("credentials", credentials);
-  call(texts.request(EntryType::client_session_op_req, service_, "AuthenticateUser"), Incoming{},
-       timeout);
+  const auto nothing = [](Decoder&, const Message&, const Entry&) {};
+  ask(texts.request(EntryType::client_session_op_req, service_, "AuthenticateUser"), nothing,
+      patience);
   const std::lock_guard lock(mutex_);
   user_ = username;
 }
@@ -239,8 +326,6 @@ std::string Session::ask_object_type(const std::string& path, Milliseconds timeo
       texts.request(EntryType::object_type_name, path),
       [&](Decoder& decoder, const Message&, const Entry& entry) {
         type = required_text(decoder, entry, "objecttype");
-        if (path == service_)
-          object_implements_ = optional_texts(decoder, entry, "objectimplements");
       },
       timeout);
   return type;
@@ -257,65 +342,20 @@ std::map<std::string, VarValue> Session::ask_attributes() {
   return attributes;
 }
 
-void Session::pull_definition(const std::string& name, Milliseconds timeout) {
+// What the answer to a connect request says about the other side, be it a failure. Once: who uses
+// the session may look at it from then on.
+void Session::take_remote(const Message& message, bool is_success) {
   {
     const std::lock_guard lock(mutex_);
-    if (outlines_.contains(name)) return;
+    if (std::exchange(has_remote_, true)) return;
+    remote_node_ = message.sender_node;
+    remote_name_ = message.sender_name;
+    remote_endpoint_ = message.sender_endpoint;
+    is_connected_ = is_success;
   }
-  Texts texts;
-  texts.add("ServiceType", name);
-  texts.add("clientversion", std::string(endpoint::own_version));
-  std::string definition;
-  call(
-      texts.request(EntryType::get_service_desc, service_),
-      [&](Decoder& decoder, const Message&, const Entry& entry) {
-        definition = required_text(decoder, entry, "servicedef");
-      },
-      timeout);
-  keep_definition(definition);
-}
-
-// Everything that what is here imports, one by one.
-void Session::pull_imports(Milliseconds timeout) {
-  while (true) {
-    std::string missing;
-    {
-      const std::lock_guard lock(mutex_);
-      for (const auto& [name, outline] : outlines_) {
-        for (const std::string& import : outline.imports) {
-          if (missing.empty() && !outlines_.contains(import)) missing = import;
-        }
-      }
-    }
-    if (missing.empty()) return;
-    pull_definition(missing, timeout);
-    const std::lock_guard lock(mutex_);
-    if (!outlines_.contains(missing)) {
-      throw Error(ErrorCode::service_definition_error,
-                  "the service sent another definition for `" + missing + "`");
-    }
-  }
-}
-
-void Session::keep_definition(std::string_view text) {
-  if (core_->options().tap) core_->options().tap->definition(text);
-  client::DefinitionOutline outline = client::outline(text);
-  const std::lock_guard lock(mutex_);
-  texts_[outline.name] = text;
-  std::string name = outline.name;
-  outlines_[std::move(name)] = std::move(outline);
-}
-
-// What an answer to a connect request says about the other side, be it a failure.
-void Session::take_remote(const Message& message, bool is_success) {
-  remote_node_ = message.sender_node;
-  remote_name_ = message.sender_name;
-  remote_endpoint_ = message.sender_endpoint;
   if (!is_success) return;
-  connection_->set_endpoints(endpoint_, remote_endpoint_);
-  connection_->set_authorised();
-  const std::lock_guard lock(mutex_);
-  is_connected_ = true;
+  connection_->set_endpoints(endpoint_, message.sender_endpoint);
+  connection_->set_authorised(limits_.has_full_messages);
 }
 
 bool Session::is_open() const {
@@ -325,12 +365,13 @@ bool Session::is_open() const {
 
 std::map<std::string, std::string> Session::definitions() const {
   const std::lock_guard lock(mutex_);
-  return texts_;
+  return texts_.all();
 }
 
 void Session::close() {
   {
     const std::lock_guard lock(mutex_);
+    if (why_closed_) is_given_up_ = true;
     if (why_closed_ || is_ending_) return;
     is_ending_ = true;
   }
@@ -348,6 +389,7 @@ void Session::close() {
 void Session::drop() {
   {
     const std::lock_guard lock(mutex_);
+    if (why_closed_) is_given_up_ = true;
     if (why_closed_ || is_ending_) return;
     is_ending_ = true;
     if (!connection_) {  // it is being made, and will find that the session has ended
@@ -370,17 +412,18 @@ void Session::give_up(const Error& why) {
     const std::lock_guard lock(mutex_);
     if (!why_closed_) why_closed_ = why;
     is_ending_ = true;
+    is_given_up_ = true;
   }
   connection_->close(Error(ErrorCode::connection_error, "the session has ended"));
 }
 
-void Session::lost(const Error& why, channel::Laters& laters) {
+void Session::lost(const Error& why, channel::DeferredCallbacks& deferred) {
   {
     const std::lock_guard lock(mutex_);
     if (!why_closed_) why_closed_ = why;
   }
-  fail_all(Error(ErrorCode::connection_error, why.message()), laters);
-  for (const auto& end : wires_.take_all()) end->finish(laters);
+  fail_all(Error(ErrorCode::connection_error, why.message()), deferred);
+  for (const auto& end : wires_.take_all()) end->finish(deferred);
 }
 
 void Session::closed() {
@@ -400,11 +443,7 @@ void Session::closed() {
   }
   callbacks_.end();
   if (on_closed) {
-    try {
-      on_closed(*why);
-    } catch (const std::exception& error) {
-      core_->log(LogLevel::error, std::string("an on_closed handler has thrown: ") + error.what());
-    }
+    endpoint::call_user_code(*core_, "an on_closed handler", [&] { on_closed(*why); });
   }
   // Whoever holds a Subscription holds no more than that: the functions, and what they own, go now.
   for (const auto& handler : handlers) handler->disconnect();

@@ -2,6 +2,7 @@
 // The objects of a service as a client sees them: stubs by path, and what the service sends
 // unasked.
 #include <algorithm>
+#include <unordered_set>
 #include <utility>
 
 #include "rr/error.hpp"
@@ -16,11 +17,21 @@
 #include "runtime/cpp/src/endpoint/requests.hpp"
 #include "runtime/cpp/src/endpoint/service_path.hpp"
 #include "runtime/cpp/src/endpoint/subscription.hpp"
+#include "runtime/cpp/src/endpoint/user_code.hpp"
 
 namespace rr {
 namespace {
 
+// Types that one object has: what a service says beyond it is not looked at.
+constexpr std::size_t most_types = 4096;
+// How often the type of an object is asked for when the object is released each time.
+constexpr int most_lookups = 8;
+
 std::string service_of(const std::string& type) { return type.substr(0, type.rfind('.')); }
+
+Error released_while_looked_up(const std::string& path) {
+  return {ErrorCode::service_error, "`" + path + "` was released each time it was looked up"};
+}
 
 }  // namespace
 
@@ -28,24 +39,25 @@ std::string service_of(const std::string& type) { return type.substr(0, type.rfi
 // the texts that the service has sent.
 std::vector<std::string> Session::implemented(const std::string& type) const {
   std::vector<std::string> found = {type};
+  std::unordered_set<std::string> names = {type};
   const std::lock_guard lock(mutex_);
   for (std::size_t i = 0; i < found.size(); ++i) {
     const std::string name = found[i];  // the vector grows
     const std::string service = service_of(name);
     const auto add = [&](std::string other) {
       if (other.find('.') == std::string::npos) other = service + "." + other;
-      if (std::find(found.begin(), found.end(), other) == found.end()) {
+      if (found.size() < most_types && names.insert(other).second) {
         found.push_back(std::move(other));
       }
     };
     if (const ObjectType* const known = types()->find_object(name)) {
       for (const std::string_view other : known->implements) add(std::string(other));
     }
-    const auto outline = outlines_.find(service);
-    if (outline == outlines_.end() || name.size() <= service.size()) continue;
-    const auto object = outline->second.objects.find(name.substr(service.size() + 1));
-    if (object == outline->second.objects.end()) continue;
-    for (const std::string& other : object->second) add(other);
+    if (name.size() <= service.size()) continue;
+    const auto* const others =
+        texts_.implements(service, std::string_view(name).substr(service.size() + 1));
+    if (others == nullptr) continue;
+    for (const std::string& other : *others) add(other);
   }
   return found;
 }
@@ -55,6 +67,7 @@ std::vector<std::string> Session::all_types(const std::string& told,
                                             const std::vector<std::string>& implements) const {
   std::vector<std::string> types = implemented(told);
   for (const std::string& other : implements) {
+    if (types.size() >= most_types) break;
     types.push_back(other.find('.') == std::string::npos ? service_of(told) + "." + other : other);
   }
   return types;
@@ -89,10 +102,6 @@ std::shared_ptr<Stub> Session::make_stub(const std::string& told, const std::str
   stub->rr_session_ = shared_from_this();
   stub->rr_path_ = path;
   stub->rr_take_object_type(*known);
-  const std::lock_guard lock(mutex_);
-  std::weak_ptr<Stub>& cached = stubs_[path];
-  if (auto other = cached.lock()) return other;  // somebody was faster
-  cached = stub;
   return stub;
 }
 
@@ -109,56 +118,63 @@ std::vector<std::string> Session::root_types() const {
   return all_types(object_type_, object_implements_);
 }
 
-std::shared_ptr<Stub> Session::known_stub(const std::string& path) {
-  const std::lock_guard lock(mutex_);
-  const auto found = stubs_.find(path);
-  return found == stubs_.end() ? nullptr : found->second.lock();
-}
-
 // A type's definition may not have come with the service's own (07, section 5).
 void Session::pull_type(const std::string& type, Milliseconds timeout) {
   const std::string service = service_of(type);
   if (service == type || service.empty()) return;
-  pull_definition(service, timeout);
-  pull_imports(timeout);
+  {
+    const std::lock_guard lock(mutex_);
+    if (texts_.contains(service) && !texts_.missing_import()) return;
+  }
+  const Patience patience = patience_for(timeout);
+  pull_definition(service, patience);
+  pull_imports(patience);
+  compare_definitions(*types());
 }
 
 std::shared_ptr<Stub> Session::find(const std::string& path, std::string_view wanted,
                                     Milliseconds timeout) {
-  if (auto stub = known_stub(path)) return stub;
-  const std::string told = ask_object_type(path, timeout);
-  pull_type(told, timeout);
-  return make_stub(told, path, wanted, {});
+  for (int asked = 0; asked < most_lookups; ++asked) {
+    if (auto stub = stubs_.find(path)) return stub;
+    const client::StubCache::Lookup lookup(stubs_, path);
+    const std::string told = ask_object_type(path, timeout);
+    pull_type(told, timeout);
+    if (auto stub = keep_found(lookup, told, wanted)) return stub;
+  }
+  throw released_while_looked_up(path);
+}
+
+// Null when the object was released since the lookup began.
+std::shared_ptr<Stub> Session::keep_found(const client::StubCache::Lookup& lookup,
+                                          const std::string& told, std::string_view wanted) {
+  return stubs_.keep(lookup, make_stub(told, lookup.path(), wanted, {}));
 }
 
 void Session::release_path(std::string_view path, std::uint64_t notice) {
   std::function<void(const std::string&)> notify;
   {
     const std::lock_guard lock(mutex_);
-    std::erase_if(stubs_, [&](const auto& item) {
-      return endpoint::is_at_or_below(item.first, path) && item.first != service_;
-    });
     notify = options_.on_path_released;
   }
-  channel::Laters laters;
+  channel::DeferredCallbacks deferred;
   const auto is_meant = [notice](const WireEnd::State& end) {
     return static_cast<const client::ClientWireEnd&>(end).is_meant_by(notice);
   };
-  for (const auto& end : wires_.take_below(path, is_meant)) end->finish(laters);
-  post(std::move(laters));
+  for (const auto& end : wires_.take_below(path, is_meant)) end->finish(deferred);
+  post(std::move(deferred));
   pipes_.release(path, notice);
   if (notify) notify(std::string(path));
 }
 
 bool Session::take_packet(const Message& message, const Entry& entry, const MemoryRef& owner,
-                          channel::Laters& laters) {
+                          channel::DeferredCallbacks& deferred) {
   const auto end = wires_.find(entry.service_path, entry.member);
   if (!end) return false;
   if (entry.type == EntryType::wire_packet) {
-    end->take(message, entry, owner, *types(), laters);
+    end->take(message, entry, owner, *types(), deferred);
   } else {
     wires_.remove(*end);
-    end->finish(laters);
+    end->finish(deferred);
   }
   return true;
 }
@@ -181,22 +197,27 @@ void Session::forget(const Stub& stub) {
       if (item->stub == &stub) removed.push_back(item);
       return item->stub == &stub;
     });
-    const auto cached = stubs_.find(stub.rr_path());
-    if (cached != stubs_.end() && cached->second.expired()) stubs_.erase(cached);
   }
+  stubs_.forget(stub);
   for (const auto& handler : removed) handler->disconnect();
   callbacks_.forget(stub);
 }
 
+// An answer that comes behind a release is read before the release is handled: what was there is
+// not found again from here on.
+void Session::foresee(const Message& message) {
+  notices_.foresee(message);
+  EntryReader entries(message);
+  for (Entry entry; entries.next(entry);) {
+    if (entry.type == EntryType::service_path_released_req) {
+      stubs_.release(entry.service_path, service_);
+    }
+  }
+}
+
 void Session::handle(const Message& message, const Entry& first, const MemoryRef& owner) {
   const auto handle_one = [&](const Entry& entry) {
-    try {
-      handle_entry(message, entry, owner);
-    } catch (const std::exception& error) {
-      core_->log(LogLevel::error, std::string("a handler has thrown: ") + error.what());
-    } catch (...) {
-      core_->log(LogLevel::error, "a handler has thrown");
-    }
+    endpoint::call_user_code(*core_, "a handler", [&] { handle_entry(message, entry, owner); });
   };
   if (message.entry_count == 1) {
     handle_one(first);
@@ -207,6 +228,7 @@ void Session::handle(const Message& message, const Entry& first, const MemoryRef
 }
 
 void Session::handle_entry(const Message& message, const Entry& entry, const MemoryRef& owner) {
+  if (is_given_up_) return;
   if (static_cast<ErrorCode>(entry.error) == ErrorCode::invalid_endpoint) {
     close();
     return;
@@ -227,9 +249,9 @@ void Session::handle_entry(const Message& message, const Entry& entry, const Mem
       break;
     case EntryType::wire_packet:
     case EntryType::wire_closed: {  // one of several entries
-      channel::Laters laters;
-      take_packet(message, entry, owner, laters);
-      post(std::move(laters));
+      channel::DeferredCallbacks deferred;
+      take_packet(message, entry, owner, deferred);
+      post(std::move(deferred));
       break;
     }
     case EntryType::pipe_packet:
@@ -259,12 +281,8 @@ void Session::handle_event(const Message& message, const Entry& entry, const Mem
   }
   const Arguments::Source source{message, entry, owner, *types()};
   for (const auto& handler : handlers) {
-    try {
-      handler->call(Arguments(source));
-    } catch (const std::exception& error) {
-      core_->log(LogLevel::error, "a handler of the event `" + std::string(entry.member) +
-                                      "` has thrown: " + error.what());
-    }
+    endpoint::call_user_code(*core_, "a handler of the event", entry.member,
+                             [&] { handler->call(Arguments(source)); });
   }
 }
 
@@ -316,7 +334,7 @@ void Session::send_answer(Writer& writer, const Message& message, const Entry& e
 
 // Asynchronous search: the answer brings the type, and the rest may ask more, on a thread of the
 // node.
-class Session::Search final : public Completion {
+class Session::Search final : public Completion, public std::enable_shared_from_this<Search> {
  public:
   Search(std::shared_ptr<Session> session, std::string path, std::string wanted,
          Milliseconds timeout, std::shared_ptr<Completion> completion)
@@ -326,16 +344,24 @@ class Session::Search final : public Completion {
         timeout_(timeout),
         completion_(std::move(completion)) {}
 
+  static void start(const std::shared_ptr<Search>& search);
+
   void* result() override { return &told_; }
   void succeed() override {
+    std::shared_ptr<Stub> stub;
     try {
       session_->pull_type(told_, timeout_);
-      auto stub = session_->make_stub(told_, path_, wanted_, {});
-      *static_cast<std::shared_ptr<Stub>*>(completion_->result()) = std::move(stub);
+      stub = session_->keep_found(*lookup_, told_, wanted_);
+      if (!stub && asked_ == most_lookups) throw released_while_looked_up(path_);
     } catch (...) {
-      completion_->fail(std::current_exception());
+      fail(std::current_exception());
       return;
     }
+    if (!stub) {
+      start(shared_from_this());
+      return;
+    }
+    *static_cast<std::shared_ptr<Stub>*>(completion_->result()) = std::move(stub);
     completion_->succeed();
   }
   void fail(std::exception_ptr error) override { completion_->fail(std::move(error)); }
@@ -346,24 +372,31 @@ class Session::Search final : public Completion {
   const std::string wanted_;
   const Milliseconds timeout_;
   const std::shared_ptr<Completion> completion_;
+  std::optional<client::StubCache::Lookup> lookup_;
+  int asked_ = 0;
   std::string told_;
 };
 
+void Session::Search::start(const std::shared_ptr<Search>& search) {
+  const std::string version(endpoint::own_version);
+  const Parameter parameter{"clientversion", &type_of<std::string>};
+  const void* const value = &version;
+  Session& session = *search->session_;
+  search->lookup_.emplace(session.stubs_, search->path_);
+  ++search->asked_;
+  session.start({EntryType::object_type_name, search->path_, {}, {&parameter, 1}, &value},
+                {"objecttype", &type_of<std::string>, &search->told_}, search->timeout_, search);
+}
+
 void Session::start_find(std::string path, std::string wanted, Milliseconds timeout,
                          std::shared_ptr<Completion> completion) {
-  if (auto stub = known_stub(path)) {
+  if (auto stub = stubs_.find(path)) {
     *static_cast<std::shared_ptr<Stub>*>(completion->result()) = std::move(stub);
     post({[completion = std::move(completion)] { completion->succeed(); }});
     return;
   }
-  const std::string version(endpoint::own_version);
-  const Parameter parameter{"clientversion", &type_of<std::string>};
-  const void* const value = &version;
-  auto search = std::make_shared<Search>(shared_from_this(), path, std::move(wanted), timeout,
-                                         std::move(completion));
-  void* const told = search->result();
-  start({EntryType::object_type_name, path, {}, {&parameter, 1}, &value},
-        {"objecttype", &type_of<std::string>, told}, timeout, std::move(search));
+  Search::start(std::make_shared<Search>(shared_from_this(), std::move(path), std::move(wanted),
+                                         timeout, std::move(completion)));
 }
 
 }  // namespace rr

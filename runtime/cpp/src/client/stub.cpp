@@ -17,6 +17,13 @@ Session& need(const std::shared_ptr<Session>& session) {
   return *session;
 }
 
+// For a member that this program and the service know alike.
+Session& need(const Stub& stub, const Member& member) {
+  Session& session = need(stub.rr_session());
+  session.check_member(stub, member);
+  return session;
+}
+
 bool is_urgent(const Member& member) { return (member.access & urgent) != 0; }
 
 Outgoing get_request(const std::string& path, const Member& member) {
@@ -80,30 +87,39 @@ Stub::~Stub() {
   if (rr_session_) rr_session_->forget(*this);
 }
 
-void Stub::rr_get(const Member& member, void* value) {
-  need(rr_session_).call(get_request(rr_path_, member), {"value", member.type, value}, rr_timeout_);
+void Stub::rr_get(const Member& member, const CallOptions& options, void* value) {
+  const CallOptionsScope scope(options);
+  need(*this, member)
+      .call(get_request(rr_path_, member), {"value", member.type, value}, rr_timeout_);
 }
 
-void Stub::rr_set(const Member& member, const void* value) {
-  need(rr_session_).call(SetRequest(rr_path_, member, value), Incoming{}, rr_timeout_);
+void Stub::rr_set(const Member& member, const CallOptions& options, const void* value) {
+  const CallOptionsScope scope(options);
+  need(*this, member).call(SetRequest(rr_path_, member, value), Incoming{}, rr_timeout_);
 }
 
-void Stub::rr_invoke(const Member& member, const void* const* arguments, void* result) {
-  need(rr_session_)
+void Stub::rr_invoke(const Member& member, const CallOptions& options, const void* const* arguments,
+                     void* result) {
+  const CallOptionsScope scope(options);
+  need(*this, member)
       .call(function_request(rr_path_, member, arguments), {"return", member.type, result},
             rr_timeout_);
 }
 
-std::shared_ptr<Stub> Stub::rr_find(const Member& member) {
-  return need(rr_session_).find(child_path(rr_path_, member), member.object_type, rr_timeout_);
+std::shared_ptr<Stub> Stub::rr_find(const Member& member, const CallOptions& options) {
+  const CallOptionsScope scope(options);
+  return need(*this, member).find(child_path(rr_path_, member), member.object_type, rr_timeout_);
 }
 
-std::shared_ptr<Stub> Stub::rr_find(const Member& member, std::int32_t index) {
-  return rr_find(member, std::string_view(std::to_string(index)));
+std::shared_ptr<Stub> Stub::rr_find(const Member& member, const CallOptions& options,
+                                    std::int32_t index) {
+  return rr_find(member, options, std::string_view(std::to_string(index)));
 }
 
-std::shared_ptr<Stub> Stub::rr_find(const Member& member, std::string_view index) {
-  return need(rr_session_)
+std::shared_ptr<Stub> Stub::rr_find(const Member& member, const CallOptions& options,
+                                    std::string_view index) {
+  const CallOptionsScope scope(options);
+  return need(*this, member)
       .find(child_path(rr_path_, member, index), member.object_type, rr_timeout_);
 }
 
@@ -115,6 +131,7 @@ void Stub::rr_refuse(const Member& member) {
 void Stub::rr_start(const Member& member, bool set, const void* const* arguments,
                     std::unique_ptr<Completion> completion) {
   Session& session = need(rr_session_);
+  if (session.refuse_start(*this, member, completion)) return;
   std::shared_ptr<Completion> shared = std::move(completion);
   void* const result = shared->result();
   if (member.kind == MemberKind::function) {
@@ -130,9 +147,10 @@ void Stub::rr_start(const Member& member, bool set, const void* const* arguments
 }
 
 void Stub::rr_start_find(const Member& member, std::unique_ptr<Completion> completion) {
-  need(rr_session_)
-      .start_find(child_path(rr_path_, member), std::string(member.object_type), rr_timeout_,
-                  std::move(completion));
+  Session& session = need(rr_session_);
+  if (session.refuse_start(*this, member, completion)) return;
+  session.start_find(child_path(rr_path_, member), std::string(member.object_type), rr_timeout_,
+                     std::move(completion));
 }
 
 void Stub::rr_start_find(const Member& member, std::int32_t index,
@@ -142,13 +160,14 @@ void Stub::rr_start_find(const Member& member, std::int32_t index,
 
 void Stub::rr_start_find(const Member& member, std::string_view index,
                          std::unique_ptr<Completion> completion) {
-  need(rr_session_)
-      .start_find(child_path(rr_path_, member, index), std::string(member.object_type), rr_timeout_,
-                  std::move(completion));
+  Session& session = need(rr_session_);
+  if (session.refuse_start(*this, member, completion)) return;
+  session.start_find(child_path(rr_path_, member, index), std::string(member.object_type),
+                     rr_timeout_, std::move(completion));
 }
 
 Subscription Stub::rr_connect(const Member& member, std::unique_ptr<EventHandler> handler) {
-  Session& session = need(rr_session_);
+  Session& session = need(*this, member);
   auto shared = std::make_shared<client::EventSubscription>(*this, member, std::move(handler));
   session.add_handler(shared);
   return Subscription(std::move(shared));

@@ -20,9 +20,16 @@ Session& need_session(const Stub& stub) {
   return *stub.rr_session();
 }
 
+// For a member that this program and the service know alike.
+Session& need_session(const Stub& stub, const Member& member) {
+  Session& session = need_session(stub);
+  session.check_member(stub, member);
+  return session;
+}
+
 // An end that takes values from now on: they may come before the answer to the request.
 std::shared_ptr<ClientWireEnd> begin_connecting(const Stub& stub, const Member& member) {
-  Session& session = need_session(stub);
+  Session& session = need_session(stub, member);
   auto end = std::make_shared<ClientWireEnd>(stub.rr_session(), stub.rr_path(), member);
   switch (session.wires().add(end)) {
     case endpoint::WireTable::Added::exists:
@@ -120,24 +127,27 @@ void WireMember::start_connect(WireEnd* end, std::unique_ptr<Completion> complet
 }
 
 void WireMember::peek_in(void* value, TimeSpec& time) {
-  need_session(*stub_).call(peek_request(*stub_, *member_, false),
-                            value_reader(*member_, value, &time), stub_->rr_timeout());
+  need_session(*stub_, *member_)
+      .call(peek_request(*stub_, *member_, false), value_reader(*member_, value, &time),
+            stub_->rr_timeout());
 }
 
 void WireMember::peek_out(void* value, TimeSpec& time) {
-  need_session(*stub_).call(peek_request(*stub_, *member_, true),
-                            value_reader(*member_, value, &time), stub_->rr_timeout());
+  need_session(*stub_, *member_)
+      .call(peek_request(*stub_, *member_, true), value_reader(*member_, value, &time),
+            stub_->rr_timeout());
 }
 
 void WireMember::start_peek(bool of_out, void* value, TimeSpec* time,
                             std::unique_ptr<Completion> completion) {
-  need_session(*stub_).start(peek_request(*stub_, *member_, of_out),
-                             value_reader(*member_, value, time), stub_->rr_timeout(),
-                             std::shared_ptr<Completion>(std::move(completion)));
+  Session& session = need_session(*stub_);
+  if (session.refuse_start(*stub_, *member_, completion)) return;
+  session.start(peek_request(*stub_, *member_, of_out), value_reader(*member_, value, time),
+                stub_->rr_timeout(), std::shared_ptr<Completion>(std::move(completion)));
 }
 
 void WireMember::poke_out(const void* value) {
-  Session& session = need_session(*stub_);
+  Session& session = need_session(*stub_, *member_);
   const TimeSpec now = endpoint::as_time_spec(session.core()->clock().now());
   const endpoint::WireParameters elements(*member_->type, now, value);
   session.call({EntryType::wire_poke_out_value_req, stub_->rr_path(), member_->name,
@@ -147,6 +157,7 @@ void WireMember::poke_out(const void* value) {
 
 void WireMember::start_poke(const void* value, std::unique_ptr<Completion> completion) {
   Session& session = need_session(*stub_);
+  if (session.refuse_start(*stub_, *member_, completion)) return;
   const TimeSpec now = endpoint::as_time_spec(session.core()->clock().now());
   const endpoint::WireParameters elements(*member_->type, now, value);
   session.start({EntryType::wire_poke_out_value_req, stub_->rr_path(), member_->name,

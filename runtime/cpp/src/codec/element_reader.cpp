@@ -18,6 +18,17 @@ std::optional<std::int32_t> Element::index() const {
   return std::nullopt;
 }
 
+void Decoder::set_budget(ContainerBudget& budget) {
+  budget_ = &budget;
+  reserved_ = 0;
+}
+
+bool Decoder::reserve_more(std::size_t bytes, std::string_view element) {
+  if (budget_ != nullptr && budget_->draw(bytes)) return true;
+  return fail(ErrorCode::out_of_system_resource,
+              "the containers of the message need more memory than they may take", element);
+}
+
 bool ElementReader::next(Element& element) {
   return decoder_->version() == MessageVersion::v4 ? next_v4(element) : next_v2(element);
 }

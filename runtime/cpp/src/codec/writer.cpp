@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
+#include <utility>
 
 #include "runtime/cpp/src/codec/back.hpp"
 #include "runtime/cpp/src/codec/exact.hpp"
@@ -17,6 +18,8 @@ using codec::Back;
 constexpr std::size_t longest_text = 65535;
 constexpr std::size_t longest_message = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t first_buffer = 1024;
+// Of a buffer, for the next message: most threads have a writer, and a node many threads.
+constexpr std::size_t most_kept = std::size_t{256} * 1024;
 // Room for the fields of a header that are not texts or extended bytes, in either format.
 constexpr std::size_t element_fields = 40;
 constexpr std::size_t entry_fields = 48;
@@ -43,6 +46,11 @@ Writer::Writer() = default;
 Writer::~Writer() = default;
 
 void Writer::reset(MessageVersion version) {
+  if (capacity() > most_kept) {
+    last_large_ = capacity();
+    buffer_ = {};
+    end_ = nullptr;
+  }
   begin_ = end_;
   attached_bytes_ = 0;
   attachments_.clear();
@@ -52,11 +60,11 @@ void Writer::reset(MessageVersion version) {
 
 void Writer::grow(std::size_t size) {
   const std::size_t kept = used();
-  const auto capacity = static_cast<std::size_t>(end_ - buffer_.get());
-  const std::size_t larger = std::max({first_buffer, capacity * 2, kept + size});
-  // Not make_unique, which would clear it.
-  std::unique_ptr<std::byte[]> buffer(new std::byte[larger]);
-  std::byte* const end = buffer.get() + larger;
+  std::size_t larger = std::max({first_buffer, capacity() * 2, kept + size});
+  // Large messages often follow one of the same size.
+  if (larger > most_kept) larger = std::max(larger, std::exchange(last_large_, 0));
+  Allocation buffer = allocate(larger);
+  std::byte* const end = buffer.bytes + larger;
   if (kept != 0) std::memcpy(end - kept, begin_, kept);
   buffer_ = std::move(buffer);
   end_ = end;

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "runtime/cpp/src/channel/texts.hpp"
+#include "runtime/cpp/src/discovery/datagram_sender.hpp"
 #include "runtime/cpp/src/discovery/packets.hpp"
-#include "runtime/cpp/src/discovery/voice.hpp"
 #include "runtime/cpp/src/endpoint/service_index_types.hpp"
 
 namespace rr::discovery {

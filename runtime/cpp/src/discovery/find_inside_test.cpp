@@ -37,7 +37,7 @@ struct Announced {
       : node({.name = std::move(name)}) {
     service = node.register_service("counter", std::make_shared<Counter>(),
                                     {.attributes = {{"color", "red"}}});
-    node.listen_tcp(0);
+    node.listen_tcp(0, "*");
     node.discovery().announce({.network = network, .period = period});
   }
   Node node;
@@ -286,7 +286,7 @@ TEST_F(Finding, OnlyANodeThatListensMayAsk) {
 
 TEST(CandidateUrls, NameEveryAddressOfThisMachine) {
   Node node;
-  const std::uint16_t port = node.listen_tcp(0);
+  const std::uint16_t port = node.listen_tcp(0, "*");
   const auto urls = node.candidate_urls("counter");
   const std::string loopback = "rr+tcp://127.0.0.1:" + std::to_string(port) +
                                "/?nodeid=" + node.id().text() + "&service=counter";

@@ -9,10 +9,10 @@
 
 #include "rr/error.hpp"
 #include "rr/url.hpp"
-#include "rr/writer.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/client/session.hpp"
 #include "runtime/cpp/src/endpoint/service_index_types.hpp"
+#include "runtime/cpp/src/endpoint/values.hpp"
 
 namespace rr::discovery {
 namespace {
@@ -24,6 +24,10 @@ using service_index::ServiceInfos;
 constexpr std::chrono::seconds connecting_limit{15};
 constexpr std::chrono::seconds call_limit{5};
 constexpr std::size_t longest_answer = 64 * 1024;
+// Anybody can have announced the node.
+const SessionLimits limits{.held = 512 * 1024,
+                           .definitions = {.count = 8, .bytes = 256 * 1024},
+                           .has_full_messages = false};
 
 void add_once(std::vector<std::string>& urls, std::string url) {
   if (std::find(urls.begin(), urls.end(), url) == urls.end()) urls.push_back(std::move(url));
@@ -65,14 +69,32 @@ FoundService as_found(const ServiceInfo& info, const DetectedNode& node) {
   return service;
 }
 
+// Nothing is read of an answer that is too large.
+ServiceInfos ask_services(Session& session, const std::string& path, const std::string& url) {
+  ServiceInfos infos;
+  session.call(
+      {.type = EntryType::function_call_req, .path = path, .member = "GetLocalNodeServices"},
+      [&](Decoder& decoder, const Message&, const Entry& entry) {
+        if (entry.elements.size() > longest_answer) {
+          throw Error(ErrorCode::protocol_error,
+                      "the service index at `" + url + "` says too much");
+        }
+        endpoint::read_value(decoder, entry, "return", type_of<ServiceInfos>, &infos);
+      },
+      Session::Milliseconds(0));
+  return infos;
+}
+
 std::vector<FoundService> ask_at(const subscription::Host& host, const std::string& url,
                                  const KnownNode& known, Question& question) {
   const Url parsed = Url::parse(url);
   host.core->add_definition(service_index::definition);
   auto session = std::make_shared<Session>(host.core, parsed, ConnectOptions());
+  session->set_limits(limits);
   host.keep(session);
   const channel::Interruption::Scope interruptible(question.interruption);
-  const CallScope scope(call_limit, question.cancellation);
+  const CallOptions options{call_limit, question.cancellation.get_token()};
+  const CallOptionsScope scope(options);
   const auto stub = stub_cast<IndexStub>(session->connect(parsed, &service_index::index_stub_type));
   struct Leave {
     Session& session;
@@ -83,12 +105,7 @@ std::vector<FoundService> ask_at(const subscription::Host& host, const std::stri
       (!node.name.empty() && session->remote_name() != node.name)) {
     throw Error(ErrorCode::connection_error, "the node at `" + url + "` is not the announced one");
   }
-  const ServiceInfos infos = stub->get_local_node_services();
-  Writer size;
-  type_of<ServiceInfos>.write(size, ElementName(std::string_view("return")), &infos);
-  if (size.position() > longest_answer) {
-    throw Error(ErrorCode::protocol_error, "the service index at `" + url + "` says too much");
-  }
+  const ServiceInfos infos = ask_services(*session, stub->rr_path(), url);
   DetectedNode described = node;
   if (described.name.empty()) described.name = session->remote_name();
   std::vector<FoundService> services;

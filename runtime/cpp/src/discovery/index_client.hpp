@@ -14,12 +14,12 @@ namespace rr::discovery {
 /// One question to the service index of a node.
 struct Question {
   channel::Interruption interruption;
-  Cancellation cancellation;
+  std::stop_source cancellation;
 
   /// Brings it to its end soon. Not under a lock.
   void give_up() {
     interruption.interrupt();
-    cancellation.cancel();
+    cancellation.request_stop();
   }
 };
 

@@ -10,6 +10,7 @@
 #include "rr/error.hpp"
 #include "rr/url.hpp"
 #include "runtime/cpp/src/channel/directories.hpp"
+#include "runtime/cpp/src/channel/trusted_folder.hpp"
 #include "runtime/cpp/src/endpoint/service_index_types.hpp"
 
 namespace rr::discovery {
@@ -50,8 +51,24 @@ std::map<NodeId, std::string> names_in(const fs::path& base) {
   return names;
 }
 
+// Somebody else can have made the folder, and said in it what he likes.
+bool is_trusted(const fs::path& base, const std::string& user) {
+  channel::FolderRule rule;
+  if (user.empty()) {
+    rule.is_private = true;
+  } else {
+    rule.owner = channel::user_of(user);
+  }
+  try {
+    return channel::open_trusted_folder(base.string(), rule).has_value();
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 // `user` is whose folder it is, in the public ones; empty for the own, private one.
 void add_nodes_in(const fs::path& base, const std::string& user, std::vector<Announcement>& nodes) {
+  if (!is_trusted(base, user)) return;
   const auto names = names_in(base);
   for (const fs::path& file : entries_of(base / "by-nodeid")) {
     if (file.extension() != ".info" || !channel::LockedFile::is_held(file)) continue;

@@ -62,6 +62,8 @@ void MatchingServices::match(const NodeId& node) {
 
 void MatchingServices::services_are(const DetectedNode& node,
                                     const std::vector<FoundService>& services) {
+  // Predicates and functions of the program get them.
+  for (const FoundService& service : services) core_->found_urls().add(service.urls);
   known_[node.id] = services;
   match(node.id);
 }

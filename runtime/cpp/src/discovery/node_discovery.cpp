@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/discovery/datagram_sender.hpp"
 #include "runtime/cpp/src/discovery/local_nodes.hpp"
 #include "runtime/cpp/src/discovery/packets.hpp"
-#include "runtime/cpp/src/discovery/voice.hpp"
 #include "runtime/cpp/src/discovery/waiting.hpp"
 #include "runtime/cpp/src/endpoint/service_index_types.hpp"
 
@@ -47,10 +47,11 @@ bool has_scheme(const std::string& url, const std::vector<std::string>& schemes)
 NodeDiscovery::NodeDiscovery(subscription::Host host,
                              std::function<std::vector<std::string>()> listening)
     : host_(std::move(host)),
-      announcer_(std::make_shared<Announcer>(host_.core->ground().reactor, host_.core->options().id,
-                                             host_.core->options().name, std::move(listening))),
+      announcer_(std::make_shared<Announcer>(host_.core->context().reactor,
+                                             host_.core->options().id, host_.core->options().name,
+                                             std::move(listening))),
       watch_(std::make_shared<ServiceWatch>(host_)),
-      teller_(std::make_shared<subscription::Teller>(host_.core)) {}
+      notifier_(std::make_shared<subscription::Notifier>(host_.core)) {}
 
 void NodeDiscovery::check_open() const {
   if (has_ended_) throw Error(ErrorCode::invalid_operation, "the node is shut down");
@@ -64,7 +65,7 @@ void NodeDiscovery::run_aside(std::function<void()> work) {
 }
 
 std::shared_ptr<Alarm> NodeDiscovery::alarm(void (NodeDiscovery::*method)()) {
-  return std::make_shared<Alarm>(host_.core->ground().reactor, [weak = weak_from_this(), method] {
+  return std::make_shared<Alarm>(host_.core->context().reactor, [weak = weak_from_this(), method] {
     if (const auto self = weak.lock()) ((*self).*method)();
   });
 }
@@ -83,15 +84,15 @@ void NodeDiscovery::listen(ListenOptions options) {
     check_open();
   }
   host_.core->start();
-  auto ears = std::make_shared<Ears>(
-      host_.core->ground().reactor, options.network,
+  auto receiver = std::make_shared<DatagramReceiver>(
+      host_.core->context().reactor, options.network,
       [weak = weak_from_this()](std::string_view packet, const channel::Address& sender) {
         if (const auto self = weak.lock()) self->hear(packet, sender);
       });
   options.lifetime = channel::saturated(options.lifetime);
   NodeTable table({options.max_nodes, options.max_nodes_of_sender, options.lifetime});
   auto listening = std::make_unique<Listening>(Listening{options,
-                                                         ears,
+                                                         receiver,
                                                          alarm(&NodeDiscovery::tick),
                                                          alarm(&NodeDiscovery::send_request),
                                                          NodeId::random(),
@@ -104,11 +105,11 @@ void NodeDiscovery::listen(ListenOptions options) {
     before = std::exchange(listening_, std::move(listening));
   }
   if (before) {
-    before->ears->stop();
-    tell_lost(before->table.all());
+    before->receiver->stop();
+    notify_lost(before->table.all());
   }
   try {
-    ears->start();
+    receiver->start();
   } catch (...) {
     const std::lock_guard lock(mutex_);
     listening_.reset();
@@ -123,7 +124,7 @@ void NodeDiscovery::listen(ListenOptions options) {
     if (listening_) listening_->tick->set(channel::Clock::now() + period);
   }
   if (has_ended) {
-    ears->stop();
+    receiver->stop();
     throw Error(ErrorCode::invalid_operation, "the node is shut down");
   }
   scan_local_nodes();
@@ -138,8 +139,8 @@ void NodeDiscovery::stop_listening() {
     before = std::move(listening_);
   }
   if (!before) return;
-  before->ears->stop();
-  tell_lost(before->table.all());
+  before->receiver->stop();
+  notify_lost(before->table.all());
 }
 
 bool NodeDiscovery::is_listening() const {
@@ -210,18 +211,18 @@ void NodeDiscovery::take(const Announcement& announcement, const std::string& se
   const auto known = listening_->table.find(announcement.node);
   if (!known) return;
   watch_->heard(*known);
-  if (news == NodeTable::News::found) on_detected_.tell(*teller_, known->node);
+  if (news == NodeTable::News::found) on_detected_.notify(*notifier_, known->node);
 }
 
 void NodeDiscovery::tick() {
-  std::shared_ptr<Ears> ears;
+  std::shared_ptr<DatagramReceiver> receiver;
   std::vector<KnownNode> lost;
   {
     const std::lock_guard lock(mutex_);
     if (!listening_) return;
-    ears = listening_->ears;
+    receiver = listening_->receiver;
   }
-  ears->join_groups();
+  receiver->join_groups();
   scan_local_nodes();
   {
     const std::lock_guard lock(mutex_);
@@ -232,7 +233,7 @@ void NodeDiscovery::tick() {
         std::min(tick_period, std::max(listening_->options.lifetime / 4, Milliseconds(10)));
     listening_->tick->set(now + period);
   }
-  tell_lost(lost);
+  notify_lost(lost);
 }
 
 void NodeDiscovery::scan_local_nodes() {
@@ -243,11 +244,11 @@ void NodeDiscovery::scan_local_nodes() {
   for (const Announcement& node : find_local_nodes()) take(node, "local");
 }
 
-void NodeDiscovery::tell_lost(const std::vector<KnownNode>& lost) {
+void NodeDiscovery::notify_lost(const std::vector<KnownNode>& lost) {
   for (const KnownNode& known : lost) {
     watch_->lost(known.node.id);
     const std::lock_guard lock(mutex_);
-    on_lost_.tell(*teller_, known.node);
+    on_lost_.notify(*notifier_, known.node);
   }
 }
 
@@ -257,13 +258,13 @@ void NodeDiscovery::end() {
     const std::lock_guard lock(mutex_);
     has_ended_ = true;
     before = std::move(listening_);
-    on_detected_.end(*teller_);
-    on_lost_.end(*teller_);
+    on_detected_.end(*notifier_);
+    on_lost_.end(*notifier_);
   }
   announcer_->stop();
   end_.interrupt();
   watch_->end();
-  if (before) before->ears->stop();
+  if (before) before->receiver->stop();
 }
 
 // Looking
@@ -272,7 +273,10 @@ std::vector<DetectedNode> NodeDiscovery::detected_nodes() const {
   std::vector<DetectedNode> result;
   const std::lock_guard lock(mutex_);
   if (!listening_) return result;
-  for (KnownNode& known : listening_->table.all()) result.push_back(std::move(known.node));
+  for (KnownNode& known : listening_->table.all()) {
+    host_.core->found_urls().add(known.node.urls);
+    result.push_back(std::move(known.node));
+  }
   return result;
 }
 
@@ -319,18 +323,29 @@ std::vector<FoundService> NodeDiscovery::find_services(const std::optional<std::
     }
     std::erase_if(service.urls,
                   [&](const std::string& url) { return !has_scheme(url, options.schemes); });
-    if (!service.urls.empty()) result.push_back(std::move(service));
+    if (service.urls.empty()) continue;
+    host_.core->found_urls().add(service.urls);
+    result.push_back(std::move(service));
   }
   return result;
+}
+
+// The program knows the URLs of a node that it is told of.
+Function<void(const DetectedNode&)> NodeDiscovery::remembering(
+    Function<void(const DetectedNode&)> function) const {
+  return [core = host_.core, function = std::move(function)](const DetectedNode& node) {
+    core->found_urls().add(node.urls);
+    function(node);
+  };
 }
 
 Subscription NodeDiscovery::on_detected(Function<void(const DetectedNode&)> function) {
   const std::lock_guard lock(mutex_);
   check_open();
-  const auto listener = on_detected_.add(std::move(function));
+  const auto listener = on_detected_.add(remembering(std::move(function)));
   if (listening_) {
     for (const KnownNode& known : listening_->table.all()) {
-      teller_->add([listener, node = known.node] { listener->call(node); });
+      notifier_->add([listener, node = known.node] { listener->call(node); });
     }
   }
   return Subscription(listener);
@@ -339,7 +354,7 @@ Subscription NodeDiscovery::on_detected(Function<void(const DetectedNode&)> func
 Subscription NodeDiscovery::on_lost(Function<void(const DetectedNode&)> function) {
   const std::lock_guard lock(mutex_);
   check_open();
-  return Subscription(on_lost_.add(std::move(function)));
+  return Subscription(on_lost_.add(remembering(std::move(function))));
 }
 
 }  // namespace rr::discovery

@@ -13,11 +13,11 @@
 #include "rr/discovery.hpp"
 #include "runtime/cpp/src/discovery/alarm.hpp"
 #include "runtime/cpp/src/discovery/announcer.hpp"
-#include "runtime/cpp/src/discovery/ears.hpp"
+#include "runtime/cpp/src/discovery/datagram_receiver.hpp"
 #include "runtime/cpp/src/discovery/node_table.hpp"
 #include "runtime/cpp/src/discovery/service_watch.hpp"
 #include "runtime/cpp/src/subscription/host.hpp"
-#include "runtime/cpp/src/subscription/teller.hpp"
+#include "runtime/cpp/src/subscription/notifier.hpp"
 
 namespace rr::discovery {
 
@@ -49,7 +49,7 @@ class NodeDiscovery : public std::enable_shared_from_this<NodeDiscovery> {
   [[nodiscard]] const std::shared_ptr<ServiceWatch>& watch_pointer() const { return watch_; }
   /// On a thread that the node's end waits for. Throws rr::Error (invalid_operation) after that.
   void run_aside(std::function<void()> work);
-  /// A datagram has come: on a thread of the node. For Ears and tests.
+  /// A datagram has come: on a thread of the node. For DatagramReceiver and tests.
   void hear(std::string_view packet, const channel::Address& sender);
   /// Ends everything; waits for nobody.
   void end();
@@ -58,7 +58,7 @@ class NodeDiscovery : public std::enable_shared_from_this<NodeDiscovery> {
   /// All that listening needs.
   struct Listening {
     ListenOptions options;
-    std::shared_ptr<Ears> ears;
+    std::shared_ptr<DatagramReceiver> receiver;
     std::shared_ptr<Alarm> tick;
     std::shared_ptr<Alarm> asking;
     NodeId asker;
@@ -72,14 +72,16 @@ class NodeDiscovery : public std::enable_shared_from_this<NodeDiscovery> {
   void send_request();
   void scan_local_nodes();
   void check_open() const;
-  void tell_lost(const std::vector<KnownNode>& lost);
+  void notify_lost(const std::vector<KnownNode>& lost);
   void look_first(const FindOptions& options);
+  [[nodiscard]] Function<void(const DetectedNode&)> remembering(
+      Function<void(const DetectedNode&)> function) const;
   std::shared_ptr<Alarm> alarm(void (NodeDiscovery::*method)());
 
   const subscription::Host host_;
   const std::shared_ptr<Announcer> announcer_;
   const std::shared_ptr<ServiceWatch> watch_;
-  const std::shared_ptr<subscription::Teller> teller_;
+  const std::shared_ptr<subscription::Notifier> notifier_;
   std::mutex changing_;  // while listening begins or ends; before the other
   mutable std::mutex mutex_;
   bool has_ended_ = false;

@@ -38,7 +38,7 @@ int serve(int count, std::chrono::milliseconds period) {
   for (int i = 0; i < count; ++i) {
     auto& node = *nodes.emplace_back(std::make_unique<rr::Node>());
     node.register_service("counter", std::make_shared<rr::testing::Counter>());
-    node.listen_tcp(0);
+    node.listen_tcp(0, "*");
     node.discovery().announce({.period = period});
     print("node", node.id().text());
   }

@@ -12,7 +12,7 @@ ServiceInfos::ServiceInfos(std::shared_ptr<ServiceWatch> watch,
                            ServiceFilter filter)
     : MatchingServices(core, std::move(types), std::move(filter)),
       watch_(std::move(watch)),
-      teller_(std::make_shared<subscription::Teller>(core)) {}
+      notifier_(std::make_shared<subscription::Notifier>(core)) {}
 
 void ServiceInfos::check_open() const {
   if (is_closed_) throw Error(ErrorCode::invalid_operation, "the subscription is closed");
@@ -23,9 +23,9 @@ void ServiceInfos::close() {
     const std::lock_guard lock(told_mutex_);
     if (std::exchange(is_closed_, true)) return;
     told_.clear();
-    on_detected_.end(*teller_);
-    on_changed_.end(*teller_);
-    on_lost_.end(*teller_);
+    on_detected_.end(*notifier_);
+    on_changed_.end(*notifier_);
+    on_lost_.end(*notifier_);
   }
   watch_->remove(*this);
 }
@@ -47,7 +47,7 @@ Subscription ServiceInfos::on_detected(Function<void(const FoundService&)> funct
   check_open();
   const auto listener = on_detected_.add(std::move(function));
   for (const auto& [key, service] : told_) {
-    teller_->add([listener, service = service] { listener->call(service); });
+    notifier_->add([listener, told = service] { listener->call(told); });
   }
   return Subscription(listener);
 }
@@ -68,19 +68,19 @@ void ServiceInfos::came(const std::string& key, const FoundService& service) {
   const std::lock_guard lock(told_mutex_);
   if (is_closed_) return;
   told_[key] = service;
-  on_detected_.tell(*teller_, service);
+  on_detected_.notify(*notifier_, service);
 }
 
 void ServiceInfos::changed(const std::string& key, const FoundService& service) {
   const std::lock_guard lock(told_mutex_);
   if (is_closed_) return;
   told_[key] = service;
-  on_changed_.tell(*teller_, service);
+  on_changed_.notify(*notifier_, service);
 }
 
 void ServiceInfos::went(const std::string& key, const FoundService& service, bool /*is_silent*/) {
   const std::lock_guard lock(told_mutex_);
-  if (told_.erase(key) != 0) on_lost_.tell(*teller_, service);
+  if (told_.erase(key) != 0) on_lost_.notify(*notifier_, service);
 }
 
 }  // namespace rr::discovery

@@ -9,7 +9,7 @@
 
 #include "rr/discovery.hpp"
 #include "runtime/cpp/src/discovery/matching.hpp"
-#include "runtime/cpp/src/subscription/teller.hpp"
+#include "runtime/cpp/src/subscription/notifier.hpp"
 
 namespace rr::discovery {
 
@@ -34,7 +34,7 @@ class ServiceInfos final : public MatchingServices {
   void check_open() const;
 
   const std::shared_ptr<ServiceWatch> watch_;
-  const std::shared_ptr<subscription::Teller> teller_;
+  const std::shared_ptr<subscription::Notifier> notifier_;
   mutable std::mutex told_mutex_;
   bool is_closed_ = false;
   std::map<std::string, FoundService> told_;  // those that were told of

@@ -38,7 +38,7 @@ Milliseconds patience(std::size_t refreshes_in_a_minute) {
 }  // namespace
 
 ServiceWatch::ServiceWatch(subscription::Host host)
-    : host_(std::move(host)), teller_(std::make_shared<subscription::Teller>(host_.core)) {}
+    : host_(std::move(host)), notifier_(std::make_shared<subscription::Notifier>(host_.core)) {}
 
 void ServiceWatch::plan(Row& row, channel::Time now) {
   if (row.phase != Phase::idle || !row.is_outdated) return;
@@ -65,7 +65,7 @@ void ServiceWatch::set_alarm() {
   // Those that are due and may not begin yet begin when another has ended.
   if (next == channel::never || has_ended_ || asking_ >= most_questions) return;
   if (!alarm_) {
-    alarm_ = std::make_shared<Alarm>(host_.core->ground().reactor, [watch = weak_from_this()] {
+    alarm_ = std::make_shared<Alarm>(host_.core->context().reactor, [watch = weak_from_this()] {
       if (const auto self = watch.lock()) self->begin_due();
     });
   }
@@ -102,7 +102,7 @@ void ServiceWatch::lost(const NodeId& node) {
     if (found == rows_.end()) return;
     question = found->second.question;
     rows_.erase(found);
-    teller_->add([followers = followers_, node] {
+    notifier_->add([followers = followers_, node] {
       for (const auto& follower : followers) follower->node_lost(node);
     });
   }
@@ -160,7 +160,7 @@ void ServiceWatch::repeat(const std::shared_ptr<ServiceFollower>& follower) {
 void ServiceWatch::tell(const Followers& followers, const DetectedNode& node,
                         const std::vector<FoundService>& services) {
   if (followers.empty()) return;
-  teller_->add([followers, node, services] {
+  notifier_->add([followers, node, services] {
     for (const auto& follower : followers) follower->services_are(node, services);
   });
 }
@@ -194,9 +194,8 @@ void ServiceWatch::begin_due() {
   }
   for (const auto& [known, question] : begun) {
     try {
-      host_.run_aside([self = shared_from_this(), known = known, question = question] {
-        self->ask(known, question);
-      });
+      host_.run_aside(
+          [self = shared_from_this(), info = known, asked = question] { self->ask(info, asked); });
     } catch (const std::exception&) {  // the node ends, or no thread is to be had
       answered(known, question, std::nullopt);
     }

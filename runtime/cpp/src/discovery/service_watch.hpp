@@ -19,7 +19,7 @@
 #include "runtime/cpp/src/discovery/index_client.hpp"
 #include "runtime/cpp/src/discovery/node_table.hpp"
 #include "runtime/cpp/src/subscription/host.hpp"
-#include "runtime/cpp/src/subscription/teller.hpp"
+#include "runtime/cpp/src/subscription/notifier.hpp"
 
 namespace rr::discovery {
 
@@ -51,7 +51,7 @@ class ServiceWatch : public std::enable_shared_from_this<ServiceWatch> {
   void add(std::shared_ptr<ServiceFollower> follower);
   void remove(const ServiceFollower& follower);
   /// Runs something between what followers are told.
-  void run(std::function<void()> work) { teller_->add(std::move(work)); }
+  void run(std::function<void()> work) { notifier_->add(std::move(work)); }
   /// Tells one follower all that is known, once more.
   void repeat(const std::shared_ptr<ServiceFollower>& follower);
 
@@ -90,7 +90,7 @@ class ServiceWatch : public std::enable_shared_from_this<ServiceWatch> {
             const std::vector<FoundService>& services);
 
   const subscription::Host host_;
-  const std::shared_ptr<subscription::Teller> teller_;
+  const std::shared_ptr<subscription::Notifier> notifier_;
   std::mutex mutex_;
   bool has_ended_ = false;
   std::map<NodeId, Row> rows_;

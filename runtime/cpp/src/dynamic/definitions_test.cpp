@@ -151,6 +151,28 @@ TEST(Json, ThatDoesNotFitIsRefused) {
             "18: the JSON is too deep");
 }
 
+// Whoever sends an array says how many dimensions it has.
+TEST(Json, OfArraysWithManyDimensionsIsNotNested) {
+  const ValueType type = types().type("double[*]");
+  const auto json_of = [&](std::size_t dims) {
+    const MultiArray<double> array{std::vector<std::uint32_t>(dims, 1), Array<double>{2.5}};
+    const std::string json = type.to_json(Value(array));
+    EXPECT_EQ(type.from_json(json).dims().size(), dims);
+    EXPECT_EQ(type.to_json(type.from_json(json)), json);
+    return json;
+  };
+  EXPECT_EQ(json_of(32), std::string(32, '[') + "2.5" + std::string(32, ']'));
+  EXPECT_EQ(json_of(33).substr(0, 26), R"({"array":[2.5],"dims":[1,1)");
+  json_of(200'000);
+}
+
+TEST(Json, KeepsTheSignOfZero) {
+  const ValueType type = types().type("double[]");
+  const std::string json = type.to_json(Value(Array<double>{0.0, -0.0}));
+  EXPECT_EQ(json, "[0,-0.0]");
+  EXPECT_EQ(type.to_json(type.from_json(json)), json);
+}
+
 TEST(Json, TakesNumbersAsTextsToo) {
   EXPECT_EQ(types().type("int64").from_json("\"-9007199254740993\"").as<std::int64_t>(),
             -9007199254740993);

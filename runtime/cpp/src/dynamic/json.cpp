@@ -55,7 +55,8 @@ std::string json_text(std::string_view text) {
 }
 
 void write_number(const Value& value, std::string& text) {
-  const std::string number = number_text(value.number_type(), value.bits());
+  std::string number = number_text(value.number_type(), value.bits());
+  if (number == "-0") number = "-0.0";  // an integer would be read without its sign
   const bool is_word = number == "NaN" || number.ends_with("Infinity");
   if (!is_complex(value.number_type())) {
     text += is_word ? json_text(number) : number;
@@ -115,14 +116,19 @@ void write_array(const Value& value, std::string& text) {
     write_list(value.items(), nullptr, text);
     return;
   }
+  // Half of what is read again, so that the array may be in something else.
+  constexpr std::size_t most_nested = deepest / 2;
   const std::vector<std::uint32_t> dims = value.dims();
-  if (value.size() != 0) {
+  if (value.size() != 0 && dims.size() <= most_nested) {
     write_nested(value, dims, 0, 0, 1, text);
     return;
   }
-  // Lists without items do not tell the dimensions behind the one that is 0.
+  // Lists without items do not tell the dimensions behind the one that is 0, and whoever sends an
+  // array may give it a million dimensions of 1.
   Separator next(text);
-  text += R"({"array":[],"dims":[)";
+  text += R"({"array":)";
+  write_list(value.items(), nullptr, text);
+  text += R"(,"dims":[)";
   for (const std::uint32_t dim : dims) {
     next();
     text += std::to_string(dim);

@@ -69,6 +69,8 @@ std::uint64_t Memory::dim_count() const {
   return node_of(*member_).has_dims() ? requests(stub_, *member_).ask_dim_count() : 1;
 }
 
+std::size_t Memory::item_size() const { return node_of(*member_).wire_item().size; }
+
 Value Memory::read(const Numbers& position, const Numbers& count) const {
   auto content = make_room(*member_, count);
   requests(stub_, *member_)

@@ -8,6 +8,7 @@
 #include "runtime/cpp/src/dynamic/content.hpp"
 #include "runtime/cpp/src/dynamic/numbers.hpp"
 #include "runtime/cpp/src/dynamic/tables.hpp"
+#include "runtime/cpp/src/value/items.hpp"
 
 namespace rr::dynamic {
 namespace {
@@ -22,6 +23,12 @@ bool expect(Writer& writer, const ElementName& name, const Value& value, Kind ki
   if (value.kind() == kind) return true;
   writer.fail(ErrorCode::data_type_mismatch, "the value was not converted to its type", name.text);
   return false;
+}
+
+// What a value keeps besides itself, `more` bytes in it included.
+template <class Content>
+bool reserve_content(Decoder& decoder, const Element& element, std::size_t more = 0) {
+  return decoder.reserve(value::allocation_cost + sizeof(Content) + more, element.name);
 }
 
 }  // namespace
@@ -47,6 +54,7 @@ void TextNode::write(Writer& writer, const ElementName& name, const void* value)
 }
 
 bool TextNode::read(Decoder& decoder, const Element& element, void* value) const {
+  if (!reserve_content<TextContent>(decoder, element)) return false;
   std::string text;
   if (!string_type.read(decoder, element, &text)) return false;
   place_of(value) = Value(std::move(text));
@@ -73,6 +81,7 @@ void EnumNode::write(Writer& writer, const ElementName& name, const void* value)
 bool EnumNode::read(Decoder& decoder, const Element& element, void* value) const {
   std::int32_t number = 0;
   if (!number_wire_type(ElementType::int32).read(decoder, element, &number)) return false;
+  if (!reserve_content<EnumContent>(decoder, element)) return false;
   place_of(value) = make(number);
   return true;
 }
@@ -118,6 +127,7 @@ void ArrayNode::write(Writer& writer, const ElementName& name, const void* value
 }
 
 bool ArrayNode::read(Decoder& decoder, const Element& element, void* value) const {
+  if (!reserve_content<ArrayContent>(decoder, element)) return false;
   auto content = std::make_shared<ArrayContent>();
   content->number = number_;
   content->has_dims = bounds_.has_dims;
@@ -161,8 +171,10 @@ bool RecordNode::read(Decoder& decoder, const Element& element, void* value) con
     place_of(value) = Value();
     return true;
   }
+  if (!reserve_content<RecordContent>(decoder, element, table_.fields.size() * sizeof(Value))) {
+    return false;
+  }
   auto content = std::make_shared<RecordContent>();
-  if (!decoder.reserve(table_.fields.size() * sizeof(Value), element.name)) return false;
   content->fields.resize(table_.fields.size());
   if (!table_.wire_type->read(decoder, element, content->fields.data())) return false;
   content->table = own(table_);
@@ -202,6 +214,7 @@ bool ContainerNode::read(Decoder& decoder, const Element& element, void* value) 
     place_of(value) = Value();
     return true;
   }
+  if (!reserve_content<StringMapContent>(decoder, element)) return false;
   const auto read_into = [&](auto content, const rr::Type& type) {
     if (!type.read(decoder, element, &content->items)) return false;
     place_of(value) = value_of(kind(), std::move(content));

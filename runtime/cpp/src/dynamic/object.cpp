@@ -61,21 +61,21 @@ const MemberTable& Object::need_function(std::string_view name, bool is_generato
 Value Object::get(std::string_view property) const {
   const MemberTable& member = need(property, MemberKind::property);
   Value value;
-  stub_->rr_get(stub_->wire(member), &value);
+  stub_->rr_get(stub_->wire(member), {}, &value);
   return value;
 }
 
 void Object::set(std::string_view property, const Value& value) const {
   const MemberTable& member = need(property, MemberKind::property);
   const Value converted = member.type->convert(value, Place(subject_of(member.name)));
-  stub_->rr_set(stub_->wire(member), &converted);
+  stub_->rr_set(stub_->wire(member), {}, &converted);
 }
 
 Value Object::call(std::string_view function, const List& arguments) const {
   const MemberTable& member = need_function(function, false);
   const ConvertedArguments converted(member, arguments);
   Value result;
-  stub_->rr_invoke(stub_->wire(member), converted.places(), &result);
+  stub_->rr_invoke(stub_->wire(member), {}, converted.places(), &result);
   return result;
 }
 
@@ -89,19 +89,19 @@ Generator Object::generate(std::string_view function, const List& arguments) con
 Object Object::object(std::string_view objref) const {
   const MemberTable& member = need(objref, MemberKind::objref);
   check_index(member, stub_->wire(member), IndexForm::none);
-  return Object::of(stub_->rr_find(stub_->wire(member)));
+  return Object::of(stub_->rr_find(stub_->wire(member), {}));
 }
 
 Object Object::object(std::string_view objref, std::int32_t index) const {
   const MemberTable& member = need(objref, MemberKind::objref);
   check_index(member, stub_->wire(member), IndexForm::int32);
-  return Object::of(stub_->rr_find(stub_->wire(member), index));
+  return Object::of(stub_->rr_find(stub_->wire(member), {}, index));
 }
 
 Object Object::object(std::string_view objref, std::string_view index) const {
   const MemberTable& member = need(objref, MemberKind::objref);
   check_index(member, stub_->wire(member), IndexForm::string);
-  return Object::of(stub_->rr_find(stub_->wire(member), index));
+  return Object::of(stub_->rr_find(stub_->wire(member), {}, index));
 }
 
 Subscription Object::on_event(std::string_view event, Function<void(const List&)> function) const {

@@ -72,6 +72,8 @@ void lay_out(RecordTable& table) {
     alignment = std::max(alignment, extent.alignment);
     check_size(table, size);
   }
+  // As in C++, a pod without fields has a place of its own in an array.
+  if (table.kind == RecordKind::pod) size = std::max<std::uint64_t>(size, 1);
   size = round_up(size, alignment);
   check_size(table, size);
   table.size = static_cast<std::size_t>(size);

@@ -215,13 +215,26 @@ class TableBuilder {
     object.wire_members.push_back(wire);
   }
 
-  Value typed_value(const model::Constant& constant) {
+  static std::size_t size_of(const model::Constant& constant) {
+    if (constant.is_struct) return 1;
+    const auto* const numbers = std::get_if<std::vector<model::Number>>(&constant.value);
+    return numbers == nullptr ? 1 : 1 + numbers->size();
+  }
+
+  // A constant of constants is made of copies, and may double its size with each line.
+  Value typed_value(const model::Constant& constant, int depth = 0) {
+    constexpr std::size_t most_values = 100'000;
+    if (depth > static_cast<int>(Limits::deepest) ||
+        (constant_values_ += size_of(constant)) > most_values) {
+      throw Error(ErrorCode::service_definition_error,
+                  "the constant `" + constant.name + "` has too many values in each other");
+    }
     if (!constant.is_struct) {
       return node(constant.type).convert(value_of_constant(constant.value), Place({}));
     }
     Fields fields;
     for (const auto& field : std::get<std::vector<model::StructValueField>>(constant.value)) {
-      fields.emplace_back(field.field, typed_value(*field.constant));
+      fields.emplace_back(field.field, typed_value(*field.constant, depth + 1));
     }
     return Value::record(std::move(fields));
   }
@@ -275,6 +288,7 @@ class TableBuilder {
   const model::Model& model_;
   Tables& tables_;
   const Tables::MakeStub make_stub_;
+  std::size_t constant_values_ = 0;
 };
 
 std::shared_ptr<Tables> Tables::read(const std::vector<std::string>& texts, MakeStub make_stub) {
@@ -283,7 +297,7 @@ std::shared_ptr<Tables> Tables::read(const std::vector<std::string>& texts, Make
     named.push_back({"definition " + std::to_string(i + 1), texts[i]});
   }
   robdef::Sources sources;
-  robdef::Report report;
+  robdef::Report report(robdef::Origin::network);
   const robdef::ast::Program program = robdef::ast::read_texts(std::move(named), sources, report);
   model::Model model = model::resolve(program, sources, report);
   model::evaluate(model, report);

@@ -253,6 +253,26 @@ TEST(DynamicValue, NamedarraysAreNumbersToo) {
   EXPECT_EQ(path.at(1)["y"].as<double>(), 5);
 }
 
+// A definition may be anybody's: such a record takes no room on the wire, but has a place in
+// memory.
+TEST(DynamicValue, PodsWithoutFieldsTravel) {
+  const Definitions definitions(
+      {"service a.b\nstdver 0.10\npod Nothing\nend\npod Outer\n"
+       "  field Nothing one\n  field Nothing[3] three\nend\n"});
+  const std::pair<const char*, const char*> cases[] = {
+      {"a.b.Nothing", "{}"},
+      {"a.b.Nothing[]", "[{},{}]"},
+      {"a.b.Nothing[2]", "[{},{}]"},
+      {"a.b.Nothing[*]", "[[{}],[{}]]"},
+      {"a.b.Outer[]", R"([{"one":{},"three":[{},{},{}]}])"}};
+  for (const auto& [text, json] : cases) {
+    const ValueType type = definitions.type(text);
+    const Value value = type.from_json(json);
+    EXPECT_EQ(type.to_json(travelled(type, value)), type.to_json(value)) << text;
+  }
+  EXPECT_EQ(definitions.type("a.b.Nothing[]").from_json("[{},{}]").size(), 2U);
+}
+
 TEST(DynamicValue, HostileBytesAreRefused) {
   const ValueType type = types().type("conformance.types.Stats");
   Writer writer;

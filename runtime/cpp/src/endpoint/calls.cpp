@@ -6,17 +6,39 @@
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
+#include "runtime/cpp/src/endpoint/user_code.hpp"
 
 namespace rr::endpoint {
 
-void Caller::cancel(Pending& call, channel::Laters& laters) {
+void Caller::cancel(Pending& call, channel::DeferredCallbacks& deferred) {
   if (!take(call)) return;
-  call.fail(Error(ErrorCode::operation_cancelled, "the call was cancelled"), laters);
+  call.fail(Error(ErrorCode::operation_cancelled, "the call was cancelled"), deferred);
   connection().nudge();
 }
 
-void Caller::post(channel::Laters laters) const {
-  for (std::function<void()>& later : laters) core()->reactor().post(std::move(later));
+void Caller::post(channel::DeferredCallbacks deferred) const {
+  for (std::function<void()>& later : deferred) core()->reactor().post(std::move(later));
+}
+
+void CancelCall::operator()() const {
+  channel::DeferredCallbacks deferred;
+  caller->cancel(*call, deferred);
+  caller->post(std::move(deferred));
+}
+
+void refuse_stopped(const std::stop_token& stop) {
+  if (!stop.stop_requested()) return;
+  throw Error(ErrorCode::operation_cancelled, "the call was cancelled");
+}
+
+std::function<void()> tell_foreign_answer(std::shared_ptr<Core> core, std::string_view sender,
+                                          const Entry& entry) {
+  return [core = std::move(core), sender = std::string(sender), id = entry.request_id,
+          type = static_cast<std::uint16_t>(entry.type)] {
+    core->log(LogLevel::warning, sender + " answered request " + std::to_string(id) +
+                                     " with an entry of type " + std::to_string(type) +
+                                     " or for another member; such entries are dropped");
+  };
 }
 
 namespace {
@@ -38,19 +60,15 @@ std::exception_ptr take_in(const Caller& caller, const Message& message, const E
 }  // namespace
 
 void BlockingCall::answer(const Message& message, const Entry& entry, const MemoryRef& owner,
-                          channel::Laters& /*laters*/) {
+                          channel::DeferredCallbacks& /*deferred*/) {
   error_ = take_in(caller_, message, entry, owner,
                    [&](Decoder& decoder) { read(decoder, message, entry); });
   caller_.connection().finish_answered(waiter_);  // after which this may be gone
 }
 
-void BlockingCall::fail(const Error& why, channel::Laters& /*laters*/) {
+void BlockingCall::fail(const Error& why, channel::DeferredCallbacks& /*deferred*/) {
   error_ = std::make_exception_ptr(why);
   caller_.connection().finish(waiter_);
-}
-
-void BlockingCall::begin(const CallTerms& terms) {
-  if (terms.cancellation) terms.cancellation->add(caller_.share(), *this);
 }
 
 // Somebody may be ending the call at this moment, and must come to the end.
@@ -76,9 +94,9 @@ AsyncCall::AsyncCall(std::shared_ptr<Caller> caller, AnswerReader read,
 
 AsyncCall::~AsyncCall() { caller_->core()->reactor().cancel(*this); }
 
-void AsyncCall::open(std::shared_ptr<Cancellation::State> cancellation) {
-  cancellation_ = std::move(cancellation);
-  if (cancellation_) cancellation_->add(caller_, *this);
+void AsyncCall::open(const std::stop_token& stop) {
+  refuse_stopped(stop);
+  if (stop.stop_possible()) cancelled_by_.emplace(stop, CancelCall{caller_, this});
   keep_ = shared_from_this();
 }
 
@@ -92,48 +110,45 @@ void AsyncCall::expect(channel::Milliseconds timeout) {
 void AsyncCall::fail_to_start() {
   if (was_added() && !caller_->take(*this)) return;
   error_ = std::current_exception();
-  channel::Laters laters;
-  end(laters);
-  caller_->post(std::move(laters));
+  channel::DeferredCallbacks deferred;
+  end(deferred);
+  caller_->post(std::move(deferred));
 }
 
 void AsyncCall::answer(const Message& message, const Entry& entry, const MemoryRef& owner,
-                       channel::Laters& laters) {
+                       channel::DeferredCallbacks& deferred) {
   error_ = take_in(*caller_, message, entry, owner,
                    [&](Decoder& decoder) { read_(decoder, message, entry); });
-  end(laters);
+  end(deferred);
 }
 
-void AsyncCall::fail(const Error& why, channel::Laters& laters) {
+void AsyncCall::fail(const Error& why, channel::DeferredCallbacks& deferred) {
   error_ = std::make_exception_ptr(why);
-  end(laters);
+  end(deferred);
 }
 
 void AsyncCall::on_timer() {
   if (!caller_->take(*this)) return;
-  channel::Laters laters;
-  fail(Error(ErrorCode::request_timeout, "no answer in time"), laters);
-  caller_->post(std::move(laters));
+  channel::DeferredCallbacks deferred;
+  fail(Error(ErrorCode::request_timeout, "no answer in time"), deferred);
+  caller_->post(std::move(deferred));
 }
 
-void AsyncCall::end(channel::Laters& laters) {
-  laters.emplace_back([self = shared_from_this()] { self->complete(); });
+void AsyncCall::end(channel::DeferredCallbacks& deferred) {
+  deferred.emplace_back([self = shared_from_this()] { self->complete(); });
   keep_.reset();
 }
 
 void AsyncCall::complete() {
-  if (cancellation_) cancellation_->remove(*this);
+  cancelled_by_.reset();
   caller_->core()->reactor().cancel(*this);
-  try {
+  call_user_code(*caller_->core(), "a completion handler", [&] {
     if (error_) {
       completion_->fail(error_);
     } else {
       completion_->succeed();
     }
-  } catch (const std::exception& error) {
-    caller_->core()->log(LogLevel::error,
-                         std::string("a completion handler has thrown: ") + error.what());
-  }
+  });
 }
 
 }  // namespace rr::endpoint

@@ -4,6 +4,9 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <stop_token>
+#include <string_view>
 
 #include "rr/buffer.hpp"
 #include "rr/reader.hpp"
@@ -33,14 +36,29 @@ class Caller {
   virtual std::shared_ptr<Caller> share() = 0;
 
   /// Ends a call that nobody else has ended.
-  void cancel(Pending& call, channel::Laters& laters);
+  void cancel(Pending& call, channel::DeferredCallbacks& deferred);
   /// Runs what ending calls has left over, on a thread of the node.
-  void post(channel::Laters laters) const;
+  void post(channel::DeferredCallbacks deferred) const;
 };
 
 /// Reads an answer on whichever thread has received it: may not wait nor run user code. Throws
 /// rr::Error.
 using AnswerReader = std::function<void(Decoder&, const Message&, const Entry&)>;
+
+/// Logs that an entry came with the number of a request that asked for something else. For
+/// `deferred`.
+std::function<void()> tell_foreign_answer(std::shared_ptr<Core> core, std::string_view sender,
+                                          const Entry& entry);
+
+/// Ends a call when a stop is requested.
+struct CancelCall {
+  std::shared_ptr<Caller> caller;
+  Pending* call;
+  void operator()() const;
+};
+
+/// Throws rr::Error (operation_cancelled) for a call that is not to begin any more.
+void refuse_stopped(const std::stop_token& stop);
 
 /// A request on the stack of the thread that waits for its answer.
 class BlockingCall : public Pending {
@@ -48,8 +66,8 @@ class BlockingCall : public Pending {
   explicit BlockingCall(Caller& caller) : caller_(caller) {}
 
   void answer(const Message& message, const Entry& entry, const MemoryRef& owner,
-              channel::Laters& laters) final;
-  void fail(const Error& why, channel::Laters& laters) final;
+              channel::DeferredCallbacks& deferred) final;
+  void fail(const Error& why, channel::DeferredCallbacks& deferred) final;
 
   /// Sends the request and waits for the answer. `send` opens this call and sends. Throws what it
   /// throws, rr::Error, or what the other side has thrown.
@@ -61,7 +79,6 @@ class BlockingCall : public Pending {
   virtual void read(Decoder& decoder, const Message& message, const Entry& entry) = 0;
 
  private:
-  void begin(const CallTerms& terms);
   void wait(channel::Time deadline, channel::Time now);
   void wait_after_failure(channel::Time now);
 
@@ -93,8 +110,8 @@ class AsyncCall final : public Pending,
   ~AsyncCall();
 
   void answer(const Message& message, const Entry& entry, const MemoryRef& owner,
-              channel::Laters& laters) override;
-  void fail(const Error& why, channel::Laters& laters) override;
+              channel::DeferredCallbacks& deferred) override;
+  void fail(const Error& why, channel::DeferredCallbacks& deferred) override;
 
   /// Sends the request. `encode` writes it and returns the writer; `send` opens this call and sends
   /// what is in the writer. Nothing is thrown: the completion gets that too.
@@ -103,35 +120,29 @@ class AsyncCall final : public Pending,
              const Send& send);
 
  private:
-  void open(std::shared_ptr<Cancellation::State> cancellation);
+  void open(const std::stop_token& stop);
   void expect(channel::Milliseconds timeout);
   void fail_to_start();
   void on_timer() override;
-  void end(channel::Laters& laters);
+  void end(channel::DeferredCallbacks& deferred);
   void complete();
 
   const std::shared_ptr<Caller> caller_;
   const AnswerReader read_;
   const std::shared_ptr<Completion> completion_;
-  std::shared_ptr<Cancellation::State> cancellation_;
+  std::optional<std::stop_callback<CancelCall>> cancelled_by_;
   std::exception_ptr error_;
   std::shared_ptr<AsyncCall> keep_;
-};
-
-/// Takes a call out of its cancellation, whatever happens.
-struct CancellationEntry {
-  Cancellation::State* state;
-  const Pending& call;
-  ~CancellationEntry() {
-    if (state != nullptr) state->remove(call);
-  }
 };
 
 template <class Send>
 void BlockingCall::perform(const CallTerms& terms, channel::Time deadline, channel::Time now,
                            const Send& send) {
-  begin(terms);
-  const CancellationEntry entry{terms.cancellation.get(), *this};
+  refuse_stopped(terms.stop);
+  std::optional<std::stop_callback<CancelCall>> cancelled_by;
+  if (terms.stop.stop_possible()) {
+    cancelled_by.emplace(terms.stop, CancelCall{caller_.share(), this});
+  }
   caller_.connection().claim(waiter_);
   try {
     send(*this);
@@ -139,6 +150,7 @@ void BlockingCall::perform(const CallTerms& terms, channel::Time deadline, chann
     wait_after_failure(now);
     throw;
   }
+  if (terms.stop.stop_requested()) CancelCall{caller_.share(), this}();  // it was not open yet
   wait(deadline, now);
 }
 
@@ -147,8 +159,9 @@ void AsyncCall::start(channel::Milliseconds timeout, const CallTerms& terms, con
                       const Send& send) {
   try {
     Writer& writer = encode();
-    open(terms.cancellation);
+    open(terms.stop);
     send(*this, writer);
+    if (terms.stop.stop_requested()) CancelCall{caller_, this}();  // it was not open yet
     expect(timeout);
   } catch (...) {
     fail_to_start();

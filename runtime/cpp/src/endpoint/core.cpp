@@ -6,10 +6,12 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/printable.hpp"
 #include "rr/tap.hpp"
 #include "rr/url.hpp"
 #include "runtime/cpp/src/channel/tls.hpp"
 #include "runtime/cpp/src/channel/web_socket.hpp"
+#include "runtime/cpp/src/endpoint/timer.hpp"
 
 namespace rr::endpoint {
 namespace {
@@ -30,10 +32,40 @@ std::shared_ptr<const NodeOptions> completed(NodeOptions options) {
   for (channel::Milliseconds* const time :
        {&options.request_timeout, &options.connect_timeout, &options.first_message_timeout,
         &options.heartbeat_period, &options.receive_timeout, &options.keep_alive_period,
-        &options.client_timeout}) {
+        &options.client_timeout, &options.generator_timeout, &options.local.heartbeat_period,
+        &options.local.receive_timeout, &options.login.first_delay, &options.login.max_delay,
+        &options.login.memory}) {
     *time = channel::saturated(*time);
   }
   return std::make_shared<const NodeOptions>(std::move(options));
+}
+
+}  // namespace
+
+namespace {
+
+void log_to(const NodeOptions& options, LogLevel level, std::string_view text) {
+  if (!options.log) return;
+  // Much of what is logged quotes another node.
+  constexpr std::size_t longest_line = 2000;
+  try {
+    options.log(level, printable(text, longest_line));
+  } catch (...) {
+    // There is nowhere else to say it.
+  }
+}
+
+// Says what went wrong where nobody else can be told, and the core may be gone.
+std::function<void(std::string_view)> error_log(std::shared_ptr<const NodeOptions> options) {
+  return [options = std::move(options)](std::string_view text) {
+    log_to(*options, LogLevel::error, text);
+  };
+}
+
+channel::Reactor::Terms reactor_terms(const std::shared_ptr<const NodeOptions>& options) {
+  return {.max_threads = options->max_threads,
+          .session_threads = std::max(options->session_threads, 1U),
+          .report = error_log(options)};
 }
 
 }  // namespace
@@ -84,23 +116,49 @@ class Core::Rounds final : public channel::Timer, public std::enable_shared_from
 
 Core::Core(NodeOptions options)
     : options_(completed(std::move(options))),
-      reactor_(std::make_shared<channel::Reactor>(options_->max_threads)),
-      accepted_(std::make_shared<channel::AcceptedCount>(options_->max_connections)),
+      reactor_(std::make_shared<channel::Reactor>(reactor_terms(options_))),
+      accepted_(std::make_shared<channel::Admission>(options_)),
+      pools_(channel::make_pools(*options_)),
       types_(std::make_shared<const TypeRegistry>()) {
   const auto limit = std::min(
       {options_->keep_alive_period, options_->client_timeout, options_->generator_timeout});
   const auto period = std::clamp<channel::Milliseconds>(limit / 4, channel::Milliseconds(10),
                                                         channel::Milliseconds(longest_round));
   rounds_ = std::make_shared<Rounds>(reactor_, period);
-  tls_ = std::make_shared<const channel::Tls>(options_->tls, options_->id);
-  web_sockets_ = std::make_shared<channel::WebSockets>(options_->web_socket.origins);
-  channels_ = channel::all_channels(ground());
+  channel::watch_pools(pools_, reactor_);
+  tls_ = std::make_shared<const channel::Tls>(options_->tls, options_->id, reactor_, options_->log);
+  web_sockets_ =
+      std::make_shared<channel::WebSockets>(channel::allowed_origins(options_->web_socket));
+  channels_ = channel::all_channels(context());
 }
 
 Core::~Core() { stop(); }
 
-void Core::log(LogLevel level, std::string_view text) const {
-  if (options_->log) options_->log(level, text);
+void Core::log(LogLevel level, std::string_view text) const { log_to(*options_, level, text); }
+
+rr::Timer Core::every(std::chrono::nanoseconds period, std::function<void()> work) {
+  if (period <= std::chrono::nanoseconds(0)) {
+    throw Error(ErrorCode::invalid_argument, "the period of a timer is longer than nothing");
+  }
+  return start_timer(period, period, std::move(work));
+}
+
+rr::Timer Core::after(std::chrono::nanoseconds delay, std::function<void()> work) {
+  return start_timer(delay, std::chrono::nanoseconds(0), std::move(work));
+}
+
+rr::Timer Core::start_timer(std::chrono::nanoseconds delay, std::chrono::nanoseconds period,
+                            std::function<void()> work) {
+  if (!work) throw Error(ErrorCode::invalid_argument, "a timer needs a function");
+  if (reactor_->is_stopping()) throw Error(ErrorCode::invalid_operation, "the node is shut down");
+  start();
+  const auto state = std::make_shared<rr::Timer::State>(
+      reactor_, rr::Timer::State::Terms{.delay = delay,
+                                        .period = period,
+                                        .work = std::move(work),
+                                        .report = error_log(options_)});
+  state->start();
+  return rr::Timer(state);
 }
 
 void Core::add_definition(const Definition& definition) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -14,8 +16,10 @@
 #include "rr/definition.hpp"
 #include "rr/options.hpp"
 #include "rr/registry.hpp"
+#include "rr/timer.hpp"
 #include "runtime/cpp/src/channel/channel.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
+#include "runtime/cpp/src/endpoint/found_urls.hpp"
 #include "runtime/cpp/src/endpoint/sender_clock.hpp"
 
 namespace rr::endpoint {
@@ -29,25 +33,35 @@ class Attended {
 };
 
 /// What all of a node shares: who it is, its threads, the definitions it knows, its channels.
-class Core : public std::enable_shared_from_this<Core> {
+class Core : public NodeContext, public std::enable_shared_from_this<Core> {
  public:
   explicit Core(NodeOptions options);
-  ~Core();
+  ~Core() override;
+
+  [[nodiscard]] const NodeId& id() const override { return options_->id; }
+  [[nodiscard]] const std::string& name() const override { return options_->name; }
 
   [[nodiscard]] const NodeOptions& options() const { return *options_; }
   [[nodiscard]] channel::Reactor& reactor() const { return *reactor_; }
-  [[nodiscard]] channel::Ground ground() const {
-    return {reactor_, options_, accepted_, tls_, web_sockets_};
+  [[nodiscard]] channel::ChannelContext context() const {
+    return {reactor_, options_, accepted_, pools_, tls_, web_sockets_};
   }
+  /// What peers may make this node hold.
+  [[nodiscard]] const channel::Pools& pools() const { return pools_; }
   /// Starts the threads unless they run.
   void start() { reactor_->start(); }
   /// Waits for all threads to end. No connection may be left.
   void stop() { reactor_->stop(); }
 
-  void log(LogLevel level, std::string_view text) const;
+  void log(LogLevel level, std::string_view text) const override;
+  rr::Timer every(std::chrono::nanoseconds period, std::function<void()> work) override;
+  rr::Timer after(std::chrono::nanoseconds delay, std::function<void()> work) override;
 
   /// What the values of wires are stamped with.
   [[nodiscard]] const SenderClock& clock() const { return clock_; }
+
+  /// URLs that the program has from discovery.
+  [[nodiscard]] FoundUrls& found_urls() { return found_urls_; }
 
   /// Makes a definition and its imports known.
   void add_definition(const Definition& definition);
@@ -68,13 +82,17 @@ class Core : public std::enable_shared_from_this<Core> {
 
  private:
   void tell_tap(const Definition& definition) const;
+  rr::Timer start_timer(std::chrono::nanoseconds delay, std::chrono::nanoseconds period,
+                        std::function<void()> work);
 
   class Rounds;  // the timer of those that are attended
 
   const SenderClock clock_;
+  FoundUrls found_urls_;
   std::shared_ptr<const NodeOptions> options_;
   std::shared_ptr<channel::Reactor> reactor_;
-  std::shared_ptr<channel::AcceptedCount> accepted_;
+  std::shared_ptr<channel::Admission> accepted_;
+  const channel::Pools pools_;
   std::shared_ptr<const channel::Tls> tls_;
   std::shared_ptr<channel::WebSockets> web_sockets_;
   mutable std::mutex mutex_;

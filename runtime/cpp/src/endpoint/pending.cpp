@@ -1,9 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/endpoint/pending.hpp"
 
+#include <cstring>
 #include <utility>
 
 namespace rr::endpoint {
+
+namespace {
+
+// A service that answers no opening is not asked for more than so many ends.
+constexpr std::size_t most_abandoned = 1024;
+
+// Quick, since there are four of them in each call.
+std::size_t hash(std::string_view text) {
+  constexpr std::uint64_t odd = 0x9e37'79b9'7f4a'7c15;
+  constexpr std::size_t step = sizeof(std::uint64_t);
+  std::uint64_t result = text.size();
+  const auto mix = [&result](std::uint64_t word) {
+    result = (result ^ word) * odd;
+    result ^= result >> 29;
+  };
+  std::uint64_t word = 0;
+  for (; text.size() >= step; text.remove_prefix(step)) {
+    std::memcpy(&word, text.data(), step);
+    mix(word);
+  }
+  word = 0;
+  for (const char letter : text) word = word << 8 | static_cast<unsigned char>(letter);
+  mix(word);
+  return result;
+}
+
+bool may_answer(EntryType answer, EntryType request) {
+  const auto number = static_cast<std::uint16_t>(static_cast<std::uint16_t>(request) + 1);
+  if (answer == static_cast<EntryType>(number)) return true;
+  return request == EntryType::memory_write && answer == EntryType::memory_read_ret;  // 07, 13
+}
+
+// Implementations spell what is escaped in an index in different ways: it does not count.
+std::size_t hash_of_path(std::string_view path) { return hash(path.substr(0, path.find('%'))); }
+
+}  // namespace
+
+Asked::Asked(EntryType type, std::string_view path, std::string_view member)
+    : type_(type), path_(hash_of_path(path)), member_(hash(member)) {}
+
+Asked Asked::opening(EntryType type, std::string_view path, std::string_view member) {
+  Asked asked(type, path, member);
+  asked.opening_ = std::make_shared<const Opening>(Opening{std::string(path), std::string(member)});
+  return asked;
+}
+
+bool Asked::is_answered_by(const Entry& entry) const {
+  return may_answer(entry.type, type_) &&
+         (entry.service_path.empty() || hash_of_path(entry.service_path) == path_) &&
+         (entry.member.empty() || hash(entry.member) == member_);
+}
 
 // The link that points to the request, or the end of its chain.
 Pending** PendingTable::find(std::uint32_t id) {
@@ -23,8 +75,9 @@ void PendingTable::grow() {
   }
 }
 
-std::uint32_t PendingTable::add(Pending& request) {
+std::uint32_t PendingTable::add(Pending& request, const Asked& asked) {
   if (size_ == buckets_.size()) grow();
+  request.asked_ = asked;
   request.id_ = skip();
   request.is_open_ = true;
   request.was_added_ = true;
@@ -39,25 +92,48 @@ std::uint32_t PendingTable::skip() {
   return next_id_++;
 }
 
-Pending* PendingTable::take(std::uint32_t id) {
-  if (size_ == 0) return nullptr;
-  Pending** const link = find(id);
+Pending* PendingTable::take(Pending** link) {
   Pending* const request = *link;
-  if (request == nullptr) return nullptr;
   *link = request->next_;
   request->is_open_ = false;
   --size_;
   return request;
 }
 
+PendingTable::Answered PendingTable::take_answered(const Entry& entry) {
+  Pending** const link = size_ != 0 ? find(entry.request_id) : nullptr;
+  if (link == nullptr || *link == nullptr) return {nullptr, false, take_abandoned(entry)};
+  if (!(*link)->asked_.is_answered_by(entry)) return {nullptr, true};
+  return {take(link), false};
+}
+
+void PendingTable::abandon(const Pending& request) {
+  if (!request.asked_.opened()) return;
+  if (abandoned_.size() >= most_abandoned) abandoned_.erase(abandoned_.begin());
+  abandoned_.insert_or_assign(request.id_, request.asked_);
+}
+
+std::shared_ptr<const Asked::Opening> PendingTable::take_abandoned(const Entry& entry) {
+  const auto found = abandoned_.find(entry.request_id);
+  if (found == abandoned_.end() || !found->second.is_answered_by(entry)) return nullptr;
+  auto opening = found->second.opened();
+  abandoned_.erase(found);
+  return opening;
+}
+
 bool PendingTable::take(Pending& request) {
-  return request.is_open_ && take(request.id_) != nullptr;
+  if (!request.is_open_) return false;
+  abandon(*take(find(request.id_)));
+  return true;
 }
 
 Pending* PendingTable::take_any() {
   if (size_ == 0) return nullptr;
-  for (Pending* const chain : buckets_) {
-    if (chain != nullptr) return take(chain->id_);
+  for (Pending*& chain : buckets_) {
+    if (chain == nullptr) continue;
+    Pending* const request = take(&chain);
+    abandon(*request);
+    return request;
   }
   return nullptr;
 }

@@ -4,6 +4,32 @@
 #include "rr/type.hpp"
 
 namespace rr::endpoint {
+namespace {
+
+// Measures what the containers of a packet take.
+class PacketMemory final : public ContainerBudget {
+ public:
+  explicit PacketMemory(const PipeArrival::Room& room)
+      : limit_(room.containers), charge_(room.account) {}
+  bool draw(std::size_t bytes) override {
+    return bytes_ <= limit_ && bytes <= limit_ - bytes_ && charge_.add(bytes) && add(bytes);
+  }
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
+  /// The packet is drawn for by its end from now on.
+  void clear() { charge_.clear(); }
+
+ private:
+  bool add(std::size_t bytes) {
+    bytes_ += bytes;
+    return true;
+  }
+
+  const std::size_t limit_;
+  channel::Charge charge_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace
 
 // False when the packet is not to be acknowledged.
 bool PipeArrival::hand_to(const End& end, const PipePacket& packet) {
@@ -11,9 +37,17 @@ bool PipeArrival::hand_to(const End& end, const PipePacket& packet) {
   is_unreliable_ = what.is_unreliable;
   if (!end->may_receive()) return true;
   std::shared_ptr<void> value = what.holding->make();
-  Decoder decoder(decoder_.version(), decoder_.strings(), decoder_.owner(), decoder_.types());
+  // A small part of a message is not to keep all of it.
+  const bool is_most = packet.size >= message_size_ / 2;
+  Decoder decoder(decoder_.version(), decoder_.strings(), is_most ? decoder_.owner() : MemoryRef(),
+                  decoder_.types());
+  PacketMemory memory(room_);
+  decoder.set_budget(memory);
   if (!what.member->type->read(decoder, packet.value, value.get())) return false;
-  if (!end->accept(packet.number, std::move(value), packet.size)) full_.push_back(end);
+  memory.clear();
+  if (!end->accept(packet.number, std::move(value), packet.size, memory.bytes())) {
+    full_.push_back(end);
+  }
   if (last_ != end) {
     if (last_) others_.push_back(std::move(last_));
     last_ = end;

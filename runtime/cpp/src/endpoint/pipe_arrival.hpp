@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -11,6 +12,7 @@
 #include "rr/reader.hpp"
 #include "rr/registry.hpp"
 #include "rr/writer.hpp"
+#include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/endpoint/pipe_packets.hpp"
 #include "runtime/cpp/src/endpoint/pipe_state.hpp"
 
@@ -27,9 +29,18 @@ class PipeArrival {
     bool is_taken = false;
   };
 
+  /// What the packets of an entry may take in memory.
+  struct Room {
+    std::shared_ptr<channel::Account> account{};  ///< what is drawn on while one is decoded
+    std::size_t containers = Decoder::container_limit;
+  };
+
   PipeArrival(const Message& message, const Entry& entry, const MemoryRef& owner,
-              const TypeRegistry& types)
-      : entry_(entry), decoder_(message.version, &message.strings, owner, &types) {}
+              const TypeRegistry& types, Room room)
+      : entry_(entry),
+        message_size_(message.entries.size()),
+        decoder_(message.version, &message.strings, owner, &types),
+        room_(std::move(room)) {}
 
   /// Asks `find(packet, decoder)` for each packet. Those for nobody, and those of another type, are
   /// dropped without a word.
@@ -59,7 +70,9 @@ class PipeArrival {
   }
 
   const Entry& entry_;
+  const std::size_t message_size_;
   Decoder decoder_;
+  const Room room_;
   bool is_unreliable_ = false;
   std::vector<std::pair<std::int32_t, std::uint32_t>> acknowledged_;
   End last_;  // the end of the packet before, which is nearly always the only one

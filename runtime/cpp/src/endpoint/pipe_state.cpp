@@ -2,9 +2,13 @@
 // What arrives at one end of a pipe, and how it ends.
 #include "runtime/cpp/src/endpoint/pipe_state.hpp"
 
+#include <algorithm>
+#include <optional>
+#include <stop_token>
 #include <utility>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/endpoint/call_terms.hpp"
 
 namespace rr {
 namespace {
@@ -14,6 +18,9 @@ constexpr std::size_t queue_bytes = std::size_t{64} * 1024 * 1024;
 // Packets that have come before earlier ones. Nobody sends them so on purpose.
 constexpr std::size_t held_packets = 1024;
 constexpr std::size_t held_bytes = std::size_t{16} * 1024 * 1024;
+// What a packet takes besides its bytes, about; and how much is drawn at a time.
+constexpr std::size_t packet_cost = 128;
+constexpr std::size_t quantum = 1024;
 
 Error closed_error() { return {ErrorCode::invalid_operation, "the pipe endpoint is closed"}; }
 
@@ -34,12 +41,57 @@ class PipeEnd::State::Receiver final : public Subscription::Handler {
   Function<void(std::shared_ptr<void>)> function_;
 };
 
+// A completion that waits for a packet. Whoever takes it out of the queue ends it.
+class PipeEnd::State::Waiting final : public channel::Timer,
+                                      public std::enable_shared_from_this<Waiting> {
+ public:
+  Waiting(std::shared_ptr<const endpoint::Core> core, std::weak_ptr<State> end,
+          std::unique_ptr<Completion> completion)
+      : core_(std::move(core)), end_(std::move(end)), completion_(std::move(completion)) {}
+  ~Waiting() { core_->reactor().cancel(*this); }
+
+  // Before it is in the queue.
+  void heed(const std::stop_token& stop) {
+    if (stop.stop_possible()) stopped_by_.emplace(stop, Stop{weak_from_this()});
+  }
+  void expire_at(channel::Time deadline) {
+    if (deadline != channel::never) core_->reactor().schedule(*this, weak_from_this(), deadline);
+  }
+  // It is in no queue any more, and nothing but its completion follows.
+  void leave() {
+    stopped_by_.reset();
+    core_->reactor().cancel(*this);
+  }
+  [[nodiscard]] Completion& completion() const { return *completion_; }
+
+  ErrorCode ended_by = ErrorCode::none;  // by time-out or stop; under the lock of the end
+
+ private:
+  struct Stop {
+    std::weak_ptr<Waiting> waiting;
+    void operator()() const {
+      if (const auto ended = waiting.lock()) ended->end_by(ErrorCode::operation_cancelled);
+    }
+  };
+  void on_timer() override { end_by(ErrorCode::request_timeout); }
+  void end_by(ErrorCode code) {
+    if (const auto end = end_.lock()) end->end_receive(*this, code);
+  }
+
+  const std::shared_ptr<const endpoint::Core> core_;
+  const std::weak_ptr<State> end_;
+  const std::unique_ptr<Completion> completion_;
+  std::optional<std::stop_callback<Stop>> stopped_by_;
+};
+
 PipeEnd::State::State(std::shared_ptr<const endpoint::Core> core,
                       std::shared_ptr<endpoint::PipeSide> side, Identity what)
     : identity(std::move(what)),
       core_(std::move(core)),
       index_text_(std::to_string(identity.index)),
+      threads_(side ? side->connection().threads() : nullptr),
       side_(std::move(side)),
+      charge_(side_->connection().account()),
       limit_(queue_packets),
       byte_limit_(queue_bytes) {}
 
@@ -47,14 +99,15 @@ bool PipeEnd::State::may_receive() const {
   return (identity.member->access & (identity.is_client ? writeonly : readonly)) == 0;
 }
 
-bool PipeEnd::State::accept(std::uint32_t number, std::shared_ptr<void> value, std::size_t size) {
+bool PipeEnd::State::accept(std::uint32_t number, std::shared_ptr<void> value, std::size_t size,
+                            std::size_t memory) {
   bool has_room = true;
   bool is_awaited = false;
   {
     const std::lock_guard lock(mutex_);
     if (is_closed_) return true;
     is_awaited = waiting_ != 0;
-    Packet packet{std::move(value), size};
+    Packet packet{std::move(value), size, packet_cost + size + memory};
     if (identity.is_unreliable) {
       has_room = push(std::move(packet));
     } else if (number != expected_) {
@@ -67,12 +120,13 @@ bool PipeEnd::State::accept(std::uint32_t number, std::shared_ptr<void> value, s
         if (next == held_.end()) break;
         ++expected_;
         held_bytes_ -= next->second.size;
+        give_back(next->second.cost);  // the queue draws again
         has_room = push(std::move(next->second)) && has_room;
         held_.erase(next);
       }
     }
   }
-  if (is_awaited) arrived_.notify_one();
+  if (is_awaited) arrived_.notify_all();  // a packet is there for all until one takes it
   return has_room;
 }
 
@@ -80,17 +134,22 @@ bool PipeEnd::State::accept(std::uint32_t number, std::shared_ptr<void> value, s
 bool PipeEnd::State::hold_back(std::uint32_t number, Packet packet) {
   if (static_cast<std::int32_t>(number - expected_) < 0) return true;
   if (held_.size() >= held_packets || held_bytes_ + packet.size > held_bytes) return false;
-  const std::size_t size = packet.size;
-  if (held_.emplace(number, std::move(packet)).second) held_bytes_ += size;
+  if (held_.contains(number)) return true;
+  if (!draw(packet.cost)) return false;
+  held_bytes_ += packet.size;
+  held_.emplace(number, std::move(packet));
   return true;
 }
 
 // Under mutex_.
 bool PipeEnd::State::push(Packet packet) {
-  while (!queue_.empty() && (queue_.size() >= limit_ || queue_bytes_ + packet.size > byte_limit_)) {
+  while (true) {
+    const bool is_full =
+        !queue_.empty() && (queue_.size() >= limit_ || queue_bytes_ + packet.size > byte_limit_);
+    if (!is_full && draw(packet.cost)) break;
     if (when_full_ == WhenFull::close) return false;
     ++lost_;
-    if (when_full_ == WhenFull::drop_newest) return true;
+    if (when_full_ == WhenFull::drop_newest || queue_.empty()) return true;
     pop();
   }
   queue_bytes_ += packet.size;
@@ -103,7 +162,24 @@ PipeEnd::State::Packet PipeEnd::State::pop() {
   Packet packet = std::move(queue_.front());
   queue_.pop_front();
   queue_bytes_ -= packet.size;
+  give_back(packet.cost);
   return packet;
+}
+
+// Under mutex_. False when the other side makes this one hold too much.
+bool PipeEnd::State::draw(std::size_t cost) {
+  if (cost_ + cost > charge_.bytes()) {
+    const std::size_t more = cost_ + cost - charge_.bytes();
+    if (!charge_.add(more + quantum) && !charge_.add(more)) return false;
+  }
+  cost_ += cost;
+  return true;
+}
+
+// Under mutex_. A little stays drawn, for the packet that comes next.
+void PipeEnd::State::give_back(std::size_t cost) {
+  cost_ -= cost;
+  if (charge_.bytes() > cost_ + 2 * quantum) charge_.reduce(charge_.bytes() - cost_ - quantum);
 }
 
 void PipeEnd::State::deliver() {
@@ -119,17 +195,19 @@ bool PipeEnd::State::deliver_one(std::unique_lock<std::mutex>& lock) {
   if (receiver_ && !receiver_->is_connected()) {
     const auto ended = std::exchange(receiver_, nullptr);
     lock.unlock();
-  } else if (!completions_.empty() && (!queue_.empty() || is_closed_)) {
-    const std::unique_ptr<Completion> completion = std::move(completions_.front());
-    completions_.pop_front();
+  } else if (!waitings_.empty() && (!queue_.empty() || is_closed_)) {
+    const std::shared_ptr<Waiting> waiting = std::move(waitings_.front());
+    waitings_.pop_front();
     std::shared_ptr<void> value = queue_.empty() ? nullptr : pop().value;
     lock.unlock();
+    waiting->leave();
     call([&] {
+      Completion& completion = waiting->completion();
       if (value) {
-        *static_cast<std::shared_ptr<void>*>(completion->result()) = std::move(value);
-        completion->succeed();
+        *static_cast<std::shared_ptr<void>*>(completion.result()) = std::move(value);
+        completion.succeed();
       } else {
-        completion->fail(std::make_exception_ptr(closed_error()));
+        completion.fail(std::make_exception_ptr(closed_error()));
       }
     });
   } else if (receiver_ && !queue_.empty()) {
@@ -149,13 +227,8 @@ bool PipeEnd::State::deliver_one(std::unique_lock<std::mutex>& lock) {
   return true;
 }
 
-void PipeEnd::State::tell_thrown(const char* what) const {
-  core_->log(LogLevel::error, "a function of the pipe `" + std::string(identity.member->name) +
-                                  "` has thrown: " + what);
-}
-
 void PipeEnd::State::deliver_soon() {
-  core_->reactor().post([self = shared_from_this()] { self->deliver(); });
+  core_->reactor().post([self = shared_from_this()] { self->deliver(); }, threads_);
 }
 
 std::shared_ptr<void> PipeEnd::State::take() {
@@ -219,17 +292,55 @@ Subscription PipeEnd::State::on_received(Function<void(std::shared_ptr<void>)> f
   return Subscription(std::move(receiver));
 }
 
+// Its end may come before the completion is in the queue, which then it never is.
 void PipeEnd::State::start_receive(std::unique_ptr<Completion> completion) {
+  const CallTerms terms = CallTerms::of_started_call();
+  const auto waiting = std::make_shared<Waiting>(core_, weak_from_this(), std::move(completion));
+  waiting->heed(terms.stop);
+  if (terms.timeout.count() > 0) {
+    waiting->expire_at(channel::after(channel::coarse_now(), terms.timeout));
+  }
   bool is_due = false;
+  bool has_ended = false;
   std::shared_ptr<endpoint::PipeSide> side;
   {
     const std::lock_guard lock(mutex_);
-    completions_.push_back(std::move(completion));
-    is_due = !queue_.empty() || is_closed_;
+    has_ended = waiting->ended_by != ErrorCode::none;
+    if (!has_ended) waitings_.push_back(waiting);
+    is_due = !has_ended && (!queue_.empty() || is_closed_);
     side = side_;
   }
+  if (has_ended) fail_receive(waiting);
   if (is_due) deliver_soon();
   if (side) side->connection().expect();
+}
+
+void PipeEnd::State::end_receive(Waiting& waiting, ErrorCode code) {
+  std::shared_ptr<Waiting> found;
+  {
+    const std::lock_guard lock(mutex_);
+    if (waiting.ended_by != ErrorCode::none) return;
+    waiting.ended_by = code;
+    const auto place =
+        std::ranges::find_if(waitings_, [&](const auto& item) { return item.get() == &waiting; });
+    if (place == waitings_.end()) return;  // it has its packet, or is not there yet
+    found = std::move(*place);
+    waitings_.erase(place);
+  }
+  fail_receive(found);
+}
+
+void PipeEnd::State::fail_receive(const std::shared_ptr<Waiting>& waiting) {
+  core_->reactor().post(
+      [self = shared_from_this(), waiting] {
+        waiting->leave();
+        const bool is_late = waiting->ended_by == ErrorCode::request_timeout;
+        self->call([&] {
+          waiting->completion().fail(std::make_exception_ptr(Error(
+              waiting->ended_by, is_late ? "no packet in time" : "the receive was cancelled")));
+        });
+      },
+      threads_);
 }
 
 void PipeEnd::State::on_closed(Function<void()> function) {
@@ -250,6 +361,8 @@ bool PipeEnd::State::finish() {
     is_closed_ = true;
     side = std::move(side_);
     held.swap(held_);
+    for (const auto& [number, packet] : held) give_back(packet.cost);
+    held_bytes_ = 0;
   }
   arrived_.notify_all();
   deliver_soon();

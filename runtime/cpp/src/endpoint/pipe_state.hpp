@@ -21,6 +21,7 @@
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
 #include "runtime/cpp/src/endpoint/subscription.hpp"
+#include "runtime/cpp/src/endpoint/user_code.hpp"
 
 namespace rr {
 
@@ -78,9 +79,11 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   void on_acknowledged(Function<void(std::uint32_t)> function);
 
   // Receiving (pipe_state.cpp)
-  /// Takes a packet that has arrived. Runs no user code: deliver() does. False when the end must be
-  /// closed, because a queue is full.
-  [[nodiscard]] bool accept(std::uint32_t number, std::shared_ptr<void> value, std::size_t size);
+  /// Takes a packet that has arrived: `size` bytes of a message, and `memory` bytes of containers.
+  /// Runs no user code: deliver() does. False when the end must be closed, because a queue is full
+  /// or the other side makes this one hold too much.
+  [[nodiscard]] bool accept(std::uint32_t number, std::shared_ptr<void> value, std::size_t size,
+                            std::size_t memory = 0);
   /// Hands packets to who waits for them, in order. On a thread of the node.
   void deliver();
   void deliver_soon();
@@ -91,6 +94,7 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   [[nodiscard]] std::size_t lost_count() const;
   void set_queue_limit(std::size_t packets, WhenFull when_full, std::size_t bytes);
   Subscription on_received(Function<void(std::shared_ptr<void>)> function);
+  /// The time-out and stop of the thread's call options end it without having taken a packet.
   void start_receive(std::unique_ptr<Completion> completion);
 
   // The end
@@ -105,31 +109,31 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   struct Packet {
     std::shared_ptr<void> value;
     std::size_t size = 0;
+    std::size_t cost = 0;  // what is drawn for it
   };
   class Receiver;
+  class Waiting;
 
   template <class Write>
   std::uint32_t send_packet(const Write& write_value);
   [[nodiscard]] bool hold_back(std::uint32_t number, Packet packet);
   [[nodiscard]] bool push(Packet packet);
   Packet pop();
+  [[nodiscard]] bool draw(std::size_t cost);
+  void give_back(std::size_t cost);
   bool deliver_one(std::unique_lock<std::mutex>& lock);
+  void end_receive(Waiting& waiting, ErrorCode code);
+  void fail_receive(const std::shared_ptr<Waiting>& waiting);
   /// Runs what is the program's; what it throws is logged.
   template <class Run>
   void call(const Run& run) const {
-    try {
-      run();
-    } catch (const std::exception& error) {
-      tell_thrown(error.what());
-    } catch (...) {
-      tell_thrown("something that is no exception");
-    }
+    endpoint::call_user_code(*core_, "a function of the pipe", identity.member->name, run);
   }
-  void tell_thrown(const char* what) const;
 
   const std::shared_ptr<const endpoint::Core> core_;
   const std::string index_text_;
-  std::atomic<bool> is_closed_{false};  // written under both locks
+  const std::shared_ptr<channel::ThreadShare> threads_;  // of the session
+  std::atomic<bool> is_closed_{false};                   // written under both locks
 
   std::mutex sending_;                        // before mutex_
   std::shared_ptr<endpoint::PipeSide> side_;  // null when closed; written under both locks
@@ -146,13 +150,15 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   std::size_t held_bytes_ = 0;
   std::deque<Packet> queue_;
   std::size_t queue_bytes_ = 0;
+  channel::Charge charge_;  // for packets that are held back or in the queue, and a little more
+  std::size_t cost_ = 0;    // of those packets
   std::size_t limit_;
   std::size_t byte_limit_;
   WhenFull when_full_ = WhenFull::close;
   std::size_t lost_ = 0;
   bool is_delivering_ = false;
   std::shared_ptr<Receiver> receiver_;
-  std::deque<std::unique_ptr<Completion>> completions_;
+  std::deque<std::shared_ptr<Waiting>> waitings_;  // for packets, in their order
   Function<void()> closed_function_;
   Function<void(std::uint32_t)> acknowledged_function_;
 };

@@ -61,6 +61,15 @@ std::vector<PipeTable::End> PipeTable::take_all() {
   return take([](const Key&) { return true; });
 }
 
+std::vector<PipeTable::End> PipeTable::all() const {
+  std::vector<End> found;
+  found.reserve(size_);
+  for (const auto& [key, ends] : pipes_) {
+    for (const auto& [index, end] : ends) found.push_back(end);
+  }
+  return found;
+}
+
 std::optional<std::int32_t> PipeTable::choose(std::string_view path, std::string_view member,
                                               std::int32_t wanted) {
   std::int32_t index = wanted;

@@ -29,6 +29,7 @@ class PipeTable {
   /// Takes out those of the object at a path and of those below it.
   std::vector<End> take_below(std::string_view path);
   std::vector<End> take_all();
+  [[nodiscard]] std::vector<End> all() const;
   [[nodiscard]] std::size_t size() const { return size_; }
 
   /// The index of a new endpoint when `wanted` is asked for, as the reference chooses it (07,

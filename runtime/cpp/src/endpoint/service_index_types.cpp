@@ -73,10 +73,12 @@ constinit const Definition definition{service_name, definition_text, {}, {}, rec
 IndexStub::IndexStub() : changed_(*this, members[Place::services_changed]) {}
 
 ServiceInfos IndexStub::get_local_node_services() {
-  return rr_call<ServiceInfos>(members[local_services]);
+  return rr_call<ServiceInfos>(members[local_services], {});
 }
 
-NodeInfos IndexStub::get_detected_nodes() { return rr_call<NodeInfos>(members[detected_nodes]); }
+NodeInfos IndexStub::get_detected_nodes() {
+  return rr_call<NodeInfos>(members[detected_nodes], {});
+}
 
 std::string service_url(std::string_view base, const NodeId& node, std::string_view service) {
   std::string url(base);

@@ -4,11 +4,38 @@
 
 #include <utility>
 
+#include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
 #include "runtime/cpp/src/endpoint/wire_values.hpp"
 
 namespace rr {
+namespace {
+
+// Values up to this size, one for each connection of a wire, are not worth counting.
+constexpr std::size_t small_value = 1024;
+
+// What a value takes, drawn from the account of who sends it; null for nobody who is counted.
+class ValueMemory final : public ContainerBudget {
+ public:
+  explicit ValueMemory(std::shared_ptr<channel::Account> account)
+      : is_counted_(account != nullptr), charge_(std::move(account)) {}
+
+  [[nodiscard]] bool draw(std::size_t bytes) override {
+    is_exceeded_ = !charge_.add(bytes);
+    return !is_exceeded_;
+  }
+  [[nodiscard]] bool is_counted() const { return is_counted_; }
+  [[nodiscard]] bool is_exceeded() const { return is_exceeded_; }
+  [[nodiscard]] channel::Charge& charge() { return charge_; }
+
+ private:
+  const bool is_counted_;
+  bool is_exceeded_ = false;
+  channel::Charge charge_;
+};
+
+}  // namespace
 
 WireEnd::State::State(std::shared_ptr<endpoint::Core> core, std::string path, const Member& member)
     : core_(std::move(core)), path_(std::move(path)), member_(member) {}
@@ -60,15 +87,23 @@ void WireEnd::State::open() {
 }
 
 void WireEnd::State::take(const Message& message, const Entry& entry, const MemoryRef& owner,
-                          const TypeRegistry& types, channel::Laters& laters) {
+                          const TypeRegistry& types, channel::DeferredCallbacks& deferred) {
   if (!may_receive_ || member_.holding == nullptr) return;
+  const std::size_t size = entry.elements.size();
+  ValueMemory memory(size > small_value ? connection().account() : nullptr);
+  if (!memory.draw(size)) return;
   std::shared_ptr<void> made;
   TimeSpec time;
   try {
     made = member_.holding->make();
-    endpoint::read_wire(message, entry, owner, types, *member_.type, time, made.get());
+    // A small part of a message is not to keep all of it.
+    const bool is_most = size >= message.entries.size() / 2;
+    Decoder decoder(message.version, &message.strings, is_most ? owner : MemoryRef(), &types);
+    if (memory.is_counted()) decoder.set_budget(memory);
+    endpoint::read_wire(decoder, entry, *member_.type, time, made.get());
   } catch (const std::exception& error) {
-    refuse(error, laters);  // as if it had not been sent (07, section 13)
+    if (memory.is_exceeded()) return;
+    refuse(error, deferred);  // as if it had not been sent (07, section 13)
     return;
   }
   const std::shared_ptr<const void> value = std::move(made);
@@ -79,6 +114,7 @@ void WireEnd::State::take(const Message& message, const Entry& entry, const Memo
     if (is_ending()) return;
     if (sequence_ != 0 && !endpoint::is_later(time, in_.time())) return;
     before = in_.put(value, time);
+    std::swap(charge_, memory.charge());
     ++sequence_;
     on_taken(value, time);  // before anybody knows of it
     must_start = must_start_telling();
@@ -87,14 +123,14 @@ void WireEnd::State::take(const Message& message, const Entry& entry, const Memo
   if (must_start) start_telling();
 }
 
-void WireEnd::State::refuse(const std::exception& why, channel::Laters& laters) {
+void WireEnd::State::refuse(const std::exception& why, channel::DeferredCallbacks& deferred) {
   const Error error(ErrorCode::data_type_mismatch,
                     "`" + path_ + "." + std::string(member_.name) +
                         "` has values of another type: " + why.what());
   const std::lock_guard lock(mutex_);
   refusal_ = error;
   if (!on_refused_ || is_ending()) return;
-  laters.emplace_back([function = on_refused_, error] { (*function)(error); });
+  deferred.emplace_back([function = on_refused_, error] { (*function)(error); });
 }
 
 void WireEnd::State::on_refused(std::function<void(const Error&)> function) {

@@ -56,14 +56,15 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   void send(const void* value);
   std::shared_ptr<const void> sent(TimeSpec& time) const;
 
-  // What owners do. None runs code of the program; what could not be posted is left in `laters`.
+  // What owners do. None runs code of the program; what could not be posted is left in `deferred`.
   /// Both sides know of the connection. Values are taken before that already.
   void open();
-  /// A packet has come. What does not count is dropped.
+  /// A packet has come. What does not count is dropped, and so is a large value of a client that
+  /// makes this node hold too much.
   void take(const Message& message, const Entry& entry, const MemoryRef& owner,
-            const TypeRegistry& types, channel::Laters& laters);
+            const TypeRegistry& types, channel::DeferredCallbacks& deferred);
   /// The connection has ended. Nothing happens the second time.
-  void finish(channel::Laters& laters);
+  void finish(channel::DeferredCallbacks& deferred);
 
  protected:
   enum class Phase : std::uint8_t { connecting, open, closing, closed };
@@ -74,7 +75,7 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   /// finish() for a thread of the program.
   void finish_now();
   /// A value that cannot be read.
-  void refuse(const std::exception& why, channel::Laters& laters);
+  void refuse(const std::exception& why, channel::DeferredCallbacks& deferred);
   /// Keeps what is being sent as what was sent last.
   void keep_sent(std::shared_ptr<const void> value, endpoint::SenderTime time);
 
@@ -125,6 +126,7 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   mutable std::mutex mutex_;
   mutable std::condition_variable arrived_;
   endpoint::NewestValue in_;
+  channel::Charge charge_;                   // for that value, if it is a large one of a client
   std::uint64_t sequence_ = 0;               // counts values that were taken
   unsigned waiting_ = 0;                     // threads in wait_received()
   std::shared_ptr<void> own_sent_;           // copied into by send()

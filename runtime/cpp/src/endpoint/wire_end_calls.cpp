@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "runtime/cpp/src/endpoint/user_code.hpp"
 #include "runtime/cpp/src/endpoint/wire_end.hpp"
 
 namespace rr {
@@ -27,19 +28,11 @@ class WireEnd::State::Listener final : public Subscription::Handler {
 // Calls what is the program's.
 template <class Call>
 void WireEnd::State::guard(const Call& call) const {
-  try {
-    call();
-  } catch (const std::exception& error) {
-    core_->log(LogLevel::error, "a function for the wire `" + std::string(member_.name) +
-                                    "` has thrown: " + error.what());
-  } catch (...) {
-    core_->log(LogLevel::error,
-               "a function for the wire `" + std::string(member_.name) + "` has thrown");
-  }
+  endpoint::call_user_code(*core_, "a function for the wire", member_.name, call);
 }
 
 Subscription WireEnd::State::on_received(Function<void(const void*, const TimeSpec&)> function) {
-  channel::Laters laters;
+  channel::DeferredCallbacks deferred;
   std::shared_ptr<Listener> listener;
   bool must_start = false;
   {
@@ -52,7 +45,7 @@ Subscription WireEnd::State::on_received(Function<void(const void*, const TimeSp
   }
   connection().expect();
   if (must_start) start_telling();
-  for (const std::function<void()>& later : laters) later();
+  for (const std::function<void()>& later : deferred) later();
   return Subscription(std::move(listener));
 }
 
@@ -79,7 +72,7 @@ bool WireEnd::State::begin_close() {
   return true;
 }
 
-void WireEnd::State::finish(channel::Laters& /*laters*/) {
+void WireEnd::State::finish(channel::DeferredCallbacks& /*deferred*/) {
   bool must_start = false;
   {
     const std::lock_guard lock(mutex_);
@@ -93,9 +86,9 @@ void WireEnd::State::finish(channel::Laters& /*laters*/) {
 }
 
 void WireEnd::State::finish_now() {
-  channel::Laters laters;
-  finish(laters);
-  for (const std::function<void()>& later : laters) later();
+  channel::DeferredCallbacks deferred;
+  finish(deferred);
+  for (const std::function<void()>& later : deferred) later();
 }
 
 bool WireEnd::State::has_to_tell() const {
@@ -107,7 +100,7 @@ bool WireEnd::State::has_to_tell() const {
 bool WireEnd::State::must_start_telling() { return !is_telling_ && (is_telling_ = has_to_tell()); }
 
 void WireEnd::State::start_telling() {
-  core_->reactor().post([self = shared_from_this()] { self->tell_all(); });
+  core_->reactor().post([self = shared_from_this()] { self->tell_all(); }, connection().threads());
 }
 
 void WireEnd::State::tell_all() {

@@ -30,6 +30,14 @@ void WireTable::remove(const WireEnd::State& end) {
   ends_.erase(found);
 }
 
+std::vector<WireTable::End> WireTable::all() const {
+  std::vector<End> found;
+  const std::lock_guard lock(mutex_);
+  found.reserve(ends_.size());
+  for (const auto& item : ends_) found.push_back(item.second);
+  return found;
+}
+
 std::vector<WireTable::End> WireTable::take_below(std::string_view path, const Choice& is_taken) {
   std::vector<End> taken;
   const std::lock_guard lock(mutex_);

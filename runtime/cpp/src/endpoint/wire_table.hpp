@@ -22,6 +22,7 @@ class WireTable {
   enum class Added { yes, exists, ended };
   Added add(const End& end);
   void remove(const WireEnd::State& end);
+  [[nodiscard]] std::vector<End> all() const;
   using Choice = std::function<bool(const WireEnd::State&)>;
   /// Takes out those of an object and of the objects below it, but for what `is_taken` denies;
   /// empty: all.

@@ -45,9 +45,9 @@ TEST(Async, AFutureGetsTheError) {
 }
 
 TEST(Async, ACallbackWithoutAnExecutorRunsOnAThreadOfTheNode) {
+  std::promise<std::pair<double, std::thread::id>> promise;
   Pair pair;
   auto counter = pair.connect();
-  std::promise<std::pair<double, std::thread::id>> promise;
   counter->async_add(1, 2, [&](const std::exception_ptr& error, double sum) {
     EXPECT_FALSE(error);
     promise.set_value({sum, std::this_thread::get_id()});
@@ -129,11 +129,7 @@ TEST(Async, ACallWithoutAnAnswerInTimeFails) {
   Pair pair;
   auto counter = pair.connect();
   const auto before = std::chrono::steady_clock::now();
-  std::future<void> call;
-  {
-    const CallScope scope(std::chrono::milliseconds(50));
-    call = counter->async_slow(1000, use_future);
-  }
+  auto call = counter->async_slow(1000, within(std::chrono::milliseconds(50)), use_future);
   EXPECT_EQ(error_of([&] { call.get(); }).code(), ErrorCode::request_timeout);
   EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::milliseconds(900));
 }
@@ -141,14 +137,10 @@ TEST(Async, ACallWithoutAnAnswerInTimeFails) {
 TEST(Async, ACancelledCallFails) {
   Pair pair;
   auto counter = pair.connect();
-  const Cancellation stop;
-  std::future<void> call;
-  {
-    const CallScope scope(stop);
-    call = counter->async_slow(500, use_future);
-  }
+  std::stop_source stop;
+  auto call = counter->async_slow(500, stopped_by(stop.get_token()), use_future);
   auto other = counter->async_add(1, 2, use_future);
-  Cancellation(stop).cancel();
+  stop.request_stop();
   EXPECT_EQ(error_of([&] { call.get(); }).code(), ErrorCode::operation_cancelled);
   EXPECT_EQ(other.get(), 3);
 }
@@ -165,9 +157,9 @@ TEST(Async, OpenCallsFailWhenTheClientIsClosed) {
 }
 
 TEST(Async, ACompletionMayMakeBlockingCalls) {
+  std::promise<double> promise;
   Pair pair;
   auto counter = pair.connect();
-  std::promise<double> promise;
   counter->async_add(
       1, 2, [&](std::exception_ptr, double sum) { promise.set_value(counter->add(sum, 4)); });
   EXPECT_EQ(promise.get_future().get(), 7);

@@ -142,6 +142,7 @@ TEST(Callbacks, MayCallTheServiceThatCallsBackAgain) {
 }
 
 TEST(Callbacks, ComeThroughWhileAnEventHandlerWaitsForACall) {
+  std::promise<double> result;
   BoardPair pair;
   Board& object = *pair.object;
   object.on_run = [&](const std::string& what) {
@@ -153,7 +154,6 @@ TEST(Callbacks, ComeThroughWhileAnEventHandlerWaitsForACall) {
   };
   auto board = pair.connect();
   board->sum().set([](std::int32_t a, std::int32_t b) { return a + b; });
-  std::promise<double> result;
   auto subscription =
       board->note_down().connect([&](const std::string&) { result.set_value(board->run("sum")); });
   board->run("fire");
@@ -161,10 +161,10 @@ TEST(Callbacks, ComeThroughWhileAnEventHandlerWaitsForACall) {
 }
 
 TEST(Callbacks, ThatAreSlowHoldUpNeitherEventsNorCalls) {
-  BoardPair pair;
-  auto board = pair.connect();
   std::promise<void> entered;
   std::promise<void> gate;
+  BoardPair pair;
+  auto board = pair.connect();
   board->ping().set([&] {
     entered.set_value();
     gate.get_future().wait();
@@ -253,11 +253,10 @@ TEST(Callbacks, WithoutAnAnswerInTimeFailAndTheNextOneWorks) {
     return a;
   });
   const auto before = std::chrono::steady_clock::now();
-  {
-    const CallScope scope(40ms);
+  with_options(within(40ms), [&] {
     EXPECT_EQ(code_of([&] { pair.object->sum(client, 1, 0); }), ErrorCode::request_timeout);
     EXPECT_LT(std::chrono::steady_clock::now() - before, 190ms);
-  }
+  });
   EXPECT_EQ(pair.object->sum(client, 2, 0), 2);
 }
 
@@ -275,38 +274,39 @@ TEST(Callbacks, WaitAsLongAsTheNodeSays) {
 }
 
 TEST(Callbacks, CanBeCancelled) {
-  BoardPair pair;
-  auto board = pair.connect();
   std::promise<void> entered;
   std::promise<void> gate;
+  BoardPair pair;
+  auto board = pair.connect();
   board->ping().set([&] {
     entered.set_value();
     gate.get_future().wait();
   });
-  Cancellation stop;
+  std::stop_source stop;
   std::thread canceller([&] {
     entered.get_future().wait();
-    stop.cancel();
+    stop.request_stop();
   });
-  const CallScope scope(10s, stop);
-  EXPECT_EQ(code_of([&] { pair.object->ping(pair.only_client()); }),
-            ErrorCode::operation_cancelled);
+  with_options(within(10s, stop.get_token()), [&] {
+    EXPECT_EQ(code_of([&] { pair.object->ping(pair.only_client()); }),
+              ErrorCode::operation_cancelled);
+  });
   gate.set_value();
   canceller.join();
 }
 
 TEST(Callbacks, FailWhenTheirClientLeaves) {
-  BoardPair pair;
   std::promise<ErrorCode> code;
   std::promise<void> entered;
   std::promise<void> is_left;  // until then, the function gives no answer that might come first
+  std::promise<void> gate;
+  BoardPair pair;  // the function may still end while the pair does
   pair.object->on_run = [&](const std::string&) -> double {
     code.set_value(code_of([&] { pair.object->ping(caller()); }));
     is_left.get_future().wait();
     return 0;
   };
   std::optional<Client<BoardStub>> board = pair.connect();
-  std::promise<void> gate;
   (*board)->ping().set([&, opened = gate.get_future().share()] {
     entered.set_value();
     opened.wait();
@@ -323,11 +323,11 @@ TEST(Callbacks, FailWhenTheirClientLeaves) {
 }
 
 TEST(Callbacks, FailWhenTheServiceSendsTheClientAway) {
+  std::promise<void> entered;
+  std::promise<void> gate;
   BoardPair pair;
   auto board = pair.connect();
   const std::uint32_t client = pair.only_client();
-  std::promise<void> entered;
-  std::promise<void> gate;
   board->ping().set([&] {
     entered.set_value();
     gate.get_future().wait();
@@ -342,15 +342,15 @@ TEST(Callbacks, FailWhenTheServiceSendsTheClientAway) {
 }
 
 TEST(Callbacks, InFlightEndWhenTheServersNodeShutsDown) {
-  BoardPair pair;
   std::promise<ErrorCode> code;
   std::promise<void> entered;
+  std::promise<void> gate;
+  BoardPair pair;
   pair.object->on_run = [&](const std::string&) -> double {
     code.set_value(code_of([&] { pair.object->ping(caller()); }));
     return 0;
   };
   auto board = pair.connect();
-  std::promise<void> gate;
   board->ping().set([&] {
     entered.set_value();
     gate.get_future().wait();
@@ -364,14 +364,14 @@ TEST(Callbacks, InFlightEndWhenTheServersNodeShutsDown) {
 }
 
 TEST(Callbacks, InFlightEndWhenTheClientsNodeShutsDown) {
-  BoardPair pair;
   std::promise<ErrorCode> code;
+  std::promise<void> entered;
+  std::promise<void> gate;
+  BoardPair pair;
   auto board = pair.connect();
   board->ping().set([&] {
     code.set_value(code_of([&] { board->run("slow"); }));  // is open when the node goes
   });
-  std::promise<void> entered;
-  std::promise<void> gate;
   pair.object->on_run = [&](const std::string&) -> double {
     entered.set_value();
     gate.get_future().wait();
@@ -386,10 +386,10 @@ TEST(Callbacks, InFlightEndWhenTheClientsNodeShutsDown) {
 }
 
 TEST(Callbacks, AreNotCalledAnyMoreOnceCleared) {
+  std::promise<void> entered;
   BoardPair pair;
   auto board = pair.connect();
   const std::uint32_t client = pair.only_client();
-  std::promise<void> entered;
   std::atomic<bool> is_over{false};
   board->ping().set([&] {
     entered.set_value();
@@ -466,11 +466,7 @@ TEST(AsyncCallbacks, FailInTimeAndWhenTheClientHasGone) {
   auto board = pair.connect();
   const std::uint32_t client = pair.only_client();
   board->ping().set([] { std::this_thread::sleep_for(150ms); });
-  std::future<void> late;
-  {
-    const CallScope scope(30ms);
-    late = pair.object->async_ping(client, use_future);
-  }
+  auto late = pair.object->async_ping(client, within(30ms), use_future);
   EXPECT_EQ(code_of([&] { late.get(); }), ErrorCode::request_timeout);
   auto open = pair.object->async_ping(client, use_future);
   board.close();

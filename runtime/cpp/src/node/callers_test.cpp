@@ -34,13 +34,13 @@ class Callers final : public channel::Receiver {
   std::atomic<bool> is_closed{false};
 
   void take_answer(const Message& /*message*/, const Entry& entry, const MemoryRef& /*owner*/,
-                   channel::Laters& /*laters*/) override {
+                   channel::DeferredCallbacks& /*deferred*/) override {
     channel::Waiter* const waiter = waiting.at(entry.request_id).exchange(nullptr);
     if (waiter != nullptr) connection->finish_answered(*waiter);
   }
   void handle(const Message& /*message*/, const Entry& /*first*/,
               const MemoryRef& /*owner*/) override {}
-  void lost(const Error& /*why*/, channel::Laters& /*laters*/) override {
+  void lost(const Error& /*why*/, channel::DeferredCallbacks& /*deferred*/) override {
     for (auto& each : waiting) {
       if (channel::Waiter* const waiter = each.exchange(nullptr)) connection->finish(*waiter);
     }

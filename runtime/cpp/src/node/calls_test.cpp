@@ -305,10 +305,9 @@ TEST(Calls, ACallWithoutAnAnswerInTimeFailsAndTheNextOneWorks) {
   Pair pair({}, {}, object);
   auto counter = pair.connect();
   const auto before = Clock::now();
-  {
-    const CallScope scope(60ms);
+  with_options(within(60ms), [&] {
     EXPECT_EQ(error_of([&] { counter->slow(0); }).code(), ErrorCode::request_timeout);
-  }
+  });
   EXPECT_GE(Clock::now() - before, 45ms);  // the clock of deadlines is coarse
   EXPECT_LT(Clock::now() - before, 5000ms);
   object->gate.set_value();
@@ -321,10 +320,9 @@ TEST(Calls, AFollowerAlsoRunsOutOfTime) {
   auto counter = pair.connect();
   auto reader = std::async(std::launch::async, [&] { counter->slow(0); });
   object->entered.get_future().wait();
-  {
-    const CallScope scope(60ms);
+  with_options(within(60ms), [&] {
     EXPECT_EQ(error_of([&] { counter->add(1, 2); }).code(), ErrorCode::request_timeout);
-  }
+  });
   object->gate.set_value();
   reader.get();
 }
@@ -333,18 +331,19 @@ TEST(Calls, ABlockingCallCanBeCancelled) {
   const auto object = std::make_shared<SlowCounter>();
   Pair pair({}, {}, object);
   auto counter = pair.connect();
-  Cancellation stop;
+  std::stop_source stop;
   auto call = std::async(std::launch::async, [&] {
-    const CallScope scope(stop);
-    return error_of([&] { counter->slow(0); }).code();
+    return with_options(stopped_by(stop.get_token()),
+                        [&] { return error_of([&] { counter->slow(0); }).code(); });
   });
   object->entered.get_future().wait();
   const auto before = Clock::now();
-  stop.cancel();
+  stop.request_stop();
   EXPECT_EQ(call.get(), ErrorCode::operation_cancelled);
   EXPECT_LT(Clock::now() - before, 900ms);
-  const CallScope scope(stop);
-  EXPECT_EQ(error_of([&] { counter->add(1, 2); }).code(), ErrorCode::operation_cancelled);
+  with_options(stopped_by(stop.get_token()), [&] {
+    EXPECT_EQ(error_of([&] { counter->add(1, 2); }).code(), ErrorCode::operation_cancelled);
+  });
   object->gate.set_value();
 }
 

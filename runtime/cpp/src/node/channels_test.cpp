@@ -100,8 +100,8 @@ TEST(Ports, ThatAreAnyAreNeverTheSharedOne) {
     if (!is_alone) return;
     {
       Node node;
-      port = node.listen_tcp(0);
-      none = error_of([&] { node.listen_tcp(0); });
+      port = node.listen_tcp(0, "*");
+      none = error_of([&] { node.listen_tcp(0, "*"); });
     }
   }).join();
   if (!is_alone) GTEST_SKIP() << "may not make a network";

@@ -98,9 +98,9 @@ TEST(Shutdown, MayBeStartedByAHandler) {
 }
 
 TEST(Shutdown, MayBeStartedByACompletion) {
+  std::promise<double> promise;
   Pair pair;
   auto counter = pair.connect();
-  std::promise<double> promise;
   counter->async_add(1, 2, [&](const std::exception_ptr&, double sum) {
     pair.client.shutdown();
     promise.set_value(sum);
@@ -110,9 +110,9 @@ TEST(Shutdown, MayBeStartedByACompletion) {
 }
 
 TEST(Shutdown, MayBeStartedAside) {
+  std::promise<void> promise;
   Pair pair;
   auto counter = pair.connect();
-  std::promise<void> promise;
   pair.client.run_aside([&] {
     pair.client.shutdown();
     promise.set_value();
@@ -142,11 +142,11 @@ TEST(Shutdown, AHandlerMayDestroyItsNode) {
 }
 
 TEST(Shutdown, WorkAsideMayDestroyItsNode) {
+  std::promise<void> destroyed;
   Pair pair;
   auto client = std::make_unique<Node>(with_channel({}));
   auto other = client->async_connect<CounterStub>(pair.url());
   auto counter = client->connect<CounterStub>(pair.url());
-  std::promise<void> destroyed;
   client->run_aside([&] {
     client.reset();
     destroyed.set_value();
@@ -219,10 +219,10 @@ TEST(Shutdown, CompletionsThatAreLeftRunOnAThreadOfTheNodeBeforeItReturns) {
 }
 
 TEST(Shutdown, ACallThatIsStartedAfterwardsFailsOnAnotherThread) {
+  std::promise<std::pair<ErrorCode, std::thread::id>> promise;
   Pair pair;
   const auto stub = pair.connect().stub();
   pair.client.shutdown();
-  std::promise<std::pair<ErrorCode, std::thread::id>> promise;
   stub->async_add(1, 2, [&](const std::exception_ptr& error, double) {
     promise.set_value({code_of(error), std::this_thread::get_id()});
   });
@@ -307,12 +307,12 @@ TEST(Ownership, ADisconnectedHandlerLetsGoOfWhatItOwns) {
 }
 
 TEST(Ownership, AHandlerMayDisconnectItselfAndOwnItsStub) {
+  std::promise<std::int32_t> got;
   Pair pair;
   auto counter = pair.connect();
   auto child = counter->get_child();
   const std::weak_ptr<CounterStub> watch = child;
   Subscription subscription;
-  std::promise<std::int32_t> got;
   subscription = child->ticked().connect(
       [&, child, text = std::string(100, 'x')](std::int32_t count, const std::string&) {
         subscription.disconnect();
@@ -362,8 +362,9 @@ TEST(Ownership, AnObjectThatOwesAnAnswerGoesWithItsNode) {
   {
     Pair pair({}, {}, std::move(object));
     auto counter = pair.connect();
-    const CallScope scope(50ms);
-    EXPECT_EQ(error_of([&] { counter->slow(0); }).code(), ErrorCode::request_timeout);
+    with_options(within(50ms), [&] {
+      EXPECT_EQ(error_of([&] { counter->slow(0); }).code(), ErrorCode::request_timeout);
+    });
     EXPECT_FALSE(watch.expired());
   }
   EXPECT_TRUE(watch.expired());
@@ -421,9 +422,9 @@ TEST(Ownership, AServiceMayBeClosedByAHandler) {
     void reset() override { service->close(); }
     ServiceContext* service = nullptr;
   };
+  std::promise<ErrorCode> why;
   Pair pair;
   pair.server.register_service("closing", std::make_shared<Closing>());
-  std::promise<ErrorCode> why;
   ConnectOptions options;
   options.on_closed = [&](const Error& error) { why.set_value(error.code()); };
   auto counter = pair.client.connect<CounterStub>(pair.url("closing"), options);
@@ -465,11 +466,11 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(EndsOfSessions, AreToldOnAThreadOfTheNodeBehindTheLastRequest) {
   Leaving leaving;
+  std::promise<std::thread::id> ender;
   Pair pair({}, {}, leaving.object, leaving.options());
   auto counter = pair.connect();
   auto call = std::async(std::launch::async, [&] { error_of([&] { counter->reset(); }); });
   EXPECT_TRUE(leaving.object->gate.has_entered());
-  std::promise<std::thread::id> ender;
   auto end = std::async(std::launch::async, [&] {
     ender.set_value(std::this_thread::get_id());
     GetParam().second(pair);
@@ -486,31 +487,28 @@ TEST_P(EndsOfSessions, AreToldOnAThreadOfTheNodeBehindTheLastRequest) {
 }
 
 // How long close() takes when the service is busy and does not answer the farewell.
-template <class... Terms>
-std::chrono::nanoseconds time_to_close(const Terms&... terms) {
+std::chrono::nanoseconds time_to_close(const CallOptions& options) {
   const auto object = std::make_shared<GatedCounter>();
   Pair pair({}, {}, object);
   auto counter = pair.connect();
   auto call = std::async(std::launch::async, [&] { error_of([&] { counter->reset(); }); });
   EXPECT_TRUE(object->gate.has_entered());
   const auto begin = Clock::now();
-  {
-    const CallScope scope(terms...);
-    counter.close();
-  }
+  with_options(options, [&] { counter.close(); });
   const auto took = Clock::now() - begin;
   object->gate.open();
   call.get();
   return took;
 }
 
-TEST(Sessions, ClosingIsNotSubjectToTheCallersScope) {
-  Cancellation stop;
-  stop.cancel();
+TEST(Sessions, ClosingIsNotSubjectToTheOptionsOfCalls) {
+  std::stop_source stop;
+  stop.request_stop();
   auto endless = std::async(std::launch::async,
-                            [] { return time_to_close(std::chrono::milliseconds::max()); });
-  auto cancelled = std::async(std::launch::async, [&] { return time_to_close(stop); });
-  auto brief = std::async(std::launch::async, [] { return time_to_close(1ms); });
+                            [] { return time_to_close(within(std::chrono::milliseconds::max())); });
+  auto cancelled =
+      std::async(std::launch::async, [&] { return time_to_close(stopped_by(stop.get_token())); });
+  auto brief = std::async(std::launch::async, [] { return time_to_close(within(1ms)); });
   for (auto* const took : {&endless, &cancelled, &brief}) {
     ASSERT_EQ(took->wait_for(20s), std::future_status::ready);
     EXPECT_GE(took->get(), 450ms);

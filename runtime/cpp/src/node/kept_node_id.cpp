@@ -10,6 +10,7 @@
 
 #include "rr/error.hpp"
 #include "rr/url.hpp"
+#include "runtime/cpp/src/channel/trusted_folder.hpp"
 
 namespace rr {
 namespace {
@@ -40,15 +41,24 @@ fs::path id_file(const channel::NodeDirectories& directories, const std::string&
 
 }  // namespace
 
-KeptNodeId::KeptNodeId(const std::string& name) {
+void KeptNodeId::lock(const std::string& name, const channel::NodeDirectories& directories) {
   // It becomes the name of a file.
   if (!Url::is_node_name(name)) {
     throw Error(ErrorCode::invalid_argument, "`" + name + "` is no name for a node");
   }
-  const auto directories = channel::NodeDirectories::of_user();
+  channel::make_trusted_folder((directories.user_run / "nodeids").string(), {.is_private = true},
+                               directories.user_run.string());
   lock_.emplace(directories.user_run / "nodeids" / (name + ".pid"), "the node name `" + name + "`");
   lock_->write(std::to_string(::getpid()));
+}
 
+KeptNodeId::KeptNodeId(const std::string& name, const NodeId& id) : id_(id) {
+  lock(name, channel::NodeDirectories::of_user());
+}
+
+KeptNodeId::KeptNodeId(const std::string& name) {
+  const auto directories = channel::NodeDirectories::of_user();
+  lock(name, directories);
   const fs::path file = id_file(directories, name);
   const auto text = read_trimmed(file);
   if (text && !text->empty()) {

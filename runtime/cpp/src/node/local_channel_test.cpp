@@ -13,6 +13,7 @@
 #include <string>
 
 #include "runtime/cpp/src/node/testing/pair.hpp"
+#include "runtime/cpp/src/replay/stream.hpp"
 
 namespace rr::testing {
 namespace {
@@ -137,12 +138,17 @@ TEST_F(LocalSocket, WhatADeadNodeLeftBehindIsCleanedUp) {
   Node first(options());
   first.listen("rr+local://");
   const fs::path socket = fs::path(run) / "socket/abcdefghijklmnop.sock";
-  std::ofstream(socket) << "";
+  { const replay::Listener killed(socket); }  // leaves its socket behind
+  const fs::path other = fs::path(run) / "socket/not-a-socket.sock";
+  std::ofstream(other) << "kept";
+  std::ofstream(folder() / "by-nodeid/11111111-2222-3333-4444-555555555556.info")
+      << "nodeid: {11111111-2222-3333-4444-555555555556}\nsocket: " << other.string() << "\n";
   std::ofstream(folder() / "by-nodeid/11111111-2222-3333-4444-555555555555.info")
       << "nodeid: {11111111-2222-3333-4444-555555555555}\nsocket: " << socket.string() << "\n";
   Node second(options());
   second.listen("rr+local://");
   EXPECT_FALSE(fs::exists(socket));
+  EXPECT_TRUE(fs::exists(other));
   const std::string info = content(folder() / "by-nodeid" / (first.id().text() + ".info"));
   EXPECT_TRUE(fs::exists(value_of(info, "socket")));
 }

@@ -94,6 +94,67 @@ TEST(Locks, OfASessionKeepTheUsersOtherSessionsOutToo) {
   EXPECT_EQ(again->get_value(), 0);
 }
 
+TEST(Locks, OfTheServiceStayWhetherOrNotTheUserIsThere) {
+  Secured pair;
+  pair.service->lock("counter", "alice");
+  auto bob = pair.connect_as("bob");
+  EXPECT_EQ(error_of([&] { bob->get_value(); }).message(), "Object locked by alice");
+  {
+    auto alice = pair.connect_as("alice");
+    EXPECT_EQ(alice->get_value(), 0);
+    EXPECT_EQ(code_of([&] { lock(*alice); }), locked);
+  }
+  EXPECT_TRUE(eventually([&] { return pair.service->clients().size() == 1; }));
+  EXPECT_EQ(code_of([&] { bob->get_value(); }), locked);
+  EXPECT_EQ(code_of([&] { unlock(*bob); }), locked);
+  EXPECT_TRUE(pair.service->unlock("counter"));
+  EXPECT_EQ(bob->get_value(), 0);
+  EXPECT_FALSE(pair.service->unlock("counter"));
+  EXPECT_FALSE(pair.service->unlock("counter.no path["));
+}
+
+TEST(Locks, OfTheServiceEndAsThoseOfTheUser) {
+  Secured pair;
+  auto alice = pair.connect_as("alice");
+  auto chief = pair.connect_as("chief");
+  pair.service->lock("counter", "alice");
+  unlock(*alice);
+  EXPECT_EQ(chief->get_value(), 0);
+  pair.service->lock("counter", "alice");
+  EXPECT_EQ(code_of([&] { chief->get_value(); }), locked);
+  unlock(*chief);
+  EXPECT_EQ(chief->get_value(), 0);
+}
+
+TEST(Locks, OfTheServiceForNobodyKeepEverybodyOut) {
+  Secured pair;
+  auto alice = pair.connect_as("alice");
+  auto chief = pair.connect_as("chief");
+  const auto child = alice->get_child();
+  pair.service->lock("counter.by_name[left]");  // nobody has looked for it yet
+  EXPECT_EQ(alice->get_value(), 0);
+  EXPECT_EQ(child->get_value(), 0);
+  const auto left = alice->get_by_name("left");
+  EXPECT_EQ(error_of([&] { left->get_value(); }).message(), "Object locked by the service");
+  EXPECT_EQ(code_of([&] { lock(*alice); }), locked);  // above it
+  EXPECT_EQ(code_of([&] { unlock(*left); }), locked);
+  EXPECT_EQ(code_of([&] { pair.service->lock("counter"); }), locked);
+  EXPECT_EQ(code_of([&] { pair.service->lock("counter.nothing"); }), ErrorCode::member_not_found);
+  unlock(*chief->get_by_name("left"));
+  EXPECT_EQ(left->get_value(), 0);
+}
+
+TEST(Locks, OfTheServiceNeedNoUsers) {
+  Pair pair;
+  auto counter = pair.connect();
+  const auto child = counter->get_child();
+  pair.service->lock("counter.child");
+  EXPECT_EQ(counter->get_value(), 0);
+  EXPECT_EQ(code_of([&] { child->get_value(); }), locked);
+  EXPECT_TRUE(pair.service->unlock("counter.child"));
+  EXPECT_EQ(child->get_value(), 0);
+}
+
 TEST(Locks, HoldForWhatLiesBelow) {
   Secured pair;
   auto alice = pair.connect_as("alice");
@@ -273,10 +334,9 @@ TEST(Monitors, ASessionThatGivesUpWaitingIsNotLetIn) {
   Secured pair;
   auto alice = pair.connect_as("alice");
   pair.counter->free.acquire();
-  {
-    const CallScope scope(50ms);
+  with_options(within(50ms), [&] {
     EXPECT_EQ(code_of([&] { enter_monitor(*alice); }), ErrorCode::request_timeout);
-  }
+  });
   exit_monitor(*alice);
   pair.counter->free.release();
   auto bob = pair.connect_as("bob");

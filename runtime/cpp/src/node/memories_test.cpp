@@ -436,14 +436,10 @@ TEST(Memories, AreReadAndWrittenWithoutWaiting) {
 TEST(Memories, ACancelledTransferEndsBetweenItsRequestsToo) {
   Boards boards(8, 102'400, 1000);
   boards.board->numbers->delay = std::chrono::milliseconds(2);
-  Cancellation stop;
-  std::future<Array<double>> read;
-  {
-    const CallScope scope(stop);
-    read = boards.stub->numbers().async_read(0, 1000, use_future);
-  }
+  std::stop_source stop;
+  auto read = boards.stub->numbers().async_read(0, 1000, stopped_by(stop.get_token()), use_future);
   EXPECT_TRUE(eventually([&] { return boards.board->numbers->reads > 3; }));
-  stop.cancel();
+  stop.request_stop();
   EXPECT_EQ(code_of([&] { read.get(); }), ErrorCode::operation_cancelled);
 }
 

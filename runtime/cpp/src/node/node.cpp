@@ -16,6 +16,7 @@
 #include "runtime/cpp/src/discovery/type_source.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
 #include "runtime/cpp/src/endpoint/service_index_types.hpp"
+#include "runtime/cpp/src/endpoint/user_code.hpp"
 #include "runtime/cpp/src/service/directory.hpp"
 #include "runtime/cpp/src/subscription/owner.hpp"
 
@@ -132,7 +133,7 @@ struct Node::State {
     join_done();
     std::thread thread([this, work = std::move(work), is_done]() mutable {
       served_aside = this;
-      work();
+      endpoint::call_user_code(*core, "work aside", work);
       work = nullptr;  // what it owns may use the node when it goes
       *is_done = true;
     });
@@ -140,7 +141,8 @@ struct Node::State {
   }
 
   [[nodiscard]] bool is_own_thread() const {
-    return served_aside == this || core->reactor().is_own_thread();
+    return served_aside == this || core->reactor().is_own_thread() ||
+           directory->logins().is_own_thread();
   }
   void begin_end();
   void finish_end();
@@ -331,11 +333,19 @@ ServiceSubscription Node::subscribe_to(std::vector<std::vector<std::string>> ser
   return ServiceSubscription(state_->subscriptions->add(std::move(services), std::move(options)));
 }
 
+Timer Node::every(std::chrono::nanoseconds period, std::function<void()> work) {
+  return state_->core->every(period, std::move(work));
+}
+
+Timer Node::after(std::chrono::nanoseconds delay, std::function<void()> work) {
+  return state_->core->after(delay, std::move(work));
+}
+
 void Node::run_aside(std::function<void()> work) { state_->run_aside(std::move(work)); }
 
 void Node::adopt(int descriptor) {
   state_->core->start();
-  channel::adopt_socket(state_->core->ground(), descriptor, state_->accept_handler());
+  channel::adopt_socket(state_->core->context(), descriptor, state_->accept_handler());
 }
 
 void Node::shutdown() {

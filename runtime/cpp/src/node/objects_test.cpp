@@ -5,12 +5,14 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
 #include <future>
 #include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "runtime/cpp/src/node/testing/gate.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 
 namespace rr::testing {
@@ -102,8 +104,8 @@ TEST(Objects, AnUnknownTypeIsRefused) {
 }
 
 TEST(Objects, AReleasedPathIsFoundAnew) {
-  Pair pair;
   std::promise<std::string> released;
+  Pair pair;
   ConnectOptions options;
   options.on_path_released = [&](const std::string& path) { released.set_value(path); };
   auto counter = pair.connect(options);
@@ -120,6 +122,81 @@ TEST(Objects, AReleasedPathIsFoundAnew) {
             ErrorCode::service_error);
   EXPECT_EQ(error_of([&] { pair.service->release_path("counter"); }).code(),
             ErrorCode::invalid_operation);
+}
+
+// The notice waits for a handler of the program; the answer that comes behind it is read at once.
+TEST(Objects, AReleasedPathIsFoundAnewBeforeTheReleaseIsTold) {
+  Gate gate;
+  std::promise<void> released;
+  Pair pair;
+  ConnectOptions options;
+  options.on_path_released = [&](const std::string&) { released.set_value(); };
+  auto counter = pair.connect(options);
+  const auto old = counter->get_by_name("left");
+  const Subscription holding =
+      counter->ticked().connect([&](std::int32_t, const std::string&) { gate.pass(); });
+  pair.object->rr_fire_ticked(1, "");
+  ASSERT_TRUE(gate.has_entered());
+  pair.service->release_path("counter.by_name[left]");
+  EXPECT_EQ(counter->get_value(), 0);  // an answer that was sent behind the notice
+  const auto fresh = counter->get_by_name("left");
+  EXPECT_NE(fresh, old);
+  gate.open();
+  released.get_future().get();
+  EXPECT_EQ(counter->get_by_name("left"), fresh);
+}
+
+// An object of a class of its own, which a Counter implements.
+class OnlyNamed final : public Skeleton {
+ public:
+  [[nodiscard]] const ObjectType& rr_object_type() const override { return rr_Named; }
+  void rr_dispatch(std::size_t /*member*/, Request& request) override {
+    const std::string name = "only named";
+    request.answer(&name);
+  }
+  std::shared_ptr<Skeleton> rr_child(std::size_t /*member*/, const ObjectIndex&) override {
+    return nullptr;
+  }
+};
+
+// Each `reset` puts an object of the other class where `anything` leads.
+class Changing final : public Counter {
+ public:
+  void rr_attached(ServiceContext& context, const std::string& /*path*/) override {
+    context_ = &context;
+  }
+  void reset() override {
+    is_counter_ = !is_counter_;
+    context_->release_path("counter.anything");
+  }
+  std::shared_ptr<Skeleton> get_anything() override {
+    if (is_counter_) return std::make_shared<Counter>("a counter");
+    return std::make_shared<OnlyNamed>();
+  }
+
+ private:
+  ServiceContext* context_ = nullptr;
+  bool is_counter_ = false;
+};
+
+// `./check --long` does it 100,000 times.
+TEST(Objects, AVarobjectThatIsReplacedHasTheClassOfTheNewOne) {
+  const char* const given = std::getenv("ROBDEF_VAROBJECT_LOOPS");
+  const int loops = given == nullptr ? 500 : std::atoi(given);
+  Pair pair({}, {}, std::make_shared<Changing>());
+  auto counter = pair.connect();
+  std::shared_ptr<Stub> found = counter->get_anything();
+  int wrong = 0;
+  for (int i = 0; i < loops; ++i) {
+    counter->reset();
+    found = counter->get_anything();
+    const bool is_counter = found->rr_object_type().name == "test.counter.Counter";
+    if (is_counter != (i % 2 == 0)) ++wrong;
+    if (const auto stub = std::dynamic_pointer_cast<CounterStub>(found)) {
+      EXPECT_EQ(stub->get_value(), 0);
+    }
+  }
+  EXPECT_EQ(wrong, 0) << "of " << loops;
 }
 
 TEST(Objects, AnObjectIsAttachedBeforeItIsUsed) {
@@ -214,10 +291,10 @@ TEST(Events, ADetachedHandlerStaysWithTheStub) {
 }
 
 TEST(Events, AHandlerMayCallAndDisconnectItself) {
+  std::promise<double> result;
   Pair pair;
   auto counter = pair.connect();
   Subscription subscription;
-  std::promise<double> result;
   subscription = counter->ticked().connect([&](std::int32_t, const std::string&) {
     subscription.disconnect();
     result.set_value(counter->add(1, 2));
@@ -244,10 +321,10 @@ TEST(Events, AreHandledOnAThreadOfTheNodeOutsideOfCalls) {
 }
 
 TEST(Events, ASlowHandlerDoesNotHoldUpCalls) {
-  Pair pair;
-  auto counter = pair.connect();
   std::promise<void> entered;
   std::promise<void> gate;
+  Pair pair;
+  auto counter = pair.connect();
   auto opened = gate.get_future().share();
   std::atomic<int> count{0};
   auto subscription = counter->ticked().connect([&](std::int32_t, const std::string&) {

@@ -97,7 +97,7 @@ TEST(Pipes, TheServiceMayRefuseAnEndpoint) {
   EXPECT_EQ(refused.message(), "not seven");
   EXPECT_EQ(error_of([&] { board->numbers().connect({.index = 8}); }).code(),
             ErrorCode::invalid_operation);
-  auto future = board->numbers().async_connect(boost::asio::use_future, {.index = 7});
+  auto future = board->numbers().async_connect({.index = 7}, boost::asio::use_future);
   EXPECT_THROW(future.get(), Error);
   EXPECT_EQ(boards.board->numbers().endpoint_count(), 0U);
   EXPECT_EQ(board->numbers().connect({.index = 9}).index(), 9);

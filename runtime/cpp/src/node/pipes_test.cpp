@@ -265,6 +265,23 @@ TEST(Pipes, PacketsCanBeAwaited) {
   EXPECT_EQ(end.async_receive(boost::asio::use_future).get(), 3);
 }
 
+TEST(Pipes, AReceiveThatEndsEarlyLeavesThePacket) {
+  PipeBoards boards;
+  auto board = boards.connect();
+  auto end = board->numbers().connect();
+  std::stop_source stop;
+  auto stopped = end.async_receive(stopped_by(stop.get_token()), boost::asio::use_future);
+  auto expired = end.async_receive(within(10ms), boost::asio::use_future);
+  auto kept = end.async_receive(within(1000s), boost::asio::use_future);
+  stop.request_stop();
+  EXPECT_EQ(error_of([&] { stopped.get(); }).code(), ErrorCode::operation_cancelled);
+  EXPECT_EQ(error_of([&] { expired.get(); }).code(), ErrorCode::request_timeout);
+  auto late = end.async_receive(stopped_by(stop.get_token()), boost::asio::use_future);
+  EXPECT_EQ(error_of([&] { late.get(); }).code(), ErrorCode::operation_cancelled);
+  boards.board->numbers().send(1);
+  EXPECT_EQ(kept.get(), 1);
+}
+
 TEST(Pipes, AValueThatMayNotTravelTakesNoNumber) {
   NodeOptions small;
   small.limits.message_size = 100'000;

@@ -72,8 +72,8 @@ TEST(Services, AHandlerKnowsItsClient) {
 }
 
 TEST(Services, AClosedServiceEndsItsSessions) {
-  Pair pair;
   std::promise<ErrorCode> why;
+  Pair pair;
   ConnectOptions options;
   options.on_closed = [&](const Error& error) { why.set_value(error.code()); };
   auto counter = pair.connect(options);
@@ -86,8 +86,8 @@ TEST(Services, AClosedServiceEndsItsSessions) {
 }
 
 TEST(Services, AClientCanBeSentAway) {
-  Pair pair;
   std::promise<ErrorCode> why;
+  Pair pair;
   ConnectOptions options;
   options.on_closed = [&](const Error& error) { why.set_value(error.code()); };
   auto counter = pair.connect(options);
@@ -150,7 +150,7 @@ TEST(Services, NamesAreCheckedAndUnique) {
 }
 
 TEST(Services, WhatCannotBeReachedIsToldInTime) {
-  Pair pair({}, {.connect_timeout = 300ms});
+  Pair pair({}, {.connect_timeout = 3s});
   const auto code = [&](const std::string& url) {
     return error_of([&] { pair.client.connect<CounterStub>(url); }).code();
   };
@@ -196,7 +196,7 @@ TEST(Services, TheSharedPortIsNotListenedAt) {
 }
 
 TEST(Services, AConnectionLimitIsKept) {
-  Pair pair({.max_connections = 2}, {.connect_timeout = 300ms});
+  Pair pair({.max_connections = 2}, {.connect_timeout = 3s});
   auto first = pair.connect();
   {
     auto second = pair.connect();

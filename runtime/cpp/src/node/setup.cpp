@@ -3,12 +3,15 @@
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <ostream>
 #include <utility>
 
 #include "rr/error.hpp"
 #include "rr/wire.hpp"
+#include "runtime/cpp/src/channel/directories.hpp"
+#include "runtime/cpp/src/channel/tls.hpp"
 #include "runtime/cpp/src/node/kept_node_id.hpp"
 
 namespace rr {
@@ -51,10 +54,38 @@ void apply_limits(const SetupOptions& setup, NodeOptions& options) {
   if (setup.jumbo_message) options.limits.message_size = jumbo_size;
 }
 
+void append(std::vector<std::string>& to, const std::vector<std::string>& more) {
+  to.insert(to.end(), more.begin(), more.end());
+}
+
+void apply_tls(const SetupOptions& setup, TlsOptions& tls) {
+  tls.is_required = tls.is_required || setup.require_tls;
+  if (!setup.tls_certificate.empty()) {
+    tls.certificate_file = setup.tls_certificate;
+    tls.key_file.clear();
+  }
+  if (!setup.tls_key.empty()) tls.key_file = setup.tls_key;
+  append(tls.authority_files, setup.tls_authority);
+  append(tls.revocation_files, setup.tls_revocation);
+}
+
+// Where the existing implementations keep the certificate of a node.
+std::string certificate_of(const NodeId& id) {
+  const auto folder = channel::NodeDirectories::of_user().user_config / "certificates";
+  for (const std::string& name : {id.text(), id.text_with_braces()}) {
+    std::error_code error;
+    const auto file = folder / (name + ".p12");
+    if (std::filesystem::exists(file, error)) return file.string();
+  }
+  throw Error(ErrorCode::invalid_configuration,
+              "`load-tls` needs a certificate: give `tls-certificate`, or put it at `" +
+                  (folder / (id.text() + ".p12")).string() + "`");
+}
+
 void apply_channels(const SetupOptions& setup, NodeOptions& options) {
-  options.tls.is_required = options.tls.is_required || setup.require_tls;
   std::vector<std::string>& origins = options.web_socket.origins;
-  origins.insert(origins.end(), setup.tcp_ws_add_origin.begin(), setup.tcp_ws_add_origin.end());
+  append(origins, setup.tcp_ws_add_origin);
+  if (setup.tcp_ws_allow_local_pages) options.web_socket.allow_local_pages = true;
   for (const std::string& origin : setup.tcp_ws_remove_origin) std::erase(origins, origin);
 }
 
@@ -109,9 +140,57 @@ void report_missing(const SetupOptions& setup, const NodeOptions& options) {
   }
 }
 
-bool keeps_its_id(const SetupOptions& setup) {
+bool has_kept_name(const SetupOptions& setup) {
   const bool is_local = setup.local_start_server || setup.local_start_client;
   return !setup.node.name.empty() && setup.node.id.is_any() && setup.local_enable && is_local;
+}
+
+// A certificate says who the node is; without one its name does.
+std::optional<KeptNodeId> choose_id(SetupOptions& setup) {
+  TlsOptions& tls = setup.node.tls;
+  apply_tls(setup, tls);
+  const bool is_certified = !tls.certificate_file.empty();
+  const bool is_kept = has_kept_name(setup);
+  std::optional<KeptNodeId> kept;
+  if (is_certified && setup.node.id.is_any()) setup.node.id = channel::certified_id(tls);
+  if (is_kept && is_certified) {
+    kept.emplace(setup.node.name, setup.node.id);
+  } else if (is_kept) {
+    kept.emplace(setup.node.name);
+    setup.node.id = kept->id();
+  }
+  if (!is_certified && setup.load_tls) {
+    if (setup.node.id.is_any()) {
+      throw Error(ErrorCode::invalid_configuration,
+                  "`load-tls` needs a certificate: give `tls-certificate`");
+    }
+    tls.certificate_file = certificate_of(setup.node.id);
+  }
+  setup.load_tls = !tls.certificate_file.empty();
+  setup.require_tls = tls.is_required;
+  return kept;
+}
+
+// One line: who can connect, and how to change that.
+std::string place_line(const SetupOptions& setup, std::uint16_t port) {
+  const std::string at = "port " + std::to_string(port);
+  const std::string how = setup.require_tls ? ", with TLS only" : "";
+  if (setup.tcp_listen_localhost) {
+    return "listens at " + at + " of the loopback interface" + how +
+           "; --robotraconteur-tcp-listen-localhost=false opens it to other machines";
+  }
+  return "listens at " + at + " of all interfaces" + how +
+         "; --robotraconteur-tcp-listen-localhost=true keeps it to this machine";
+}
+
+void report_place(const SetupOptions& setup, const NodeOptions& options, std::uint16_t port) {
+  const std::string line = place_line(setup, port);
+  if (setup.node.log) {
+    options.log(LogLevel::info, line);
+  } else if (setup.log_level != "error" && setup.log_level != "disable") {
+    const std::string whole = "robotraconteur: " + line + "\n";
+    std::fwrite(whole.data(), 1, whole.size(), stderr);
+  }
 }
 
 DiscoveryNetwork network_of(const SetupOptions& setup) {
@@ -134,24 +213,23 @@ NodeSetup::NodeSetup(SetupOptions options, int argc, const char* const* argv)
   state.options = std::move(options);
   SetupOptions& setup = state.options;
   state.arguments = setup.take(argc, argv);
-  if (keeps_its_id(setup)) {
-    state.kept_id.emplace(setup.node.name);
-    setup.node.id = state.kept_id->id();
-  }
+  state.kept_id = choose_id(setup);
   NodeOptions node_options = setup.node;
   if (!node_options.log) node_options.log = printing_log(setup.log_level);
   apply_limits(setup, node_options);
   apply_channels(setup, node_options);
   report_missing(setup, node_options);
   const auto log = node_options.log;
-  state.node.emplace(std::move(node_options));
+  state.node.emplace(node_options);
   Node& node = *state.node;
   setup.node.id = node.id();
 
   for (const ChannelRow& row : channels) {
     if (!row.is_wanted(setup)) continue;
     const std::uint16_t port = listen(node, row.url(setup), log);
-    if (row.is_tcp) state.port = port;
+    if (!row.is_tcp) continue;
+    state.port = port;
+    report_place(setup, node_options, port);
   }
   const Discovery discovery = node.discovery();
   const bool has_network = setup.tcp_ipv4_discovery || setup.tcp_ipv6_discovery;

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -58,6 +59,18 @@ bool take_level(SetupOptions& options, const std::string& value) {
   return std::find(levels.begin(), levels.end(), level) != levels.end();
 }
 
+std::optional<bool> truth_of(const std::string& value) {
+  if (value == "true" || value == "1") return true;
+  if (value == "false" || value == "0") return false;
+  return std::nullopt;
+}
+
+bool take_system_trust(SetupOptions& options, const std::string& value) {
+  const auto truth = truth_of(value);
+  if (truth) options.node.tls.trust_system_authorities = truth;
+  return truth.has_value();
+}
+
 using O = SetupOptions;
 const std::array flags = {
     Flag{"discovery-listening-enable", &O::discovery_listening_enable},
@@ -74,6 +87,7 @@ const std::array flags = {
     Flag{"tcp-start-server-sharer", &O::tcp_start_server_sharer},
     Flag{"tcp-ws-add-origin", &O::tcp_ws_add_origin},
     Flag{"tcp-ws-remove-origin", &O::tcp_ws_remove_origin},
+    Flag{"tcp-ws-allow-local-pages", &O::tcp_ws_allow_local_pages},
     Flag{"tcp-ipv4-discovery", &O::tcp_ipv4_discovery},
     Flag{"tcp-ipv6-discovery", &O::tcp_ipv6_discovery},
     Flag{"intra-start-server", &O::intra_start_server},
@@ -82,6 +96,11 @@ const std::array flags = {
     Flag{"disable-stringtable", &O::disable_stringtable},
     Flag{"load-tls", &O::load_tls},
     Flag{"require-tls", &O::require_tls},
+    Flag{"tls-certificate", &O::tls_certificate},
+    Flag{"tls-key", &O::tls_key},
+    Flag{"tls-authority", &O::tls_authority},
+    Flag{"tls-revocation", &O::tls_revocation},
+    Flag{"tls-trust-system-authorities", &take_system_trust},
     Flag{"nodeid", &take_id},
     Flag{"nodename", &take_name},
     Flag{"tcp-port", &take_port},
@@ -101,10 +120,9 @@ bool take_value(SetupOptions& options, const Flag& flag, const std::string& valu
     (options.*(*texts)).push_back(value);
     return true;
   }
-  const bool is_true = value == "true" || value == "1";
-  if (!is_true && value != "false" && value != "0") return false;
-  options.*std::get<Switch>(flag.target) = is_true;
-  return true;
+  const auto truth = truth_of(value);
+  if (truth) options.*std::get<Switch>(flag.target) = *truth;
+  return truth.has_value();
 }
 
 void take_named(SetupOptions& options, const Flag& flag, const std::string& written,

@@ -8,10 +8,13 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "rr/authority.hpp"
 #include "rr/url.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 
@@ -90,6 +93,7 @@ TEST_F(Setup, DefaultsAreThoseOfTheRole) {
   EXPECT_TRUE(server.intra_start_server && server.tcp_start_server_sharer);
   EXPECT_EQ(server.tcp_port, 6257);
   EXPECT_TRUE(SetupOptions::secure_server("a.node", 1).require_tls);
+  EXPECT_TRUE(client.tcp_listen_localhost && server.tcp_listen_localhost);
 }
 
 TEST_F(Setup, FlagsAreTakenOutOfTheArguments) {
@@ -128,6 +132,8 @@ TEST_F(Setup, EveryFlagThatUsersKnowIsTaken) {
                                    "tcp-start-server-sharer",
                                    "tcp-ipv4-discovery",
                                    "tcp-ipv6-discovery",
+                                   "tcp-ws-allow-local-pages",
+                                   "tls-trust-system-authorities",
                                    "intra-start-server",
                                    "disable-timeouts",
                                    "disable-message4",
@@ -147,6 +153,8 @@ TEST_F(Setup, EveryFlagThatUsersKnowIsTaken) {
   }
   for (const char* const flag :
        {"--robotraconteur-tcp-ws-remove-origin=https://b.example",
+        "--robotraconteur-tls-certificate=a.pem", "--robotraconteur-tls-key=a.key",
+        "--robotraconteur-tls-authority=ca.pem", "--robotraconteur-tls-revocation=revoked.pem",
         "--robotraconteur-local-tap-name=tap", "--robotraconteur-log-level=FATAL"}) {
     EXPECT_NO_THROW(taken(SetupOptions::client(), {flag})) << flag;
   }
@@ -234,6 +242,162 @@ TEST_F(Setup, TlsThatIsRequiredIsNotLeftOut) {
   SetupOptions options = quiet_server("a.node");
   options.load_tls = options.require_tls = true;  // and there is no certificate
   EXPECT_EQ(error_of([&] { NodeSetup setup(options); }).code(), ErrorCode::invalid_configuration);
+}
+
+TEST_F(Setup, AServerIsForThisMachineUnlessToldOtherwise) {
+  const auto hosts_of = [](const NodeSetup& setup) {
+    std::set<std::string> hosts;
+    for (const std::string& url : setup->urls("any")) {
+      if (url.starts_with("rr+tcp://")) hosts.insert(Url::parse(url).host);
+    }
+    return hosts;
+  };
+  SetupOptions options = SetupOptions::server("a.node", 0);
+  options.discovery_announce_enable = options.discovery_listening_enable = false;
+  const NodeSetup usual(options);
+  for (const std::string& host : hosts_of(usual)) {
+    EXPECT_TRUE(host == "127.0.0.1" || host == "::1") << host;
+  }
+  EXPECT_TRUE(hosts_of(usual).contains("127.0.0.1"));
+  options.node.name = "b.node";
+  const std::array arguments = {"program", "--robotraconteur-tcp-listen-localhost=false"};
+  const NodeSetup open(options, arguments.size(), arguments.data());
+  EXPECT_TRUE(hosts_of(open).contains("0.0.0.0"));
+  Node node;
+  const std::string port = std::to_string(node.listen_tcp(0));
+  for (const std::string& url : node.urls("any")) {
+    EXPECT_TRUE(url.starts_with("rr+tcp://127.0.0.1:" + port) ||
+                url.starts_with("rr+tcp://[::1]:" + port))
+        << url;
+  }
+}
+
+TEST_F(Setup, AServerSaysOnceWhereItListens) {
+  SetupOptions options = quiet_server("a.node");
+  std::string port;
+  ::testing::internal::CaptureStderr();
+  {
+    const NodeSetup setup(options);
+    port = std::to_string(setup.port());
+  }
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+            "robotraconteur: listens at port " + port +
+                " of the loopback interface; --robotraconteur-tcp-listen-localhost=false opens it "
+                "to other machines\n");
+  options.log_level = "error";
+  ::testing::internal::CaptureStderr();
+  { const NodeSetup setup(options); }
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+  std::vector<std::string> lines;
+  std::mutex mutex;
+  options.node.log = [&](LogLevel level, std::string_view text) {
+    if (!text.starts_with("listens at")) return;
+    EXPECT_EQ(level, LogLevel::info);
+    const std::lock_guard lock(mutex);
+    lines.emplace_back(text);
+  };
+  options.tcp_listen_localhost = false;
+  { const NodeSetup setup(options); }
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_NE(lines[0].find("of all interfaces; "), std::string::npos);
+}
+
+/// With an authority, and certificates of it.
+class SetupWithTls : public Setup {
+ protected:
+  SetupWithTls() : authority_(Authority::create((home_ / "ca").string())) {}
+
+  static Error failure_of(const SetupOptions& options) {
+    return error_of([&] { NodeSetup setup(options); });
+  }
+  static SetupOptions secure(const std::string& name) {
+    SetupOptions options = quiet_server(name);
+    options.load_tls = options.require_tls = true;
+    return options;
+  }
+  // That a client which trusts the authority reaches it, and only with TLS.
+  void expect_served(NodeSetup& setup) const {
+    setup->register_service("counter", std::make_shared<Counter>());
+    SetupOptions asking = SetupOptions::client();
+    asking.discovery_listening_enable = false;
+    asking.require_tls = true;
+    asking.tls_authority = {authority_.certificate_file()};
+    NodeSetup client(asking);
+    const std::string at = "127.0.0.1:" + std::to_string(setup.port()) + "/?service=counter";
+    EXPECT_EQ(client->connect<CounterStub>("rrs+tcp://" + at)->add(1, 2), 3);
+    Node plain;
+    EXPECT_NE(error_of([&] { plain.connect<CounterStub>("rr+tcp://" + at); }).code(),
+              ErrorCode::none);
+  }
+  Authority authority_;
+};
+
+TEST_F(SetupWithTls, LoadTlsWithoutACertificateIsAnError) {
+  for (SetupOptions options : {quiet_server("a.node"), SetupOptions::client()}) {
+    options.discovery_listening_enable = false;
+    options.load_tls = true;  // and does not require it
+    const Error error = failure_of(options);
+    EXPECT_EQ(error.code(), ErrorCode::invalid_configuration);
+    EXPECT_NE(error.message().find("tls-certificate"), std::string::npos) << error.message();
+  }
+  SetupOptions missing = secure("a.node");
+  missing.tls_certificate = (home_ / "none.pem").string();
+  EXPECT_EQ(failure_of(missing).code(), ErrorCode::invalid_configuration);
+}
+
+TEST_F(SetupWithTls, FlagsGiveTheCertificateAndItsNodeIsTheNode) {
+  {
+    const NodeSetup before(quiet_server("a.node"));  // whose id is kept from now on
+  }
+  const NodeId id = NodeId::random();
+  const std::string certificate = "--robotraconteur-tls-certificate=" + authority_.issue(id);
+  const std::string trusted = "--robotraconteur-tls-authority=" + authority_.certificate_file();
+  const std::array arguments = {"program", certificate.c_str(), trusted.c_str()};
+  SetupOptions options = SetupOptions::secure_server("a.node", 0);
+  options.discovery_announce_enable = options.discovery_listening_enable = false;
+  NodeSetup setup(options, arguments.size(), arguments.data());
+  EXPECT_EQ(setup.node().id(), id);
+  EXPECT_TRUE(setup.options().load_tls);
+  expect_served(setup);
+  // The name is its own all the same.
+  EXPECT_EQ(error_of([] { NodeSetup second(quiet_server("a.node")); }).code(),
+            ErrorCode::invalid_operation);
+}
+
+TEST_F(SetupWithTls, TheEnvironmentGivesTheCertificateToo) {
+  const NodeId id = NodeId::random();
+  set("ROBOTRACONTEUR_TLS_CERTIFICATE", authority_.issue(id));
+  set("ROBOTRACONTEUR_TLS_AUTHORITY", authority_.certificate_file());
+  NodeSetup setup(secure("a.node"));
+  EXPECT_EQ(setup.node().id(), id);
+  unsetenv("ROBOTRACONTEUR_TLS_CERTIFICATE");  // not for the client
+  expect_served(setup);
+}
+
+TEST_F(SetupWithTls, TheCertificateOfTheKeptIdIsFoundInTheUsersFolder) {
+  NodeId id;
+  {
+    const NodeSetup before(quiet_server("a.node"));
+    id = before.node().id();
+  }
+  fs::path pkcs12 = authority_.issue(id);
+  pkcs12.replace_extension(".p12");
+  const fs::path folder =
+      geteuid() == 0 ? home_ / "etc/robotraconteur/certificates" : home_ / "config/certificates";
+  fs::create_directories(folder);
+  fs::copy(pkcs12, folder / (id.text() + ".p12"));
+  NodeSetup setup(secure("a.node"));
+  EXPECT_EQ(setup.node().id(), id);
+  expect_served(setup);
+}
+
+TEST_F(SetupWithTls, AnIdThatIsNotTheCertificatesIsAnError) {
+  SetupOptions options = secure("a.node");
+  options.node.id = NodeId::random();
+  options.tls_certificate = authority_.issue(NodeId::random());
+  const Error error = failure_of(options);
+  EXPECT_EQ(error.code(), ErrorCode::invalid_configuration);
+  EXPECT_NE(error.message().find("the certificate is of node"), std::string::npos);
 }
 
 TEST_F(Setup, PublicLocalSocketsAreTheUsersOwnWhereThereIsNoFolder) {

@@ -32,7 +32,7 @@ class Answering final : public channel::Receiver {
   std::atomic<bool> is_closed{false};
 
   void take_answer(const Message& /*message*/, const Entry& /*entry*/, const MemoryRef& /*owner*/,
-                   channel::Laters& /*laters*/) override {}
+                   channel::DeferredCallbacks& /*deferred*/) override {}
   void handle(const Message& /*message*/, const Entry& /*first*/,
               const MemoryRef& /*owner*/) override {
     if (work) work();
@@ -44,7 +44,7 @@ class Answering final : public channel::Receiver {
     writer.message({}, 1);
     connection->reply(writer);
   }
-  void lost(const Error& /*why*/, channel::Laters& /*laters*/) override {}
+  void lost(const Error& /*why*/, channel::DeferredCallbacks& /*deferred*/) override {}
   void closed() override { is_closed = true; }
 };
 

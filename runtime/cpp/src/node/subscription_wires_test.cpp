@@ -167,8 +167,42 @@ class OtherWired final : public Skeleton {
   [[nodiscard]] WireServer<std::string> level() const { return {*this, other_members[0]}; }
 };
 
-TEST(WireSubscriptions, ReportAServiceWhoseValuesHaveAnotherType) {
+TEST(WireSubscriptions, ReportAServiceThatDeclaresAnotherType) {
   Node node;
+  Node offering;
+  offering.register_service("one", std::make_shared<OtherWired>());
+  const std::uint16_t port = offering.listen_tcp(0, "127.0.0.1");
+  auto subscription =
+      node.subscribe("rr+tcp://127.0.0.1:" + std::to_string(port) + "/?service=one");
+  subscription.use_types<WiredStub>();
+  auto level = subscription.subscribe_wire<double>("level");
+  ASSERT_TRUE(eventually([&] { return level.last_error().has_value(); }));
+  EXPECT_EQ(level.last_error()->code(), ErrorCode::data_type_mismatch);
+  EXPECT_THAT(level.last_error()->message(),
+              HasSubstr("is `wire double` here and `wire string` at the service"));
+  EXPECT_TRUE(level.clients().empty());
+}
+
+TEST(WireSubscriptions, ReportAServiceThatDeclaresAnotherTypeThanOneThatIsNamedAfterConnecting) {
+  Node node;
+  Node offering;
+  offering.register_service("one", std::make_shared<OtherWired>());
+  const std::uint16_t port = offering.listen_tcp(0, "127.0.0.1");
+  auto subscription =
+      node.subscribe("rr+tcp://127.0.0.1:" + std::to_string(port) + "/?service=one");
+  auto level = subscription.subscribe_wire<double>("level");
+  ASSERT_TRUE(eventually([&] { return level.last_error().has_value(); }));
+  EXPECT_NE(level.last_error()->code(), ErrorCode::data_type_mismatch);
+  subscription.use_types<WiredStub>();
+  EXPECT_TRUE(eventually([&] {
+    const auto why = level.last_error();
+    return why && why->code() == ErrorCode::data_type_mismatch;
+  }));
+  EXPECT_TRUE(level.clients().empty());
+}
+
+TEST(WireSubscriptions, ReportAServiceWhoseValuesHaveAnotherType) {
+  Node node({.definition_check = DefinitionCheck::off});
   Node offering;
   const auto other = std::make_shared<OtherWired>();
   offering.register_service("one", other);

@@ -279,7 +279,8 @@ class SlowDisk {
     if (thread_.joinable()) thread_.join();
     ::close(reader_);
   }
-  [[nodiscard]] const std::string& path() const { return path_; }
+  // The end that is written to, for whoever closes it.
+  [[nodiscard]] int open_writer() const { return ::open(path_.c_str(), O_WRONLY | O_CLOEXEC); }
   // Takes everything from now on, until the writer has closed.
   void take_all(const std::string& copy) {
     thread_ = std::thread([this, copy] {
@@ -304,7 +305,8 @@ TEST_F(Tapping, WhatDoesNotFitTheBufferIsLeftOutAndCounted) {
   constexpr std::uint64_t told = 400;
   {
     SlowDisk disk(folder_ / "disk");
-    Recorder tap(disk.path(), {.buffer_size = 4096, .when_full = RecorderOptions::WhenFull::drop});
+    Recorder tap(disk.open_writer(),
+                 {.buffer_size = 4096, .when_full = RecorderOptions::WhenFull::drop});
     const std::vector<std::byte> bytes(1000);
     const Piece piece{bytes.data(), bytes.size()};
     const std::uint32_t number = tap.opened({});
@@ -332,7 +334,7 @@ TEST_F(Tapping, WhatDoesNotFitTheBufferIsLeftOutAndCounted) {
 TEST_F(Tapping, OrIsWaitedFor) {
   {
     SlowDisk disk(folder_ / "disk");
-    Recorder tap(disk.path(), {.buffer_size = 4096});
+    Recorder tap(disk.open_writer(), {.buffer_size = 4096});
     const std::vector<std::byte> large(100'000);
     const std::vector<std::byte> small(1000);
     std::atomic<int> told = 0;
@@ -358,13 +360,13 @@ TEST_F(Tapping, OrIsWaitedFor) {
 
 TEST_F(Tapping, ADiskThatGoesAwayHoldsUpNobody) {
   auto disk = std::make_unique<SlowDisk>(folder_ / "disk");
-  Recorder tap(disk->path(), {.buffer_size = 4096});
+  Recorder tap(disk->open_writer(), {.buffer_size = 4096});
   disk.reset();
   const std::vector<std::byte> bytes(1000);
   const Piece piece{bytes.data(), bytes.size()};
   for (int i = 0; i < 100; ++i) tap.message(1, Direction::to_service, {&piece, 1});
   EXPECT_TRUE(eventually([&] { return !tap.failure().empty(); }));
-  EXPECT_THAT(tap.failure(), HasSubstr("disk"));
+  EXPECT_THAT(tap.failure(), HasSubstr("descriptor"));
   EXPECT_EQ(tap.message(1, Direction::to_service, {&piece, 1}), 0U);
   EXPECT_GT(tap.lost(), 0U);
 }

@@ -102,7 +102,7 @@ TEST_F(TlsRefuses, ANodeThatIsNotTheOneWanted) {
   EXPECT_THAT(refusal(client, url(port) + "&nodeid=" + other.text()), HasSubstr("Node not found"));
   // By the rules of the web there is no such question before.
   EXPECT_THAT(refusal(client, url(port, "rr+wss") + "&nodeid=" + other.text()),
-              HasSubstr("Node not found"));
+              HasSubstr("is of node " + server->id().text() + ", not of " + other.text()));
 }
 
 TEST_F(TlsRefuses, ToStartWithACertificateOfAnotherNode) {

@@ -68,10 +68,10 @@ class SirenStub : public virtual Stub {
  public:
   [[nodiscard]] const ObjectType& rr_object_type() const override { return rr_Siren; }
   auto work(const std::string& text) {
-    return rr_async_call<void>(siren_members[work_place], use_future, text);
+    return rr_async_call<void>(siren_members[work_place], {}, use_future, text);
   }
   auto stop(const std::string& text) {
-    return rr_async_call<void>(siren_members[stop_place], use_future, text);
+    return rr_async_call<void>(siren_members[stop_place], {}, use_future, text);
   }
 };
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 
 #include "runtime/cpp/src/node/testing/pair.hpp"
@@ -63,6 +64,43 @@ TEST_F(WebSocket, PagesOfAllowedOriginsOnlyMayConnect) {
     EXPECT_THAT(answer(request("Origin: " + std::string(origin) + "\r\n")), HasSubstr(" 403 "))
         << origin;
   }
+}
+
+class WebPages : public ::testing::Test {
+ protected:
+  // Whether a page of the origin may connect to a node with these options.
+  static bool is_let_in(const std::string& origin, const WebSocketOptions& options = {}) {
+    Node node(NodeOptions{.web_socket = options});
+    const RawSocket peer(node.listen_tcp(0, "127.0.0.1"));
+    peer.send(
+        "GET / HTTP/1.1\r\nHost: here\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n"
+        "Origin: " +
+        origin + "\r\n\r\n");
+    return peer.receive_until("\r\n\r\n").find(" 101 ") != std::string::npos;
+  }
+  static constexpr std::array local = {"null", "file://", "file:///home/alice/panel.html"};
+};
+
+TEST_F(WebPages, WithoutAnOriginOfTheWebMayNotConnect) {
+  for (const char* origin : local) EXPECT_FALSE(is_let_in(origin)) << origin;
+  for (const char* origin :
+       {"chrome-extension://abcdef", "moz-extension://abcdef", "http://robotraconteur.com",
+        "http://a.robotraconteur.com", "http://localhost", "http://127.0.0.1:8080",
+        "https://evil.example", "https://robotraconteur.com.evil.example", ""}) {
+    EXPECT_FALSE(is_let_in(origin)) << origin;
+  }
+  EXPECT_TRUE(is_let_in("https://robotraconteur.com"));
+  EXPECT_TRUE(is_let_in("https://panel.robotraconteur.com"));
+}
+
+TEST_F(WebPages, OfFilesMayConnectWhereTheNodeSaysSo) {
+  for (const char* origin : local) {
+    EXPECT_TRUE(is_let_in(origin, {.allow_local_pages = true})) << origin;
+  }
+  EXPECT_FALSE(is_let_in("chrome-extension://abcdef", {.allow_local_pages = true}));
+  EXPECT_FALSE(is_let_in("http://localhost", {.allow_local_pages = true}));
+  EXPECT_FALSE(is_let_in("https://robotraconteur.com", {.origins = {}}));
 }
 
 TEST_F(WebSocket, PingsAndTheEndAreAnswered) {

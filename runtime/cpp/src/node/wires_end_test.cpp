@@ -44,6 +44,7 @@ struct Ends {
 };
 
 TEST(WireEnds, AreClosedByTheClient) {
+  std::promise<void> late;
   WiredPair pair;
   auto wired = pair.connect();
   Ends ends(pair, wired);
@@ -51,16 +52,15 @@ TEST(WireEnds, AreClosedByTheClient) {
   EXPECT_TRUE(ends.have_ended());
   EXPECT_EQ(pair.object->level().connection_count(), 0U);
   EXPECT_EQ(error_of([&] { ends.service.set_in(1); }).code(), ErrorCode::invalid_operation);
-  std::promise<void> late;
   ends.client.on_closed([&] { late.set_value(); });
   EXPECT_EQ(late.get_future().wait_for(plenty), std::future_status::ready);
 }
 
 TEST(WireEnds, AreClosedByTheService) {
+  std::promise<double> last;
   WiredPair pair;
   auto wired = pair.connect();
   Ends ends(pair, wired);
-  std::promise<double> last;
   Subscription values = ends.client.on_in([&](double value, const TimeSpec&) {
     if (value == 2) last.set_value(value);
   });
@@ -211,8 +211,8 @@ TEST(WireEnds, AWaiterGoesOnWhenTheEndComes) {
 }
 
 TEST(WireEnds, ValuesArriveWhileAFunctionWaitsForThem) {
-  WiredPair pair;
   std::promise<bool> has_come;
+  WiredPair pair;
   auto wired = pair.connect();
   auto level = wired->level().connect();
   // The request of a client waits for a value of the same client.

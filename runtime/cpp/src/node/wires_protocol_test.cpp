@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <thread>
 #include <vector>
@@ -20,13 +21,17 @@ using std::chrono_literals::operator""ms;
 
 // The elements of a packet.
 template <class T>
-RawClient::Elements packet(std::int64_t seconds, T value) {
-  return [seconds, value = std::move(value)](Writer& writer) {
-    const TimeSpec time{.seconds = seconds, .nanoseconds = 0};
+RawClient::Elements packet(TimeSpec time, T value) {
+  return [time, value = std::move(value)](Writer& writer) {
     type_of<T>.write(writer, "packet", &value);
     type_of<TimeSpec>.write(writer, "packettime", &time);
     return 2U;
   };
+}
+
+template <class T>
+RawClient::Elements packet(std::int64_t seconds, T value) {
+  return packet(TimeSpec{.seconds = seconds, .nanoseconds = 0}, std::move(value));
 }
 
 RawClient::Elements without_time(double value) {
@@ -69,6 +74,26 @@ TEST_F(WireProtocol, PacketsThatDoNotCountAreDroppedInSilence) {
   client_.send(EntryType::wire_packet, "wired", "reading", packet(1, 1.0));
   EXPECT_EQ(last_level(), 12);
   EXPECT_FALSE(pair_.object->reading().out());
+}
+
+// A program may rely on nanoseconds that are less than a second (rr/time_spec.hpp).
+TEST_F(WireProtocol, TimesOfOthersHaveSoundNanoseconds) {
+  constexpr std::int64_t first = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t last = std::numeric_limits<std::int64_t>::max();
+  const std::pair<TimeSpec, TimeSpec> times[] = {{{first, -1}, {first, 0}},
+                                                 {{-5, -1}, {-6, 999'999'999}},
+                                                 {{5, -2'147'483'647}, {2, 852'516'353}},
+                                                 {{6, 2'147'483'647}, {8, 147'483'647}},
+                                                 {{9, 1}, {9, 1}},
+                                                 {{last, 1'000'000'000}, {last, 999'999'999}}};
+  EXPECT_EQ(client_.ask(EntryType::wire_connect_req, "wired", "level").error, 0);
+  for (const auto& [sent, received] : times) {
+    client_.send(EntryType::wire_packet, "wired", "level", packet(sent, 1.0));
+    EXPECT_EQ(last_level(), 1.0);
+    const auto value = pair_.object->level().out();
+    ASSERT_TRUE(value);
+    EXPECT_EQ(value->time, received) << sent.seconds << " " << sent.nanoseconds;
+  }
 }
 
 TEST_F(WireProtocol, PacketsToNobodyAreAnsweredWithAnError) {

@@ -213,10 +213,10 @@ TEST(Wires, FunctionsGetTheValueThatIsThereAndThoseThatCome) {
 }
 
 TEST(Wires, ASlowFunctionGetsTheNewestValueAndHoldsUpNothing) {
+  std::promise<void> go_on;
   WiredPair pair;
   auto wired = pair.connect();
   auto level = wired->level().connect();
-  std::promise<void> go_on;
   std::shared_future<void> gone_on = go_on.get_future().share();
   std::mutex mutex;
   std::vector<double> seen;
@@ -241,10 +241,10 @@ TEST(Wires, ASlowFunctionGetsTheNewestValueAndHoldsUpNothing) {
 }
 
 TEST(Wires, AFunctionMayUseTheWireAndEndItself) {
+  std::promise<double> seen;
   WiredPair pair;
   auto wired = pair.connect();
   auto level = wired->level().connect();
-  std::promise<double> seen;
   Subscription values;
   std::mutex mutex;
   {

@@ -5,6 +5,8 @@
 #include <random>
 #include <utility>
 
+#include "rr/printable.hpp"
+
 namespace rr::serial {
 
 using namespace std::chrono_literals;
@@ -18,18 +20,18 @@ constexpr Time text_patience = 2s;
 /// Between attempts to open a port, or to find a board at one.
 constexpr Time pause = 200ms;
 constexpr Time silence = 1s;
+/// Bytes of what a board says about a refusal.
+constexpr std::size_t longest_reason = 1000;
 
 const Outcome no_board{.kind = Outcome::Kind::reset};
 
 }  // namespace
 
-Board::Board(std::string path, std::uint32_t baud, Functions functions)
+Board::Board(const std::string& path, std::uint32_t baud, Functions functions)
     : functions_(std::move(functions)),
-      port_(std::move(path), baud),
-      link_(baud),
-      session_(static_cast<std::uint16_t>(std::random_device{}())) {
-  Port::check_rate(baud);
-}
+      port_(Port::to(path, baud)),
+      link_(port_->timing()),
+      session_(static_cast<std::uint16_t>(std::random_device{}())) {}
 
 Board::~Board() { stop(); }
 
@@ -39,7 +41,7 @@ void Board::start() {
 
 void Board::stop() {
   stops_ = true;
-  port_.wake();
+  port_->wake();
   if (thread_.joinable()) thread_.join();
   fail_jobs();
 }
@@ -54,7 +56,7 @@ void Board::ask(Kind kind, std::vector<std::uint8_t> body, std::chrono::millisec
     const std::lock_guard lock(mutex_);
     if (is_connected_ && !stops_ && jobs_.size() < most_jobs) {
       jobs_.push_back({kind, std::move(body), patience, std::move(done), false, client});
-      port_.wake();
+      port_->wake();
       return;
     }
   }
@@ -68,7 +70,7 @@ Outcome Board::ask(Kind kind, std::vector<std::uint8_t> body, std::chrono::milli
   return outcome.get();
 }
 
-void Board::set_wire(std::vector<std::uint8_t> body) {
+void Board::set_wire(std::vector<std::uint8_t> body, Done done) {
   const std::lock_guard lock(mutex_);
   if (!is_connected_ || stops_) return;
   for (Job& job : jobs_) {
@@ -76,24 +78,24 @@ void Board::set_wire(std::vector<std::uint8_t> body) {
     job.body = std::move(body);
     return;
   }
-  jobs_.push_back({Kind::Packet, std::move(body), 2s, [](const Outcome&) {}, true, 0});
-  port_.wake();
+  jobs_.push_back({Kind::Packet, std::move(body), 2s, std::move(done), true, 0});
+  port_->wake();
 }
 
 void Board::run() {
   while (!stops_) {
-    if (!port_.is_open()) {
-      const std::string why = port_.open();
+    if (!port_->is_open()) {
+      const std::string why = port_->open([this] { return stops_.load(); });
       if (!why.empty()) {
         lose("its port cannot be opened");
-        functions_.failed({Failure::Kind::port, path() + " " + why});
-        (void)port_.read(pause);
+        if (!stops_) functions_.failed({Failure::Kind::port, path() + " " + why});
+        (void)port_->read(pause);
         continue;
       }
     }
     if (!link_.has_session()) {
       if (had_session_) lose("it has been reset, or does not answer");
-      if (!connect()) (void)port_.read(pause);
+      if (!connect()) (void)port_->read(pause);
       continue;
     }
     serve_one();
@@ -125,7 +127,13 @@ bool Board::connect() {
                                              " of the protocol, and not " +
                                              std::to_string(protocolVersion));
   }
-  if (hello.kind != Outcome::Kind::reply) return fail(Failure::Kind::silent, "does not answer");
+  if (hello.kind != Outcome::Kind::reply) {
+    if (port_->is_renewed() && !port_->is_open()) {
+      return fail(Failure::Kind::silent, "has closed the connection: it serves one host at a time");
+    }
+    if (port_->is_renewed()) port_->close();
+    return fail(Failure::Kind::silent, "does not answer");
+  }
   const bool is_new = texts_.texts.empty() || texts_.hash != link_.facts().hash;
   if (is_new && !read_texts()) return fail(Failure::Kind::silent, "has told no whole definition");
   had_session_ = true;
@@ -139,22 +147,27 @@ bool Board::fail(Failure::Kind kind, const std::string& what) {
   return false;
 }
 
+std::optional<std::string> Board::read_text(std::uint8_t number, std::size_t longest) {
+  std::string text;
+  for (;;) {
+    const std::size_t at = text.size();
+    const Outcome outcome =
+        exchange(Kind::Text,
+                 {number, static_cast<std::uint8_t>(at & 0xFF), static_cast<std::uint8_t>(at >> 8)},
+                 text_patience);
+    if (outcome.kind != Outcome::Kind::reply || outcome.body.size() < 3) return std::nullopt;
+    if (outcome.body.size() == 3) return text;
+    text.append(outcome.body.begin() + 3, outcome.body.end());
+    if (text.size() > longest) return std::nullopt;
+  }
+}
+
 bool Board::read_texts() {
   BoardTexts read{.hash = link_.facts().hash, .texts = {}};
   for (std::uint8_t number = 0; number < link_.facts().texts; ++number) {
-    std::string text;
-    for (;;) {
-      const std::size_t at = text.size();
-      const Outcome outcome = exchange(
-          Kind::Text,
-          {number, static_cast<std::uint8_t>(at & 0xFF), static_cast<std::uint8_t>(at >> 8)},
-          text_patience);
-      if (outcome.kind != Outcome::Kind::reply || outcome.body.size() < 3) return false;
-      if (outcome.body.size() == 3) break;
-      text.append(outcome.body.begin() + 3, outcome.body.end());
-      if (text.size() > 0xFFFF) return false;
-    }
-    read.texts.push_back(std::move(text));
+    std::optional<std::string> text = read_text(number, 0xFFFF);
+    if (!text) return false;
+    read.texts.push_back(std::move(*text));
   }
   std::uint64_t hash = 0xCBF29CE484222325;
   for (const std::string& text : read.texts) {
@@ -167,10 +180,9 @@ bool Board::read_texts() {
   return true;
 }
 
-Outcome Board::exchange(Kind kind, std::vector<std::uint8_t> body, Time patience,
-                        std::uint32_t client) {
+Outcome Board::exchange(Kind kind, std::vector<std::uint8_t> body, Time patience) {
   link_.request(kind, std::move(body), now(), patience);
-  clients_[link_.sequence()] = client;
+  clients_[link_.sequence()] = client_;
   return await();
 }
 
@@ -184,11 +196,11 @@ Outcome Board::await() {
 
 void Board::pass(Time limit) {
   const std::vector<std::uint8_t> out = link_.take_output();
-  if (!out.empty() && !port_.write(out)) {
+  if (!out.empty() && !port_->write(out)) {
     link_.lose_session();
     return;
   }
-  const auto in = port_.read(limit);
+  const auto in = port_->read(limit);
   if (!in) {
     link_.lose_session();
     return;
@@ -200,7 +212,26 @@ void Board::pass(Time limit) {
 
 // What comes behind an answer waits until that has been passed on.
 void Board::tell_unasked() {
+  if (holds_unasked_) return;
   for (const Unasked& one : link_.take_unasked()) functions_.unasked(one);
+}
+
+Outcome Board::serve(Job& job) {
+  const std::size_t longest = link_.facts().longest_request;
+  if (job.body.size() > longest) {
+    // The board would drop it without a word.
+    return {.kind = Outcome::Kind::too_long,
+            .reason = "the request has " + std::to_string(job.body.size()) +
+                      " bytes, and the board takes " + std::to_string(longest) + " at most"};
+  }
+  if (job.client != 0) client_ = job.client;
+  Outcome outcome = exchange(job.kind, std::move(job.body), job.patience);
+  if (!outcome.has_reason) return outcome;
+  // What the board says by itself meanwhile comes behind the answer.
+  holds_unasked_ = true;
+  outcome.reason = printable(read_text(reasonText, longest_reason).value_or(""), longest_reason);
+  holds_unasked_ = false;
+  return outcome;
 }
 
 void Board::serve_one() {
@@ -215,17 +246,16 @@ void Board::serve_one() {
     }
   }
   if (has_job) {
-    const Outcome outcome = exchange(job.kind, std::move(job.body), job.patience, job.client);
-    job.done(outcome);
+    job.done(serve(job));
     tell_unasked();
   } else if (now() - link_.heard() > silence) {
-    (void)exchange(Kind::Ping, {}, silence);
+    (void)exchange(Kind::Ping, {}, port_->timing().silence);
   } else {
     pass(silence);
   }
   // What was sent meanwhile has to be acknowledged.
   const std::vector<std::uint8_t> out = link_.take_output();
-  if (!out.empty() && !port_.write(out)) link_.lose_session();
+  if (!out.empty() && !port_->write(out)) link_.lose_session();
 }
 
 }  // namespace rr::serial

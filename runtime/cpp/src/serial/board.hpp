@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -53,7 +54,7 @@ class Board {
   /// a reset.
   using Done = Function<void(const Outcome&)>;
 
-  Board(std::string path, std::uint32_t baud, Functions functions);
+  Board(const std::string& path, std::uint32_t baud, Functions functions);
   ~Board();
   Board(const Board&) = delete;
   Board& operator=(const Board&) = delete;
@@ -67,11 +68,12 @@ class Board {
   /// The same, waiting. Not on the board's own thread.
   Outcome ask(Kind kind, std::vector<std::uint8_t> body, std::chrono::milliseconds patience);
   /// A value for a wire: takes the place of one that still waits.
-  void set_wire(std::vector<std::uint8_t> body);
-  /// The client whose request had this number: what a callback refers to. For the functions.
+  void set_wire(std::vector<std::uint8_t> body, Done done);
+  /// The client whose request had this number, or was the last one before it: what a callback
+  /// refers to. For the functions.
   [[nodiscard]] std::uint32_t client_of(std::uint8_t sequence) const { return clients_[sequence]; }
   [[nodiscard]] bool is_connected() const { return is_connected_; }
-  [[nodiscard]] const std::string& path() const { return port_.path(); }
+  [[nodiscard]] const std::string& path() const { return port_->path(); }
 
  private:
   struct Job {
@@ -87,8 +89,9 @@ class Board {
   bool connect();
   bool fail(Failure::Kind kind, const std::string& what);
   bool read_texts();
-  Outcome exchange(Kind kind, std::vector<std::uint8_t> body, Time patience,
-                   std::uint32_t client = 0);
+  std::optional<std::string> read_text(std::uint8_t number, std::size_t longest);
+  Outcome serve(Job& job);
+  Outcome exchange(Kind kind, std::vector<std::uint8_t> body, Time patience);
   Outcome await();
   void pass(Time limit);
   void tell_unasked();
@@ -98,12 +101,14 @@ class Board {
   [[nodiscard]] Time now() const;
 
   const Functions functions_;
-  Port port_;
+  const std::unique_ptr<Port> port_;
   HostLink link_;
   BoardTexts texts_;
   std::array<std::uint32_t, 256> clients_{};
+  std::uint32_t client_ = 0;  // whose request was the last
   std::uint16_t session_;
   bool had_session_ = false;
+  bool holds_unasked_ = false;
   std::atomic<bool> is_connected_ = false;
   std::atomic<bool> stops_ = false;
 

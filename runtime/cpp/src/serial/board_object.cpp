@@ -58,15 +58,20 @@ void BoardObject::rr_dispatch(std::size_t member, Request& request) {
     request.read_value(&value);
     pack(*table.type, value, body);
   }
-  if (body.size() > bodyLimit) throw Error(ErrorCode::out_of_range, "too long for a board");
+  if (body.size() > bodyLimit) {
+    throw Error(
+        ErrorCode::buffer_limit_violation,
+        std::string(wire_of(member).name) + ": the values are longer than a message to a board");
+  }
   const dynamic::TypeNode* const type = kind == Kind::Set ? nullptr : table.type;
   // Function has to be copied; the reply cannot.
   const auto reply = std::make_shared<ReplyHandle>(request.defer());
   service_->ask(
       kind, std::move(body),
-      [self = shared_from_this(), reply, type](const Outcome& outcome) {
+      [self = shared_from_this(), reply, type,
+       name = wire_of(member).name](const Outcome& outcome) {
         if (outcome.kind != Outcome::Kind::reply) {
-          reply->fail(as_pointer(self->service_->error_of(outcome)));
+          reply->fail(as_pointer(self->service_->error_of(name, outcome)));
           return;
         }
         try {
@@ -94,7 +99,7 @@ std::shared_ptr<Skeleton> BoardObject::rr_child(std::size_t member, const Object
     }
   }
   const Outcome outcome = service_->ask(Kind::Child, std::move(body));
-  if (outcome.kind != Outcome::Kind::reply) throw service_->error_of(outcome);
+  if (outcome.kind != Outcome::Kind::reply) throw service_->error_of(wire_of(member).name, outcome);
   if (outcome.body.size() != 2) {
     throw Error(ErrorCode::data_serialization_error, "the board has sent no object");
   }
@@ -103,7 +108,7 @@ std::shared_ptr<Skeleton> BoardObject::rr_child(std::size_t member, const Object
 
 Value BoardObject::peek(std::size_t member) {
   const Outcome outcome = service_->ask(Kind::Get, body_of(member));
-  if (outcome.kind != Outcome::Kind::reply) throw service_->error_of(outcome);
+  if (outcome.kind != Outcome::Kind::reply) throw service_->error_of(wire_of(member).name, outcome);
   return only_value(*table_.members[member].type, std::span(outcome.body).subspan(1));
 }
 
@@ -135,7 +140,9 @@ void BoardObject::serve_wire(std::size_t member) {
       if (!self) return;
       Body body = self->body_of(member);
       pack(*self->table_.members[member].type, value, body);
-      self->service_->set_wire(std::move(body));
+      self->service_->set_wire(std::move(body), [self, member](const Outcome& outcome) {
+        self->service_->report_lost("a value of a wire", self->wire_of(member).name, outcome);
+      });
     });
   }
 }
@@ -160,7 +167,9 @@ void BoardObject::serve_pipe(std::size_t member) {
          if (!object) return;
          Body body = object->body_of(member);
          pack(*object->table_.members[member].type, value, body);
-         object->service_->ask(Kind::Packet, std::move(body), [](const Outcome&) {});
+         object->service_->ask(Kind::Packet, std::move(body), [object, member](const Outcome& one) {
+           object->service_->report_lost("a packet", object->wire_of(member).name, one);
+         });
        })
         .detach();
   });
@@ -214,9 +223,9 @@ Value BoardObject::call_back_with(std::size_t member, const dynamic::List& rest,
       return call_back_with(member, rest, client, before..., rest[sizeof...(Arguments)]);
     }
     if (table_.members[member].type != nullptr) {
-      return rr_call_back<Value>(wire_of(member), client, before...);
+      return rr_call_back<Value>(wire_of(member), {}, client, before...);
     }
-    rr_call_back<void>(wire_of(member), client, before...);
+    rr_call_back<void>(wire_of(member), {}, client, before...);
     return {};
   } else {
     throw Error(ErrorCode::not_implemented_error, "a callback with too many parameters");
@@ -238,10 +247,13 @@ void BoardObject::answer_callback(std::size_t member, const dynamic::List& argum
     if (table.type != nullptr) pack(*table.type, result, body);
   } catch (const Error& error) {
     body.resize(2);
-    const auto code = static_cast<unsigned>(error.code());
-    body.push_back(static_cast<std::uint8_t>(code < firstException ? code : 100));
+    body.push_back(code_of(error, service_->exceptions()));
   }
-  service_->ask(Kind::Answer, std::move(body), [](const Outcome&) {});
+  service_->ask(Kind::Answer, std::move(body),
+                [self = shared_from_this(), member](const Outcome& outcome) {
+                  self->service_->report_lost("the answer to a callback",
+                                              self->wire_of(member).name, outcome);
+                });
 }
 
 }  // namespace rr::serial

@@ -7,6 +7,7 @@
 #include "rr/serial.hpp"
 #include "runtime/cpp/src/serial/bridged_board.hpp"
 #include "runtime/cpp/src/serial/port.hpp"
+#include "runtime/cpp/src/serial/tcp_port.hpp"
 
 namespace rr {
 struct BoardBridge::State {
@@ -21,15 +22,20 @@ struct BoardBridge::State {
 BoardPlace BoardPlace::parse(const std::string& text) {
   constexpr std::string_view scheme = "rr+serial://";
   BoardPlace place;
-  std::string rest = text.starts_with(scheme) ? text.substr(scheme.size()) : text;
+  const bool is_url = text.starts_with(scheme);
+  std::string rest = is_url ? text.substr(scheme.size()) : text;
   const std::size_t question = rest.find('?');
   place.path = rest.substr(0, question);
+  // A URL with a host, and nothing behind it, leads there; the path of a port begins with `/`.
+  if (is_url && !place.path.empty() && place.path.front() != '/') place.path.insert(0, "tcp://");
+  const bool is_tcp = serial::is_tcp_place(place.path);
+  if (is_tcp && place.path.ends_with('/') && !place.path.ends_with("//")) place.path.pop_back();
   rest = question == std::string::npos ? "" : rest.substr(question + 1);
   while (!rest.empty()) {
     const std::size_t end = std::min(rest.find('&'), rest.size());
     const std::string part = rest.substr(0, end);
     rest.erase(0, end + 1);
-    if (part.starts_with("baud=")) {
+    if (part.starts_with("baud=") && !is_tcp) {
       const char* const last = part.data() + part.size();
       const auto [at, error] = std::from_chars(part.data() + 5, last, place.baud);
       if (error == std::errc() && at == last) continue;
@@ -42,7 +48,7 @@ BoardPlace BoardPlace::parse(const std::string& text) {
     throw Error(ErrorCode::invalid_argument, "`" + text + "`: `" + part + "` is not understood");
   }
   if (place.path.empty()) throw Error(ErrorCode::invalid_argument, "`" + text + "` has no path");
-  serial::Port::check_rate(place.baud);
+  (void)serial::Port::to(place.path, place.baud);
   return place;
 }
 
@@ -52,7 +58,6 @@ BoardBridge::BoardBridge(Node& node, Log log)
 BoardBridge::~BoardBridge() = default;
 
 void BoardBridge::add(const BoardPlace& place) {
-  serial::Port::check_rate(place.baud);
   State* const state = state_.get();
   const auto is_met = std::make_shared<bool>(false);
   state->boards.push_back(std::make_unique<serial::BridgedBoard>(

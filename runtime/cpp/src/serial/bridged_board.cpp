@@ -56,7 +56,8 @@ void BridgedBoard::on_failed(const Board::Failure& failure) {
 
 void BridgedBoard::offer(const BoardTexts& texts) {
   withdraw();
-  const auto service = std::make_shared<BoardService>(board_, texts, node_);
+  const auto service = std::make_shared<BoardService>(
+      board_, texts, node_, [this](const std::string& what) { say(what); });
   name_ = place_.name.empty() ? service->name() : place_.name;
   offered_ = node_.register_service(name_, service->root());
   service_ = service;

@@ -62,11 +62,18 @@ class SerialChannel final : public MessageChannel {
 
  private:
   static BoardPlace place_of(const Url& url) {
-    if (!url.host.empty() || url.path.empty()) {
+    const bool has_path = !url.path.empty() && url.path != "/";
+    if (url.host.empty() != has_path) {
       throw Error(ErrorCode::invalid_argument,
-                  "a URL with `rr+serial` has the path of a port: `rr+serial:///dev/ttyUSB0`");
+                  "a URL with `rr+serial` has the path of a port, `rr+serial:///dev/ttyUSB0`, or "
+                  "the host and port of a board, `rr+serial://192.168.1.20:4000`");
     }
-    BoardPlace place = BoardPlace::parse(url.path + "?" + url.query);
+    const bool is_six = url.host.find(':') != std::string::npos;
+    BoardPlace place =
+        BoardPlace::parse((has_path ? url.path
+                                    : "tcp://" + (is_six ? "[" + url.host + "]" : url.host) + ":" +
+                                          std::to_string(url.port)) +
+                          "?" + url.query);
     // The service is asked for by its name, and keeps the one that the sketch gives it.
     place.name.clear();
     return place;

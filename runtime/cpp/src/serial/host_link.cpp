@@ -2,7 +2,6 @@
 #include "runtime/cpp/src/serial/host_link.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 namespace rr::serial {
@@ -10,8 +9,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// What a board may need for an answer, besides the line.
-constexpr std::array<Time, 3> allowances{10ms, 20ms, 40ms};
 constexpr std::size_t hello_body = 14;
 
 /// Whether the body of a reply begins with the member of the request.
@@ -22,7 +19,7 @@ std::uint8_t low_byte(std::uint64_t number) { return static_cast<std::uint8_t>(n
 }  // namespace
 
 Time HostLink::on_wire(std::size_t bytes) const {
-  return Time(static_cast<std::int64_t>(bytes) * 10'000'000 / baud_);
+  return Time(static_cast<std::int64_t>(bytes) * 10'000'000 / timing_.baud);
 }
 
 void HostLink::begin_session(std::uint16_t session, Time now, Time patience) {
@@ -30,7 +27,7 @@ void HostLink::begin_session(std::uint16_t session, Time now, Time patience) {
   session_ = session;
   sequence_ = 0;
   // A board waits until a frame of the largest size could be there and acknowledged.
-  const auto board = (2 * on_wire(80) + 20ms) / 1ms;
+  const auto board = 2 * (on_wire(80) + timing_.allowances[0]) / 1ms;
   const auto milliseconds = static_cast<std::uint64_t>(std::min<std::int64_t>(board, 0xFFFF));
   start({Kind::Hello,
          0,
@@ -58,7 +55,7 @@ void HostLink::send(Time now) {
   output_.insert(output_.end(), bytes.begin(), bytes.end());
   const std::size_t answer = std::max<std::size_t>(facts_.longest_reply, bodyMinimum) + 8U;
   again_ = now + on_wire(bytes.size() + answer) +
-           allowances[std::min<std::size_t>(attempts_, allowances.size() - 1)];
+           timing_.allowances[std::min<std::size_t>(attempts_, timing_.allowances.size() - 1)];
   if (attempts_ != 0) ++repeated_;
   ++attempts_;
 }
@@ -145,13 +142,15 @@ void HostLink::handle_answer(const Frame& frame) {
     return;
   }
   const bool is_error = frame.kind == Kind::Error;
-  if (is_error ? frame.body.size() != 2 : has_member(under_way_.kind) && frame.body.empty()) return;
+  if (is_error ? frame.body.size() < 2 : has_member(under_way_.kind) && frame.body.empty()) return;
   if (has_member(under_way_.kind) && under_way_.body.size() >= 2 &&
       frame.body.front() != under_way_.body[1]) {
     return;
   }
   if (is_error) {
-    finish({.kind = Outcome::Kind::error, .code = frame.body[1]});
+    finish({.kind = Outcome::Kind::error,
+            .code = frame.body[1],
+            .has_reason = frame.body.size() > 2 && frame.body[2] != 0});
   } else {
     finish({.kind = Outcome::Kind::reply, .body = frame.body});
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -19,6 +20,30 @@ namespace rr::serial {
 /// Since any beginning.
 using Time = std::chrono::microseconds;
 
+/// How quick a line and the board at its end are.
+struct LinkTiming {
+  std::uint32_t baud = 0;
+  /// What a board may need for an answer besides the line: the first time, the second, and each
+  /// further one. Then the request is sent again.
+  std::array<Time, 3> allowances{};
+  /// How long a board may be silent when it is asked whether it is there.
+  Time silence{};
+
+  static LinkTiming of_serial(std::uint32_t baud) {
+    using std::chrono::milliseconds;
+    return {.baud = baud,
+            .allowances = {milliseconds(10), milliseconds(20), milliseconds(40)},
+            .silence = milliseconds(1000)};
+  }
+  /// TCP loses nothing and sends again by itself, but a radio may stop for a moment.
+  static LinkTiming of_tcp() {
+    using std::chrono::milliseconds;
+    return {.baud = 1'000'000,
+            .allowances = {milliseconds(200), milliseconds(400), milliseconds(800)},
+            .silence = milliseconds(3000)};
+  }
+};
+
 /// What a board says in answer to Hello.
 struct BoardFacts {
   std::uint8_t longest_request = 0;
@@ -30,15 +55,20 @@ struct BoardFacts {
 /// How a request ended.
 struct Outcome {
   enum class Kind {
-    reply,    ///< `body` is that of the Reply
-    error,    ///< `code` is that of the Error
-    reset,    ///< the board has begun anew: whether it was carried out is not known
-    timeout,  ///< no answer: likewise
-    version,  ///< of Hello: the board speaks version `code`
+    reply,     ///< `body` is that of the Reply
+    error,     ///< `code` is that of the Error
+    reset,     ///< the board has begun anew: whether it was carried out is not known
+    timeout,   ///< no answer: likewise
+    version,   ///< of Hello: the board speaks version `code`
+    too_long,  ///< never sent: the board takes shorter bodies; `reason` says how long
   };
   Kind kind{};
   std::uint8_t code = 0;
   std::vector<std::uint8_t> body{};
+  /// Of an error: whether the board can say why. Text `reasonText` does, until the next request for
+  /// a member.
+  bool has_reason = false;
+  std::string reason{};  ///< of an error or too_long, in words; may be empty
 };
 
 /// An event, a packet, a callback or a value of a wire.
@@ -49,7 +79,8 @@ struct Unasked {
 
 class HostLink {
  public:
-  explicit HostLink(std::uint32_t baud) : baud_(baud) {}
+  explicit HostLink(std::uint32_t baud) : HostLink(LinkTiming::of_serial(baud)) {}
+  explicit HostLink(const LinkTiming& timing) : timing_(timing) {}
 
   /// Begins a session; its outcome is that of a request. `session` is not 0 and not the last one.
   void begin_session(std::uint16_t session, Time now, Time patience);
@@ -94,7 +125,7 @@ class HostLink {
   void handle_unasked(const Frame& frame);
   [[nodiscard]] Time on_wire(std::size_t bytes) const;
 
-  std::uint32_t baud_;
+  const LinkTiming timing_;
   FrameFinder finder_;
   std::vector<std::uint8_t> output_;
   std::vector<Unasked> unasked_;

@@ -26,7 +26,8 @@ constexpr std::size_t longest = 246;
 }
 
 void put_count(const TypeNode& type, std::size_t count, std::vector<std::uint8_t>& bytes) {
-  if (count > longest) refuse(ErrorCode::out_of_range, type, "longer than a board can take");
+  if (count > longest)
+    refuse(ErrorCode::buffer_limit_violation, type, "longer than a message to a board");
   bytes.push_back(static_cast<std::uint8_t>(count));
 }
 
@@ -84,7 +85,8 @@ void pack_array(const TypeNode& type, const Value& value, std::vector<std::uint8
   const dynamic::ArrayBounds& bounds = static_cast<const dynamic::ArrayNode&>(type).bounds();
   const bool is_fixed = !bounds.shape.empty() || bounds.minimum == bounds.maximum;
   if (!is_fixed) put_count(type, value.size(), bytes);
-  if (value.size() > longest) refuse(ErrorCode::out_of_range, type, "longer than a frame");
+  if (value.size() > longest)
+    refuse(ErrorCode::buffer_limit_violation, type, "longer than a message to a board");
   for (const Value& item : value.items()) pack(item_of(type), item, bytes);
 }
 

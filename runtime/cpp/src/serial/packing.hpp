@@ -11,7 +11,7 @@
 namespace rr::serial {
 
 /// Appends a value of exactly this type. Throws rr::Error: null_value for a struct that is null,
-/// out_of_range for what is longer than a frame can say.
+/// buffer_limit_violation for what is longer than a frame can say.
 void pack(const dynamic::TypeNode& type, const dynamic::Value& value,
           std::vector<std::uint8_t>& bytes);
 

@@ -25,8 +25,9 @@ std::vector<std::string> exceptions_of(const std::string& text, const std::strin
 
 }  // namespace
 
-BoardService::BoardService(std::shared_ptr<Board> board, const BoardTexts& texts, Node& node)
-    : board_(std::move(board)), node_(node) {
+BoardService::BoardService(std::shared_ptr<Board> board, const BoardTexts& texts, Node& node,
+                           Log log)
+    : board_(std::move(board)), node_(node), log_(std::move(log)) {
   if (texts.texts.size() < 2) {
     throw Error(ErrorCode::service_definition_error, "the board has no definition");
   }
@@ -90,9 +91,9 @@ Outcome BoardService::ask(Kind kind, std::vector<std::uint8_t> body) {
   return board->ask(kind, std::move(body), patience);
 }
 
-void BoardService::set_wire(std::vector<std::uint8_t> body) {
+void BoardService::set_wire(std::vector<std::uint8_t> body, Board::Done done) {
   const std::lock_guard lock(mutex_);
-  if (board_ != nullptr) board_->set_wire(std::move(body));
+  if (board_ != nullptr) board_->set_wire(std::move(body), std::move(done));
 }
 
 void BoardService::open(std::uint8_t object, std::uint8_t member, bool opens) {
@@ -129,20 +130,16 @@ std::uint32_t BoardService::client_of(std::uint8_t sequence) {
   return board_ == nullptr ? 0 : board_->client_of(sequence);
 }
 
-Error BoardService::error_of(const Outcome& outcome) const {
-  if (outcome.kind == Outcome::Kind::timeout) {
-    return {ErrorCode::request_timeout, "the board has not answered"};
+void BoardService::report_lost(const std::string& what, std::string_view member,
+                               const Outcome& outcome) {
+  // A reset is told by the board itself. All other outcomes come on its thread, as does the log.
+  if (outcome.kind == Outcome::Kind::reply || outcome.kind == Outcome::Kind::reset) return;
+  const std::string text = what + " was lost: " + error_of(member, outcome).message();
+  {
+    const std::lock_guard lock(mutex_);
+    if (std::exchange(last_loss_, text) == text) return;
   }
-  if (outcome.kind != Outcome::Kind::error) {
-    return {ErrorCode::connection_error, "the board is not connected, or has been reset"};
-  }
-  if (outcome.code < firstException) {
-    return {static_cast<ErrorCode>(outcome.code), "the board has refused it"};
-  }
-  const std::size_t number = outcome.code - std::size_t{firstException};
-  return {ErrorCode::remote_error,
-          number < exceptions_.size() ? exceptions_[number] : "RobotRaconteur.RemoteError",
-          "the board has thrown it"};
+  if (log_) log_(text);
 }
 
 }  // namespace rr::serial

@@ -3,12 +3,14 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "rr/node.hpp"
@@ -18,6 +20,7 @@
 #include "rr/wires.hpp"
 #include "runtime/cpp/src/dynamic/definition_tables.hpp"
 #include "runtime/cpp/src/serial/board.hpp"
+#include "runtime/cpp/src/serial/refusals.hpp"
 
 /// A board as a service: its definition's tables are made when the board is met, and each request
 /// of a client becomes one of the serial protocol.
@@ -28,8 +31,11 @@ class BoardObject;
 /// A definition that a board serves, and its objects.
 class BoardService : public std::enable_shared_from_this<BoardService> {
  public:
-  /// Throws rr::Error (service_definition_error).
-  BoardService(std::shared_ptr<Board> board, const BoardTexts& texts, Node& node);
+  using Log = std::function<void(const std::string&)>;
+
+  /// `log` is notified of refusals that no client waits for. Throws rr::Error
+  /// (service_definition_error).
+  BoardService(std::shared_ptr<Board> board, const BoardTexts& texts, Node& node, Log log);
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::shared_ptr<BoardObject> root();
@@ -44,10 +50,17 @@ class BoardService : public std::enable_shared_from_this<BoardService> {
   // For the objects.
   void ask(Kind kind, std::vector<std::uint8_t> body, Board::Done done, std::uint32_t client = 0);
   Outcome ask(Kind kind, std::vector<std::uint8_t> body);
-  void set_wire(std::vector<std::uint8_t> body);
+  void set_wire(std::vector<std::uint8_t> body, Board::Done done);
   void open(std::uint8_t object, std::uint8_t member, bool opens);
   [[nodiscard]] std::uint32_t client_of(std::uint8_t sequence);
-  [[nodiscard]] Error error_of(const Outcome& outcome) const;
+  /// What the client gets whose request for this member did not succeed.
+  [[nodiscard]] Error error_of(std::string_view member, const Outcome& outcome) const {
+    return refusal_of(member, outcome, exceptions_);
+  }
+  [[nodiscard]] const std::vector<std::string>& exceptions() const { return exceptions_; }
+  /// Of what nobody waits for: a packet, a value of a wire, the answer to a callback. Said once
+  /// while it stays so.
+  void report_lost(const std::string& what, std::string_view member, const Outcome& outcome);
   [[nodiscard]] Node& node() { return node_; }
 
  private:
@@ -60,6 +73,8 @@ class BoardService : public std::enable_shared_from_this<BoardService> {
   std::vector<std::string> exceptions_;  ///< qualified, in the order of the definition
   std::map<std::uint8_t, std::shared_ptr<BoardObject>> objects_;
   std::set<std::pair<std::uint8_t, std::uint8_t>> open_;
+  const Log log_;
+  std::string last_loss_;
 };
 
 /// One object of a board.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who may do what: users, locks, monitors (07, section 6). Every request of a session passes
+// Who may do what: users, locks, monitors (07, section 6). Every entry of a session passes
 // check_access() before anything is done for it.
 #include <utility>
 
@@ -13,78 +13,134 @@
 namespace rr::service {
 namespace {
 
-// What the lock of an object keeps others from.
-bool is_for_locks(EntryType type) {
-  switch (type) {
-    case EntryType::property_get_req:
-    case EntryType::property_set_req:
-    case EntryType::function_call_req:
-    case EntryType::generator_next_req:
-    case EntryType::pipe_connect_req:
-    case EntryType::pipe_disconnect_req:
-    case EntryType::wire_connect_req:
-    case EntryType::wire_disconnect_req:
-    case EntryType::wire_peek_in_value_req:
-    case EntryType::wire_peek_out_value_req:
-    case EntryType::wire_poke_out_value_req:
-    case EntryType::memory_read:
-    case EntryType::memory_write:
-    case EntryType::memory_get_param:
-      return true;
-    default:
-      return false;
-  }
-}
-
-// What passes for a member that says `nolockread`.
-bool is_reading(EntryType type) {
-  return type == EntryType::property_get_req || type == EntryType::memory_read ||
-         type == EntryType::memory_get_param;
-}
-
 std::uint8_t access_of(const ServedObject& object, std::string_view member) {
   const auto place = object.members->find(member);
   return place ? object.type->members[*place].access : std::uint8_t{plain};
 }
 
-Error not_authenticated() { return {ErrorCode::authentication_error, "User is not authenticated"}; }
-
 }  // namespace
 
-std::shared_ptr<const User> ServerEndpoint::user() const {
-  const std::lock_guard lock(user_mutex_);
-  return user_;
+std::shared_ptr<const User> ServerEndpoint::user() const { return access_.user(); }
+
+void ServerEndpoint::check_access(Question& question) {
+  const Entry& entry = question.entry;
+  question.row = &row_of_received(entry.type, entry.member);
+  question.login = access_.login();
+  question.standing = access_.standing();
+  try {
+    check_rights(question);
+    check_locks(question, entry.member);
+  } catch (const Error& error) {
+    audit_.refused(question, error);
+    throw;
+  }
+  audit_.admitted(question);
 }
 
-std::shared_ptr<const User> ServerEndpoint::need_user() const {
-  auto found = user();
-  if (!found) throw not_authenticated();
-  return found;
+// A row of requests to one member asks the rules once.
+void ServerEndpoint::check_rights(const Question& question) {
+  const Entry& entry = question.entry;
+  if (granted_.standing == question.standing && question.row->needs == Needs::user &&
+      granted_.member == entry.member && granted_.path == entry.service_path &&
+      (granted_.rights & question.row->rights) != 0) {
+    return;
+  }
+  access_.check(*question.row, entry.service_path, entry.member);
+  if (!access_.has_rules() || question.row->rights == 0) return;
+  granted_ = {question.standing, access_.rights_of(entry.service_path, entry.member),
+              std::string(entry.service_path), std::string(entry.member)};
 }
 
-void ServerEndpoint::check_access(const Question& question) {
-  const EntryType type = question.entry.type;
-  // These come before a user has logged in.
-  if (type == EntryType::client_keep_alive_req || type == EntryType::client_session_op_req) return;
+// The member of a generator is the one that has given it, whatever the entry says.
+void ServerEndpoint::check_member(const Question& question, const Member& member) {
+  access_.check(*question.row, question.entry.service_path, member.name);
+  check_locks(question, member.name);
+}
+
+void ServerEndpoint::check_locks(const Question& question, std::string_view member) {
+  const Locked locked = question.row->locked;
   ServiceHost& host = *host_;
-  if (host.requires_user()) need_user();
+  if (locked == Locked::passes) return;
   if (!host.locks().are_held() && !host.monitors().are_held()) return;
-  if (!is_for_locks(type)) return;
   const auto object = find_object(question.entry.service_path);
-  const std::uint8_t access = access_of(*object, question.entry.member);
-  if ((access & nolock) != 0 || ((access & nolockread) != 0 && is_reading(type))) return;
+  const std::uint8_t access = access_of(*object, member);
+  if ((access & nolock) != 0) return;
+  if ((access & nolockread) != 0 && locked == Locked::refused_to_read) return;
   host.locks().check(*object, user().get(), client_.endpoint);
   host.monitors().check(*object, client_.endpoint);
 }
 
-// Throws what the authenticator throws.
-void ServerEndpoint::log_in(std::string_view name,
-                            const std::map<std::string, VarValue>& credentials) {
-  auto found = std::make_shared<const User>(
-      host_->users()->authenticate(std::string(name), credentials, client_.node));
-  host_->locks().log_in(client_.endpoint, *found);
-  const std::lock_guard lock(user_mutex_);
-  user_ = std::move(found);
+bool ServerEndpoint::is_still_allowed(const Question& question) const {
+  return is_still_allowed({question.row, question.standing, question.login},
+                          question.entry.service_path, question.entry.member);
+}
+
+bool ServerEndpoint::is_still_allowed(const Admission& admission, std::string_view path,
+                                      std::string_view member) const {
+  if (admission.row == nullptr || admission.standing == access_.standing()) return true;
+  if (admission.row->needs <= Needs::session) return true;
+  return admission.login == access_.login() && access_.allows(*admission.row, path, member);
+}
+
+Error ServerEndpoint::no_longer_allowed() {
+  return {ErrorCode::authentication_error, "The user has changed, or may do this no longer"};
+}
+
+// Somebody is logged in from now on.
+void ServerEndpoint::become(std::shared_ptr<const User> user) {
+  host_->locks().log_in(client_.endpoint, *user);
+  const std::string name = user->name;
+  const auto replaced = access_.log_in(std::move(user));
+  if (replaced) audit_.logged_out(*replaced, "replaced by another user");
+  audit_.logged_in(name);
+  connection_->set_authorised(true);
+  end_what_is_not_allowed(*host_, replaced != nullptr);
+}
+
+void ServerEndpoint::log_out() {
+  const auto before = access_.log_out();
+  if (!before) return;
+  audit_.logged_out(*before, {});
+  connection_->set_authorised(!host_->requires_user());
+  end_what_is_not_allowed(*host_, true);
+}
+
+void ServerEndpoint::renew_rights(ServiceHost& host) {
+  if (access_.renew_rights(host)) end_what_is_not_allowed(host, false);
+}
+
+// Behind every change of what the session may do: what is open, and would be refused now, ends; all
+// of it when it is another one's. The other side is told of wires and pipes.
+void ServerEndpoint::end_what_is_not_allowed(ServiceHost& host, bool is_all) {
+  const auto is_refused = [&](EntryType type, std::string_view path, std::string_view member) {
+    return is_all || !access_.may_receive(type, path, member);
+  };
+  std::size_t ended = 0;
+  ended += wires_.end_if([&](std::string_view path, std::string_view member) {
+    return is_refused(EntryType::wire_connect_req, path, member);
+  });
+  ended += pipes_.end_if([&](std::string_view path, std::string_view member) {
+    return is_refused(EntryType::pipe_connect_req, path, member);
+  });
+  ended += generators_.end_if([&](std::string_view path, std::string_view member) {
+    return is_refused(EntryType::generator_next_req, path, member);
+  });
+  channel::DeferredCallbacks deferred;
+  ended += callbacks_.end_if(
+      [&](std::string_view path, std::string_view member) {
+        return is_all || !access_.may_send(EntryType::callback_call_req, path, member);
+      },
+      no_longer_allowed(), deferred);
+  callbacks_.post(std::move(deferred));
+  const auto may_not_lock = [&](std::string_view path) {
+    return is_all || !has_right(access_.rights_of(path, {}), Right::lock);
+  };
+  ended += host.monitors().end_if(client_.endpoint, may_not_lock, no_longer_allowed());
+  // Locks of a user outlive the log-out, as in existing services (07, section 6).
+  if (const auto who = access_.user(); who && !is_all) {
+    ended += host.locks().end_if(client_.endpoint, *who, may_not_lock);
+  }
+  if (ended != 0) audit_.ended(ended);
 }
 
 void ServerEndpoint::answer_session_operation(const Question& question) {
@@ -109,20 +165,18 @@ void ServerEndpoint::answer_session_operation(const Question& question) {
 void ServerEndpoint::answer_user_operation(const Question& question) {
   const std::string_view operation = question.entry.member;
   if (operation == "AuthenticateUser") {
-    Decoder decoder(question.message.version, &question.message.strings, question.owner,
-                    host_->types().get());
+    Decoder decoder = question.decoder(host_->types().get());
     std::string name;
     VarStringMap credentials;
     endpoint::read_value(decoder, question.entry, "username", type_of<std::string>, &name);
     endpoint::read_value(decoder, question.entry, "credentials", type_of<VarStringMap>,
                          &credentials);
-    log_in(name, credentials);
+    log_in(name);
   } else if (operation == "LogoutUser") {
-    const std::lock_guard lock(user_mutex_);
-    user_.reset();
+    log_out();
   } else if (operation == "ReleaseObjectLock") {
-    const auto user = need_user();
-    host_->locks().release(*find_object(question.entry.service_path), *user);
+    host_->locks().release(*find_object(question.entry.service_path), *need_user());
+    audit_.unlocked(question);
   } else if (operation == "ReleaseClientObjectLock") {
     throw Error(ErrorCode::invalid_operation, "Invalid command");
   } else {
@@ -132,6 +186,7 @@ void ServerEndpoint::answer_user_operation(const Question& question) {
     }
     host_->locks().request(*find_object(question.entry.service_path), *user, client_.endpoint,
                            operation == "RequestClientObjectLock");
+    audit_.locked(question);
   }
 }
 
@@ -141,7 +196,6 @@ void ServerEndpoint::answer_monitor_operation(const Question& question) {
       entry.member != "MonitorExit") {
     throw Error(ErrorCode::protocol_error, "Invalid ClientSessionOp command");
   }
-  if (host_->requires_user()) need_user();
   const auto object = find_object(entry.service_path);
   if (!object->skeleton->rr_has_monitor()) {
     throw Error(ErrorCode::invalid_argument, "Object is not monitor lockable");
@@ -150,6 +204,7 @@ void ServerEndpoint::answer_monitor_operation(const Question& question) {
   if (entry.member == "MonitorExit") {
     const std::string done = "OK";
     if (monitors.exit(*object, client_.endpoint)) {
+      audit_.unlocked(question);
       answer_value(question, "return", type_of<std::string>, &done);
     } else {
       answer_empty(question);  // what existing services say of an object that nobody ever entered
@@ -159,11 +214,12 @@ void ServerEndpoint::answer_monitor_operation(const Question& question) {
   auto reply = [self = shared_from_this(),
                 late = LateAnswer{entry.type, std::string(entry.service_path),
                                   std::string(entry.member), entry.request_id, nullptr,
-                                  question.gathering, question.place}](Monitors::Outcome outcome,
-                                                                       const Error* error) {
+                                  question.batch, question.place, admission_of(question)}](
+                   Monitors::Outcome outcome, const Error* error) {
     if (outcome == Monitors::Outcome::failed) {
       self->answer_late(late, *error);
     } else {
+      if (outcome == Monitors::Outcome::entered) self->audit_.entered(late.path, late.member_name);
       self->answer_late_text(late, outcome == Monitors::Outcome::entered ? "OK" : "Continue");
     }
   };
@@ -176,6 +232,13 @@ void ServerEndpoint::answer_monitor_operation(const Question& question) {
   endpoint::read_value(decoder, entry, "timeout", type_of<std::int32_t>, &timeout);
   host_->locks().check(*object, user().get(), client_.endpoint);
   monitors.enter(*object, client_.endpoint, channel::Milliseconds(timeout), std::move(reply));
+}
+
+// Whom a request that needs one has found logged in. Nobody may be by now.
+std::shared_ptr<const User> ServerEndpoint::need_user() const {
+  auto found = user();
+  if (!found) throw Error(ErrorCode::authentication_error, "User is not authenticated");
+  return found;
 }
 
 }  // namespace rr::service

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/service/callbacks.hpp"
 
+#include <iterator>
 #include <utility>
+#include <vector>
 
 #include "rr/call.hpp"
 #include "rr/skeleton.hpp"
@@ -14,30 +16,11 @@
 #include "runtime/cpp/src/service/places.hpp"
 #include "runtime/cpp/src/service/server_endpoint.hpp"
 #include "runtime/cpp/src/service/service_host.hpp"
+#include "runtime/cpp/src/service/turn_break.hpp"
 
 namespace rr {
 namespace service {
 namespace {
-
-// While a member waits for a callback, its client's next requests are handled: the client may be
-// making one in order to answer.
-class TurnBreak {
- public:
-  TurnBreak() {
-    ServerEndpoint* const endpoint = ServerEndpoint::current();
-    if (endpoint != nullptr && endpoint->connection().give_up_turn()) {
-      connection_ = &endpoint->connection();
-    }
-  }
-  ~TurnBreak() {
-    if (connection_ != nullptr) connection_->take_turn_again();
-  }
-  TurnBreak(const TurnBreak&) = delete;
-  TurnBreak& operator=(const TurnBreak&) = delete;
-
- private:
-  channel::Connection* connection_ = nullptr;
-};
 
 channel::Milliseconds timeout_of(const CallTerms& terms, const endpoint::Core& core) {
   return terms.timeout.count() != 0 ? terms.timeout : core.options().request_timeout;
@@ -61,6 +44,7 @@ std::shared_ptr<endpoint::Caller> Callbacks::share() {
 
 bool Callbacks::take(endpoint::Pending& call) {
   const std::lock_guard lock(mutex_);
+  asked_.erase(&call);
   return pending_.take(call);
 }
 
@@ -74,11 +58,21 @@ Writer& Callbacks::write(const CallbackRequest& request) const {
 
 void Callbacks::send(const CallbackRequest& request, Writer& writer, endpoint::Pending& call) {
   constexpr EntryType type = EntryType::callback_call_req;
+  const endpoint::Asked asked(type, request.path, request.member.name);
   std::uint32_t number = 0;
   {
     const std::lock_guard lock(mutex_);
     if (has_ended_) throw Error(ErrorCode::connection_error, "the client has left");
-    number = pending_.add(call);
+    const std::size_t limit = endpoint_.callback_limit();
+    if (pending_.size() >= limit) {
+      throw Error(ErrorCode::out_of_system_resource,
+                  "the client owes the answers to " + std::to_string(limit) + " callbacks");
+    }
+    const SessionAccess& access = endpoint_.access();
+    const AccessRow& row = row_of_sent(type);
+    access.check(row, request.path, request.member.name);  // end_if() finds it from now on
+    number = pending_.add(call, asked);
+    asked_.emplace(&call, Asked{std::string(request.path), &request.member});
   }
   writer.entry({.type = type,
                 .service_path = request.path,
@@ -92,17 +86,17 @@ void Callbacks::call(const CallbackRequest& request, void* result) {
   const auto read = [&](Decoder& decoder, const Message&, const Entry& entry) {
     read_result(decoder, entry, request.member, result);
   };
-  const CallTerms terms = CallTerms::current();
-  const TurnBreak turn_break;
+  const CallTerms terms = CallTerms::of_blocking_call();
   const channel::Time now = channel::coarse_now();
+  const channel::Time deadline = channel::after(now, timeout_of(terms, *core()));
+  const TurnBreak turn_break(deadline);
   Writer& writer = write(request);
   endpoint::BlockingCallOf call(*this, read);
-  call.perform(terms, channel::after(now, timeout_of(terms, *core())), now,
-               [&](endpoint::Pending& open) { send(request, writer, open); });
+  call.perform(terms, deadline, now, [&](endpoint::Pending& open) { send(request, writer, open); });
 }
 
 void Callbacks::start(const CallbackRequest& request, std::shared_ptr<Completion> completion) {
-  const CallTerms terms = CallTerms::current();
+  const CallTerms terms = CallTerms::of_started_call();
   auto read = [member = &request.member, result = completion->result()](
                   Decoder& decoder, const Message&, const Entry& entry) {
     read_result(decoder, entry, *member, result);
@@ -115,26 +109,50 @@ void Callbacks::start(const CallbackRequest& request, std::shared_ptr<Completion
 }
 
 void Callbacks::take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
-                            channel::Laters& laters) {
+                            channel::DeferredCallbacks& deferred) {
   if (entry.type != EntryType::callback_call_ret) return;
-  endpoint::Pending* call = nullptr;
+  if (!endpoint_.access().may_receive(entry.type, entry.service_path, entry.member)) return;
+  endpoint::PendingTable::Answered answered;
+  bool is_told = false;
   {
     const std::lock_guard lock(mutex_);
-    call = pending_.take(entry.request_id);
+    answered = pending_.take_answered(entry);
+    if (answered.request != nullptr) asked_.erase(answered.request);
+    if (answered.is_foreign) is_told = std::exchange(has_told_foreign_, true);
   }
-  if (call != nullptr) call->answer(message, entry, owner, laters);
+  if (answered.request != nullptr) {
+    answered.request->answer(message, entry, owner, deferred);
+  } else if (answered.is_foreign && !is_told) {
+    deferred.push_back(endpoint::tell_foreign_answer(core(), "a client", entry));
+  }
 }
 
-void Callbacks::end(std::string_view why, channel::Laters& laters) {
+std::size_t Callbacks::end_if(const Choice& is_over, const Error& why,
+                              channel::DeferredCallbacks& deferred) {
+  std::vector<endpoint::Pending*> over;
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto each = asked_.begin(); each != asked_.end();) {
+      const bool ends = is_over(each->second.path, each->second.member->name);
+      if (ends && pending_.take(*each->first)) over.push_back(each->first);
+      each = ends ? asked_.erase(each) : std::next(each);
+    }
+  }
+  for (endpoint::Pending* call : over) call->fail(why, deferred);
+  return over.size();
+}
+
+void Callbacks::end(std::string_view why, channel::DeferredCallbacks& deferred) {
   while (true) {
     endpoint::Pending* call = nullptr;
     {
       const std::lock_guard lock(mutex_);
       has_ended_ = true;
+      asked_.clear();
       call = pending_.take_any();
     }
     if (call == nullptr) return;
-    call->fail(Error(ErrorCode::connection_error, std::string(why)), laters);
+    call->fail(Error(ErrorCode::connection_error, std::string(why)), deferred);
   }
 }
 

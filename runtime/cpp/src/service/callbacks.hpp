@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -36,11 +40,14 @@ class Callbacks final : public endpoint::Caller {
   /// Asks now; the completion gets the answer.
   void start(const CallbackRequest& request, std::shared_ptr<Completion> completion);
 
-  /// An answer to a callback that nobody waits for is dropped.
+  /// An answer that nobody waits for is dropped, and so is one to something else.
   void take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
-                   channel::Laters& laters);
+                   channel::DeferredCallbacks& deferred);
+  /// Those for which `is_over(path, member)` holds fail with `why`. Returns how many.
+  using Choice = std::function<bool(std::string_view, std::string_view)>;
+  std::size_t end_if(const Choice& is_over, const Error& why, channel::DeferredCallbacks& deferred);
   /// The client has gone: all that is open fails with connection_error, and so does what follows.
-  void end(std::string_view why, channel::Laters& laters);
+  void end(std::string_view why, channel::DeferredCallbacks& deferred);
 
   [[nodiscard]] channel::Connection& connection() const override;
   [[nodiscard]] const std::shared_ptr<endpoint::Core>& core() const override;
@@ -55,7 +62,14 @@ class Callbacks final : public endpoint::Caller {
   ServerEndpoint& endpoint_;  // owns this
   std::mutex mutex_;
   bool has_ended_ = false;
+  bool has_told_foreign_ = false;  // answers to something else are logged once
   endpoint::PendingTable pending_;
+  // What was asked, of those that are pending.
+  struct Asked {
+    std::string path;
+    const Member* member;
+  };
+  std::map<endpoint::Pending*, Asked> asked_;
 };
 
 }  // namespace rr::service

@@ -12,7 +12,10 @@
 
 namespace rr::service {
 
-Directory::Directory(std::shared_ptr<endpoint::Core> core) : core_(std::move(core)) {}
+Directory::Directory(std::shared_ptr<endpoint::Core> core)
+    : core_(std::move(core)),
+      logins_(core_->options().login,
+              [core = core_](LogLevel level, std::string_view text) { core->log(level, text); }) {}
 
 void Directory::start() {
   index_ = std::make_shared<ServiceIndex>(weak_from_this());
@@ -67,6 +70,7 @@ void Directory::remove(const ServiceHost& host) {
 
 void Directory::close() {
   for (const auto& host : all()) host->close();
+  logins_.refuse_all();
 }
 
 std::shared_ptr<ServiceHost> Directory::find(std::string_view name) const {

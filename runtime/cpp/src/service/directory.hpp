@@ -13,6 +13,7 @@
 #include "rr/service.hpp"
 #include "runtime/cpp/src/channel/channel.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/service/logins.hpp"
 #include "runtime/cpp/src/service/service_host.hpp"
 
 namespace rr::service {
@@ -53,9 +54,12 @@ class Directory : public std::enable_shared_from_this<Directory> {
   std::shared_ptr<channel::Receiver> accept(std::shared_ptr<channel::Connection> connection);
 
   [[nodiscard]] const std::shared_ptr<endpoint::Core>& core() const { return core_; }
+  /// Checks who logs in.
+  [[nodiscard]] Logins& logins() { return logins_; }
 
  private:
   const std::shared_ptr<endpoint::Core> core_;
+  Logins logins_;
   Discovery discovery_;
   mutable std::mutex mutex_;
   std::vector<std::shared_ptr<ServiceHost>> services_;  // oldest first

@@ -11,8 +11,10 @@
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/endpoint/service_path.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
+#include "runtime/cpp/src/service/handler_memory.hpp"
 #include "runtime/cpp/src/service/request.hpp"
 #include "runtime/cpp/src/service/server_endpoint.hpp"
+#include "runtime/cpp/src/service/service_host.hpp"
 
 namespace rr {
 namespace service {
@@ -20,16 +22,28 @@ namespace {
 
 // How long the number of a closed generator is known (07, section 8).
 constexpr channel::Milliseconds closed_time{30'000};
+// What a generator takes, about; a coroutine is not asked for its size.
+constexpr std::size_t generator_cost = 1024;
 
 Error invalid_generator() { return {ErrorCode::invalid_operation, "Invalid generator"}; }
 
 }  // namespace
 
-std::int32_t Generators::add(const std::shared_ptr<ClientGenerator>& generator) {
+std::int32_t Generators::add(const std::shared_ptr<ClientGenerator>& generator, std::size_t limit,
+                             const std::function<void()>& check) {
+  if (!generator->charge.add(generator_cost)) {
+    throw Error(ErrorCode::out_of_system_resource,
+                "the generators of this client take too much memory");
+  }
   std::random_device random;
   generator->last_used = channel::coarse_now();
   const std::lock_guard lock(mutex_);
   if (has_ended_) throw Error(ErrorCode::connection_error, "the client has left");
+  if (generators_.size() >= limit) {
+    throw Error(ErrorCode::out_of_system_resource,
+                "more than " + std::to_string(limit) + " generators of one session");
+  }
+  check();
   while (true) {
     const auto index = static_cast<std::int32_t>(random() & 0x7FFF'FFFFU);
     if (generators_.emplace(index, generator).second) return index;
@@ -68,7 +82,7 @@ Generators::Use::Use(Generators& generators, const ServedObject& object, std::in
   }
   while (generator_->current_step != step) generators_.stepped_.wait(lock);
   lock.unlock();
-  connection.take_turn_again();
+  connection.take_turn_again(channel::never);
 }
 
 Generators::Use::~Use() {
@@ -95,29 +109,39 @@ void Generators::Use::end() {
   generators_.remove(index_);
 }
 
-void Generators::release_path(std::string_view path) {
+std::size_t Generators::end_if(const Choice& is_over) {
   std::vector<std::shared_ptr<ClientGenerator>> removed;
   const std::lock_guard lock(mutex_);
   std::erase_if(generators_, [&](auto& item) {
-    if (!endpoint::is_at_or_below(item.second->object->path, path)) return false;
+    if (!is_over(item.second->object->path, item.second->member->name)) return false;
     item.second->state = ClientGenerator::State::ended;
     removed.push_back(std::move(item.second));
     return true;
   });
+  return removed.size();
 }
 
-void Generators::end() {
-  decltype(generators_) removed;
-  const std::lock_guard lock(mutex_);
-  has_ended_ = true;
-  for (const auto& [index, generator] : generators_) {
-    generator->state = ClientGenerator::State::ended;
+void Generators::release_path(std::string_view path) {
+  end_if([&](std::string_view each, std::string_view) {
+    return endpoint::is_at_or_below(each, path);
+  });
+}
+
+void Generators::end(channel::DeferredCallbacks& deferred) {
+  auto removed = std::make_shared<decltype(generators_)>();
+  {
+    const std::lock_guard lock(mutex_);
+    has_ended_ = true;
+    for (const auto& [index, generator] : generators_) {
+      generator->state = ClientGenerator::State::ended;
+    }
+    removed->swap(generators_);
   }
-  removed.swap(generators_);
+  if (!removed->empty()) deferred.emplace_back([removed] { removed->clear(); });
 }
 
 void Generators::drop_unused(channel::Time now, channel::Milliseconds timeout,
-                             channel::Laters& laters) {
+                             channel::DeferredCallbacks& deferred) {
   const std::lock_guard lock(mutex_);
   std::erase_if(generators_, [&](auto& item) {
     const ClientGenerator& generator = *item.second;
@@ -126,8 +150,8 @@ void Generators::drop_unused(channel::Time now, channel::Milliseconds timeout,
     if (generator.next_step != generator.current_step || now - generator.last_used <= limit) {
       return false;
     }
-    laters.emplace_back([removed = std::make_shared<std::shared_ptr<ClientGenerator>>(
-                             std::move(item.second))] { removed->reset(); });
+    deferred.emplace_back([removed = std::make_shared<std::shared_ptr<ClientGenerator>>(
+                               std::move(item.second))] { removed->reset(); });
     return true;
   });
 }
@@ -136,12 +160,12 @@ void Generators::drop_unused(channel::Time now, channel::Milliseconds timeout,
 void ServerEndpoint::answer_generator_step(Question& question) {
   const Entry& entry = question.entry;
   const auto object = find_object(entry.service_path);
-  Decoder decoder(question.message.version, &question.message.strings, question.owner,
-                  types().get());
+  Decoder decoder = question.decoder(types().get());
   std::int32_t index = 0;
   endpoint::read_value(decoder, entry, "index", type_of<std::int32_t>, &index);
   Generators::Use generator(generators_, *object, index, *connection_);
   question.is_urgent = (generator->member->access & urgent) != 0;
+  if (generator->member->name != entry.member) check_member(question, *generator->member);
   try {
     if (generator.state() == ClientGenerator::State::ended) throw invalid_generator();
     if (entry.error == 0) {
@@ -172,11 +196,12 @@ void ServerEndpoint::step_generator(const Question& question, Decoder& decoder,
                          *generator->member->generator_parameter, parameter.get());
   }
   if (generator->result != nullptr) result = generator->result->make();
+  HandlerMemory made(*this, question, host_->answer_sizes().expected(*generator->member));
   if (!generator->source->rr_step(parameter.get(), result.get())) {
     throw Error(ErrorCode::stop_iteration, "");
   }
   if (result) {
-    answer_value(question, "return", *generator->member->type, result.get());
+    answer_result(question, *generator->member, made, result.get());
   } else {
     answer_void(question);
   }
@@ -214,8 +239,22 @@ void Request::answer_generator(std::shared_ptr<GeneratorSource> generator, const
   service::Generators& generators = source.endpoint.generators();
   const std::int32_t index =
       generators.add(std::make_shared<service::ClientGenerator>(service::ClientGenerator{
-          source.object, &source.member, std::move(generator), result, parameter}));
+                         .object = source.object,
+                         .member = &source.member,
+                         .source = std::move(generator),
+                         .result = result,
+                         .parameter = parameter,
+                         .charge = channel::Charge(source.endpoint.connection().account())}),
+                     source.endpoint.generator_limit(), [&] {
+                       if (!source.endpoint.is_still_allowed(source.question)) {
+                         throw service::ServerEndpoint::no_longer_allowed();
+                       }
+                     });
   try {
+    // What was released meanwhile has not been found among the generators.
+    if (source.endpoint.find_object(source.question.entry.service_path) != source.object) {
+      throw Error(ErrorCode::object_not_found, "the object was released");
+    }
     source.endpoint.answer_value(source.question, "index", type_of<std::int32_t>, &index);
   } catch (...) {
     generators.remove(index);

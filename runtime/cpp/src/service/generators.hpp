@@ -2,7 +2,9 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string_view>
@@ -11,6 +13,7 @@
 #include "rr/definition.hpp"
 #include "rr/holding.hpp"
 #include "rr/sequence.hpp"
+#include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/service/object_tree.hpp"
@@ -31,14 +34,18 @@ struct ClientGenerator {
   channel::Time last_used{};
   std::uint32_t next_step = 0;     // the number of the next one that comes
   std::uint32_t current_step = 0;  // of the one whose turn it is
+  channel::Charge charge{};        // for what a coroutine takes, about
 };
 
 /// The generators of one client by their numbers (07, section 8). None is destroyed under the lock,
 /// nor while a step of it runs.
 class Generators {
  public:
-  /// Returns its number. Throws rr::Error (connection_error) when the client has gone.
-  std::int32_t add(const std::shared_ptr<ClientGenerator>& generator);
+  /// Returns its number. Throws rr::Error: connection_error when the client has gone,
+  /// out_of_system_resource when it has `limit` of them or holds too much, and what `check` throws,
+  /// which is asked when end_if() would find it.
+  std::int32_t add(const std::shared_ptr<ClientGenerator>& generator, std::size_t limit,
+                   const std::function<void()>& check);
   void remove(std::int32_t index);
 
   /// One request to a generator, while this exists: those that come meanwhile wait for its end.
@@ -64,12 +71,16 @@ class Generators {
     std::shared_ptr<ClientGenerator> generator_;
   };
 
+  /// Those for which `is_over(path, member)` holds end. Returns how many.
+  using Choice = std::function<bool(std::string_view, std::string_view)>;
+  std::size_t end_if(const Choice& is_over);
   /// Those of an object that is released, and of those below it, end.
   void release_path(std::string_view path);
-  /// All end; no other comes.
-  void end();
-  /// Those that nobody has used for so long end; their last moments are left in `laters`.
-  void drop_unused(channel::Time now, channel::Milliseconds timeout, channel::Laters& laters);
+  /// All end; no other comes. Their last moments are left in `deferred`.
+  void end(channel::DeferredCallbacks& deferred);
+  /// Those that nobody has used for so long end; their last moments are left in `deferred`.
+  void drop_unused(channel::Time now, channel::Milliseconds timeout,
+                   channel::DeferredCallbacks& deferred);
 
  private:
   std::mutex mutex_;

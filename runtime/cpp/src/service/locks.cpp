@@ -21,6 +21,14 @@ bool Locks::Lock::is_above_or_below(const ServedObject& object) const {
          ((object.owner == 0 || owner == object.owner) && is_at_or_below(path, object.path));
 }
 
+bool Locks::Lock::is_at(const ServedObject& object) const {
+  return path == object.path && owner == object.owner;
+}
+
+std::string Locks::Lock::who(const std::string& prefix) const {
+  return user.empty() ? "the service" : prefix + user;
+}
+
 template <class Condition>
 void Locks::remove_if(Condition condition) {
   std::erase_if(locks_, condition);
@@ -44,6 +52,7 @@ void Locks::leave(std::uint32_t endpoint) {
   const std::lock_guard lock(mutex_);
   sessions_.erase(endpoint);
   remove_if([&](const Lock& held) {
+    if (held.is_of_service) return false;
     if (held.endpoint != 0) return held.endpoint == endpoint;
     return std::none_of(sessions_.begin(), sessions_.end(), [&](const auto& session) {
       return std::find(session.second.begin(), session.second.end(), held.user) !=
@@ -52,16 +61,42 @@ void Locks::leave(std::uint32_t endpoint) {
   });
 }
 
-void Locks::request(const ServedObject& object, const User& user, std::uint32_t endpoint,
-                    bool for_session) {
-  const std::lock_guard lock(mutex_);
+void Locks::need_unlocked(const ServedObject& object) const {
   for (const Lock& held : locks_) {
     if (held.is_above_or_below(object)) {
       throw Error(ErrorCode::object_locked_error, "Object already locked");
     }
   }
+}
+
+void Locks::lock(const ServedObject& object, const std::string& user) {
+  const std::lock_guard lock(mutex_);
+  need_unlocked(object);
+  locks_.push_back({object.path, object.owner, user, 0, true});
+  are_held_.store(true, std::memory_order_release);
+}
+
+bool Locks::unlock(std::string_view path) {
+  const std::lock_guard lock(mutex_);
+  const std::size_t before = locks_.size();
+  remove_if([&](const Lock& held) { return held.path == path; });
+  return locks_.size() != before;
+}
+
+void Locks::request(const ServedObject& object, const User& user, std::uint32_t endpoint,
+                    bool for_session) {
+  const std::lock_guard lock(mutex_);
+  need_unlocked(object);
   if (!sessions_.contains(endpoint)) {
     throw Error(ErrorCode::connection_error, "the session has ended");
+  }
+  const auto count = std::count_if(locks_.begin(), locks_.end(), [&](const Lock& held) {
+    if (held.is_of_service) return false;
+    return for_session ? held.endpoint == endpoint : held.endpoint == 0 && held.user == user.name;
+  });
+  if (static_cast<std::size_t>(count) >= limit_) {
+    throw Error(ErrorCode::out_of_system_resource,
+                "more than " + std::to_string(limit_) + " locks of one session or user");
   }
   locks_.push_back({object.path, object.owner, user.name, for_session ? endpoint : 0});
   are_held_.store(true, std::memory_order_release);
@@ -72,7 +107,7 @@ void Locks::release(const ServedObject& object, const User& user) {
   for (const Lock& held : locks_) {
     if (!held.holds_for(object)) continue;
     if (held.user != user.name && !user.has(override_lock_privilege)) {
-      throw Error(ErrorCode::object_locked_error, "Service locked by user " + held.user);
+      throw Error(ErrorCode::object_locked_error, "Service locked by " + held.who("user "));
     }
     if (held.path != object.path) {
       throw Error(ErrorCode::object_locked_error, "The lock is at the object " + held.path);
@@ -82,19 +117,37 @@ void Locks::release(const ServedObject& object, const User& user) {
   }
 }
 
+std::size_t Locks::end_if(std::uint32_t endpoint, const User& user,
+                          const std::function<bool(std::string_view)>& is_over) {
+  const std::lock_guard lock(mutex_);
+  const std::size_t before = locks_.size();
+  remove_if([&](const Lock& held) {
+    return !held.is_of_service && held.user == user.name &&
+           (held.endpoint == 0 || held.endpoint == endpoint) && is_over(held.path);
+  });
+  return before - locks_.size();
+}
+
 void Locks::forget(const ServedObject& object) {
   const std::lock_guard lock(mutex_);
-  remove_if(
-      [&](const Lock& held) { return held.path == object.path && held.owner == object.owner; });
+  remove_if([&](const Lock& held) { return held.is_at(object); });
+}
+
+bool Locks::are_on(const ServedObject& object) const {
+  if (!are_held()) return false;
+  const std::lock_guard lock(mutex_);
+  return std::any_of(locks_.begin(), locks_.end(), [&](const Lock& held) {
+    return held.owner == object.owner && is_at_or_below(held.path, object.path);
+  });
 }
 
 void Locks::check(const ServedObject& object, const User* user, std::uint32_t endpoint) const {
   const std::lock_guard lock(mutex_);
   for (const Lock& held : locks_) {
     if (!held.holds_for(object)) continue;
-    const bool may_pass = user != nullptr && user->name == held.user &&
+    const bool may_pass = user != nullptr && !held.user.empty() && user->name == held.user &&
                           (held.endpoint == 0 || held.endpoint == endpoint);
-    if (!may_pass) throw Error(ErrorCode::object_locked_error, "Object locked by " + held.user);
+    if (!may_pass) throw Error(ErrorCode::object_locked_error, "Object locked by " + held.who(""));
   }
 }
 

@@ -83,10 +83,25 @@ std::vector<std::uint32_t> short_numbers(const Numbers& numbers) {
   return result;
 }
 
-void check_size(const Part& part, std::size_t item_size, std::size_t limit) {
-  if (part.size > limit / item_size) {
+// What is larger than a message that may be sent is not read: senders stop this much earlier than
+// receivers (04, section 3), and the answer repeats path and member.
+void check_size(const Part& part, std::size_t item_size, std::size_t limit, const Entry& entry) {
+  const std::size_t around = 100 + entry.service_path.size() + entry.member.size();
+  const std::size_t room = limit > around ? limit - around : 0;
+  if (part.size > room / item_size) {
     throw Error(ErrorCode::protocol_error, "the part is too large for one message");
   }
+}
+
+// Draws the bytes of a part before the memory is read, which may be user code.
+channel::Charge charge_part(const Part& part, std::size_t item_size,
+                            const channel::Connection& connection) {
+  channel::Charge charge(connection.account());
+  if (!charge.add(part.size * item_size)) {
+    throw Error(ErrorCode::out_of_system_resource,
+                "the part is larger than what this client may make the node hold");
+  }
+  return charge;
 }
 
 // Elements of an answer to a read or write. A value lives until it is written.
@@ -125,8 +140,7 @@ void ServerEndpoint::answer_memory(const Question& question) {
   const auto number = static_cast<std::size_t>(&member - object->type->members.data());
   const std::shared_ptr<MemorySource> memory = object->skeleton->rr_memory(number);
   if (!memory) throw Error(ErrorCode::invalid_operation, "the service has not set the memory");
-  Decoder decoder(question.message.version, &question.message.strings, question.owner,
-                  host_->types().get());
+  Decoder decoder = question.decoder(host_->types().get());
   switch (entry.type) {
     case EntryType::memory_read:
       read_memory(question, decoder, member, *memory);
@@ -147,11 +161,14 @@ void ServerEndpoint::read_memory(const Question& question, Decoder& decoder, con
   part.named_position = read_numbers(decoder, question.entry, "memorypos", form.is_multi);
   part.named_count = read_numbers(decoder, question.entry, "count", form.is_multi);
   place(part, memory.rr_dims(), form.is_multi);
-  check_size(part, form.item->size, directory_->core()->options().limits.message_size);
+  check_size(part, form.item->size, directory_->core()->options().limits.message_size,
+             question.entry);
+  channel::Charge charge = charge_part(part, form.item->size, *connection_);
   if (auto* const pieces = dynamic_cast<PieceMemory*>(&memory)) {
     const std::shared_ptr<const void> piece = pieces->read_piece(part.position, part.count);
     PartElements elements(part, form.is_multi, true);
     elements.add("data", pieces->piece_type(), piece.get());
+    const channel::OfferedCharge offered(std::move(charge));  // drawn again if it waits to be sent
     answer_values(question, EntryType::memory_read_ret, elements.used(), elements.values.data());
     return;
   }
@@ -162,6 +179,7 @@ void ServerEndpoint::read_memory(const Question& question, Decoder& decoder, con
   memory.rr_read(part.position, part.count, items);
   PartElements elements(part, form.is_multi, true);
   elements.add("data", *member.type, form.is_multi ? static_cast<const void*>(&data) : &data.items);
+  const channel::OfferedCharge offered(std::move(charge));  // drawn again if it waits to be sent
   answer_values(question, EntryType::memory_read_ret, elements.used(), elements.values.data());
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "runtime/cpp/src/endpoint/errors.hpp"
+#include "runtime/cpp/src/endpoint/user_code.hpp"
 
 namespace rr::service {
 namespace {
@@ -50,8 +51,9 @@ class Monitors::Attempt final : public channel::Timer,
   const std::weak_ptr<Monitor> monitor_;
 };
 
-Monitors::Monitors(std::shared_ptr<endpoint::Core> core, channel::Milliseconds patience)
-    : core_(std::move(core)), patience_(patience) {}
+Monitors::Monitors(std::shared_ptr<endpoint::Core> core, channel::Milliseconds patience,
+                   std::size_t limit)
+    : core_(std::move(core)), patience_(channel::saturated(patience)), limit_(limit) {}
 
 Monitors::~Monitors() { core_->reactor().cancel(*this); }
 
@@ -76,6 +78,7 @@ void Monitors::enter(const ServedObject& object, std::uint32_t endpoint,
   std::shared_ptr<Monitor> monitor;
   {
     const std::lock_guard lock(mutex_);
+    check_count(endpoint);
     std::shared_ptr<Monitor>& place = monitors_[{object.path, object.owner}];
     if (!place) {
       place = std::make_shared<Monitor>();
@@ -93,6 +96,18 @@ void Monitors::enter(const ServedObject& object, std::uint32_t endpoint,
     await(attempt, std::move(reply));
   }
   admit_next(monitor);
+}
+
+// Under the lock.
+void Monitors::check_count(std::uint32_t endpoint) const {
+  if (monitors_.size() < limit_) return;
+  const auto count = std::count_if(monitors_.begin(), monitors_.end(), [&](const auto& each) {
+    return each.second->holder == endpoint || find_attempt(*each.second, endpoint) != nullptr;
+  });
+  if (static_cast<std::size_t>(count) >= limit_) {
+    throw Error(ErrorCode::out_of_system_resource,
+                "more than " + std::to_string(limit_) + " monitors of one session");
+  }
 }
 
 // Under the lock.
@@ -248,11 +263,7 @@ void Monitors::give_back(const std::shared_ptr<Monitor>& monitor) {
 }
 
 void Monitors::leave_object(const Monitor& monitor) {
-  try {
-    monitor.skeleton->rr_monitor_exit();
-  } catch (const std::exception& error) {
-    core_->log(LogLevel::error, std::string("rr_monitor_exit has thrown: ") + error.what());
-  }
+  endpoint::call_user_code(*core_, "rr_monitor_exit", [&] { monitor.skeleton->rr_monitor_exit(); });
 }
 
 bool Monitors::exit(const ServedObject& object, std::uint32_t endpoint) {
@@ -275,6 +286,17 @@ bool Monitors::exit(const ServedObject& object, std::uint32_t endpoint) {
   return true;
 }
 
+void Monitors::leave_lines(std::uint32_t endpoint) {
+  std::vector<std::shared_ptr<Attempt>> left;  // end when the lock has
+  const std::lock_guard lock(mutex_);
+  for (const auto& [path, monitor] : monitors_) {
+    const std::shared_ptr<Attempt> attempt = find_attempt(*monitor, endpoint);
+    if (!attempt) continue;
+    take_out(*monitor, *attempt);
+    left.push_back(attempt);
+  }
+}
+
 void Monitors::leave(std::uint32_t endpoint) {
   std::vector<std::shared_ptr<Monitor>> held;
   {
@@ -286,6 +308,28 @@ void Monitors::leave(std::uint32_t endpoint) {
     }
   }
   for (const auto& monitor : held) give_back(monitor);
+}
+
+std::size_t Monitors::end_if(std::uint32_t endpoint,
+                             const std::function<bool(const std::string&)>& is_over,
+                             const Error& why) {
+  std::vector<std::shared_ptr<Monitor>> held;
+  Replies replies;
+  std::size_t count = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [place, monitor] : monitors_) {
+      if (!is_over(place.first)) continue;
+      if (const std::shared_ptr<Attempt> attempt = find_attempt(*monitor, endpoint)) {
+        fail(*monitor, *attempt, why, replies);
+        ++count;
+      }
+      if (begin_exit(*monitor, endpoint)) held.push_back(monitor);
+    }
+  }
+  for (const auto& reply : replies) reply();
+  for (const auto& monitor : held) give_back(monitor);
+  return count + held.size();
 }
 
 void Monitors::forget(const ServedObject& object) {

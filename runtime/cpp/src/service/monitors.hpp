@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -31,12 +32,14 @@ class Monitors final : public channel::Timer, public std::enable_shared_from_thi
   /// Called once for each enter() and go_on() that does not throw. The error is that of `failed`.
   using Reply = std::function<void(Outcome, const Error*)>;
 
-  /// Sessions that do not use what they hold for `patience` lose it.
-  Monitors(std::shared_ptr<endpoint::Core> core, channel::Milliseconds patience);
+  /// Sessions that do not use what they hold for `patience` lose it. Each is in at most `limit`
+  /// monitors or lines.
+  Monitors(std::shared_ptr<endpoint::Core> core, channel::Milliseconds patience, std::size_t limit);
   ~Monitors();
 
-  /// Gets in line; a negative time-out is none. After 5 s the reply is to wait on. Throws rr::Error
-  /// (invalid_operation) when the session is in, or in line.
+  /// Gets in line; a negative time-out is none. After 5 s the reply is to wait on. Throws
+  /// rr::Error: invalid_operation when the session is in, or in line, out_of_system_resource when
+  /// it is in too many.
   void enter(const ServedObject& object, std::uint32_t endpoint, channel::Milliseconds timeout,
              Reply reply);
   /// Throws rr::Error (invalid_operation) when the session is neither in nor in line.
@@ -45,8 +48,14 @@ class Monitors final : public channel::Timer, public std::enable_shared_from_thi
   /// (invalid_operation) when the session is neither.
   bool exit(const ServedObject& object, std::uint32_t endpoint);
 
+  /// The client of a session has gone: it gets out of all lines, and out of what it holds later.
+  void leave_lines(std::uint32_t endpoint);
   /// A session ends. Runs user code, as do exit() and forget().
   void leave(std::uint32_t endpoint);
+  /// A session may not be in those at paths for which `is_over` holds, nor in line for them, which
+  /// fails with `why`. Returns how many they were. Runs user code.
+  std::size_t end_if(std::uint32_t endpoint, const std::function<bool(const std::string&)>& is_over,
+                     const Error& why);
   /// An object goes away.
   void forget(const ServedObject& object);
 
@@ -69,6 +78,7 @@ class Monitors final : public channel::Timer, public std::enable_shared_from_thi
 
   void on_timer() override;
   void drop_unused();
+  void check_count(std::uint32_t endpoint) const;
   void step(const std::shared_ptr<Monitor>& monitor, const std::shared_ptr<Attempt>& attempt);
   void ask(const std::shared_ptr<Monitor>& monitor);
   void give_back(const std::shared_ptr<Monitor>& monitor);
@@ -85,6 +95,7 @@ class Monitors final : public channel::Timer, public std::enable_shared_from_thi
 
   const std::shared_ptr<endpoint::Core> core_;
   const channel::Milliseconds patience_;
+  const std::size_t limit_;
   std::atomic<int> held_{0};
   std::mutex mutex_;
   // By path, and by the client whose own the object is.

@@ -5,10 +5,13 @@
 #include <charconv>
 #include <iterator>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/service/places.hpp"
+#include "runtime/cpp/src/service/turn_break.hpp"
 
 namespace rr::service {
 namespace {
@@ -48,10 +51,24 @@ std::string spelled_index(const ServedObject& parent, const endpoint::PathSegmen
   return is_number ? std::to_string(number) : *segment.index;
 }
 
+// Bytes of an object's path, on average; it is kept several times.
+constexpr std::size_t path_room = 512;
+// What an object takes, about; the program's own part of it is not known.
+constexpr std::size_t object_cost = 1024;
+constexpr std::size_t copies_of_path = 7;
+std::size_t cost_of(const std::string& path) { return object_cost + copies_of_path * path.size(); }
+// When nothing was found that is not used.
+constexpr channel::Milliseconds sweep_pause{100};
+
 }  // namespace
 
-ObjectTree::ObjectTree(std::string root_name, std::shared_ptr<Skeleton> root, Notice attach)
-    : attach_(std::move(attach)) {
+ObjectTree::ObjectTree(std::string root_name, std::shared_ptr<Skeleton> root, std::size_t limit,
+                       std::shared_ptr<channel::Account> account, Notices notices,
+                       channel::Milliseconds patience)
+    : limit_(limit),
+      notices_(std::move(notices)),
+      patience_(patience),
+      charge_(std::move(account)) {
   const ObjectType& type = root->rr_object_type();
   root_ = std::make_shared<const ServedObject>(
       ServedObject{std::move(root_name), std::move(root), &type, &members_of(type)});
@@ -84,22 +101,95 @@ ObjectTree::Object ObjectTree::find(std::string_view path, std::uint32_t client)
 // client's own says nothing to others, who then look for theirs.
 ObjectTree::Known ObjectTree::find_known(const std::string& path, std::uint32_t client,
                                          bool is_below_own) {
+  const channel::Time deadline = channel::after(channel::Clock::now(), patience_);
   std::unique_lock lock(mutex_);
   while (true) {
-    const auto [found, is_new] = places_.try_emplace(path);
+    const auto found = places_.find(path);
+    if (found == places_.end()) {
+      if (is_below_own && client == 0) break;
+      if (!take_room(path, lock)) continue;
+      Place& place = places_[path];
+      if (is_below_own) place.own.try_emplace(client);
+      return {nullptr, true, is_below_own};
+    }
     Place& place = found->second;
     if (is_below_own || !place.own.empty()) {
-      if (client == 0) throw Error(ErrorCode::object_not_found, "this object is for clients only");
-      const auto [own, is_first] = place.own.try_emplace(client);
-      if (is_first) return {nullptr, true, true};
+      if (client == 0) break;
+      const auto own = place.own.find(client);
+      if (own == place.own.end()) {
+        if (!take_room(path, lock)) continue;
+        place.own.try_emplace(client);
+        return {nullptr, true, true};
+      }
       if (own->second) return {own->second, false, true};
-    } else if (is_new) {
-      return {nullptr, true, false};
     } else if (place.object) {
+      add_user(place, client);
       return {place.object, false, false};
     }
-    settled_.wait(lock);
+    await_settlement(lock, deadline);
   }
+  throw Error(ErrorCode::object_not_found, "this object is for clients only");
+}
+
+// Under the lock, which is given up meanwhile. Who looks for the object may be waiting for its
+// client, and that for this request. Throws rr::Error at the deadline.
+void ObjectTree::await_settlement(std::unique_lock<std::mutex>& lock, channel::Time deadline) {
+  const std::uint64_t seen = settlements_;
+  lock.unlock();
+  {
+    const TurnBreak turn_break(channel::never);  // what follows needs the turn
+    channel::Reactor::about_to_wait();
+    lock.lock();
+    while (settlements_ == seen && channel::Clock::now() < deadline) {
+      channel::wait_until(settled_, lock, deadline);
+    }
+    lock.unlock();
+  }
+  lock.lock();
+  if (settlements_ == seen) {
+    throw Error(ErrorCode::operation_timeout, "another request still looks for this object");
+  }
+}
+
+// Under the lock. False when it was given up meanwhile, for what is not used to be released.
+bool ObjectTree::take_room(const std::string& path, std::unique_lock<std::mutex>& lock) {
+  const auto draw = [&] {
+    return size_ < limit_ && path_size_ + path.size() <= limit_ * path_room &&
+           charge_.add(cost_of(path));
+  };
+  if (!draw()) {
+    // Not for each request of a client that asks for more and more.
+    const channel::Time now = channel::coarse_now();
+    Released released = now < next_sweep_ ? Released() : release_unused();
+    if (released.empty() && now >= next_sweep_) next_sweep_ = now + sweep_pause;
+    const bool is_full = released.empty();
+    lock.unlock();
+    if (is_full) {
+      throw Error(ErrorCode::out_of_system_resource,
+                  "the objects of the service are as many as they may be, " +
+                      std::to_string(limit_) + ", or take too much memory");
+    }
+    notices_.drop(std::move(released));
+    lock.lock();
+    return false;
+  }
+  ++size_;
+  path_size_ += path.size();
+  return true;
+}
+
+// Under the lock.
+void ObjectTree::count_out(const std::string& path) {
+  --size_;
+  path_size_ -= path.size();
+  charge_.reduce(cost_of(path));
+}
+
+// Under the lock.
+void ObjectTree::add_user(Place& place, std::uint32_t client) {
+  if (client == 0) return;
+  const auto at = std::lower_bound(place.users.begin(), place.users.end(), client);
+  if (at == place.users.end() || *at != client) place.users.insert(at, client);
 }
 
 ObjectTree::Object ObjectTree::look_up(const ServedObject& parent,
@@ -113,7 +203,7 @@ ObjectTree::Object ObjectTree::look_up(const ServedObject& parent,
       throw Error(ErrorCode::object_not_found, "this object is for clients only");
     }
     if (is_for_client) object->owner = client;
-    attach_(*object);
+    notices_.attach(*object);
     settle(path, client, is_own, object);
     return object;
   } catch (...) {
@@ -143,13 +233,16 @@ std::shared_ptr<ServedObject> ObjectTree::make(const ServedObject& parent,
 void ObjectTree::settle(const std::string& path, std::uint32_t client, bool is_own, Object object) {
   {
     const std::lock_guard lock(mutex_);
+    ++settlements_;
     Place& place = places_[path];
     if (object && object->owner != 0) {
       place.own[client] = std::move(object);
       own_paths_[client].insert(path);
     } else if (object) {
       place.object = std::move(object);
+      add_user(place, client);
     } else {
+      count_out(path);
       if (is_own) place.own.erase(client);
       if (place.own.empty() && !place.object) places_.erase(path);
     }
@@ -170,6 +263,7 @@ void ObjectTree::take(Object& object, Released& released) {
     paths->second.erase(object->path);
     if (paths->second.empty()) own_paths_.erase(paths);
   }
+  count_out(object->path);
   released.push_back(std::move(object));
 }
 
@@ -183,9 +277,9 @@ ObjectTree::Released ObjectTree::release_if(Condition condition) {
     return true;
   };
   for (auto place = places_.begin(); place != places_.end();) {
-    auto& [object, own] = place->second;
+    auto& [object, own, users] = place->second;
     const std::size_t count = released.size();
-    is_released(object);
+    if (is_released(object)) users.clear();
     for (auto one = own.begin(); one != own.end();) {
       one = is_released(one->second) ? own.erase(one) : std::next(one);
     }
@@ -226,11 +320,39 @@ ObjectTree::Released ObjectTree::release_all_of(std::uint32_t client) {
   if (paths.empty()) return released;
   for (const std::string& path : paths.mapped()) {
     const auto found = places_.find(path);
+    count_out(path);
     released.push_back(std::move(found->second.own.extract(client).mapped()));
     if (found->second.own.empty() && !found->second.object) places_.erase(found);
   }
   generation_.fetch_add(1, std::memory_order_release);
   return released;
+}
+
+// Under the lock: objects of all that no client uses, but for those that something holds. Whoever
+// uses one has used those above it.
+ObjectTree::Released ObjectTree::release_unused() {
+  Released released;
+  for (auto place = places_.begin(); place != places_.end();) {
+    auto& [object, own, users] = place->second;
+    if (!object || !users.empty() || !own.empty() || notices_.is_held(*object)) {
+      ++place;
+      continue;
+    }
+    take(object, released);
+    place = places_.erase(place);
+  }
+  if (!released.empty()) generation_.fetch_add(1, std::memory_order_release);
+  return released;
+}
+
+ObjectTree::Released ObjectTree::leave(std::uint32_t client, std::size_t limit) {
+  const std::lock_guard lock(mutex_);
+  for (auto& [path, place] : places_) {
+    const auto at = std::lower_bound(place.users.begin(), place.users.end(), client);
+    if (at != place.users.end() && *at == client) place.users.erase(at);
+  }
+  const bool is_much = size_ > limit || path_size_ > limit * path_room;
+  return is_much ? release_unused() : Released();
 }
 
 ObjectTree::Released ObjectTree::clear() {

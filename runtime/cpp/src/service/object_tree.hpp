@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -16,6 +17,8 @@
 
 #include "rr/definition.hpp"
 #include "rr/skeleton.hpp"
+#include "runtime/cpp/src/channel/account.hpp"
+#include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/endpoint/service_path.hpp"
 #include "runtime/cpp/src/service/member_index.hpp"
 
@@ -34,17 +37,32 @@ struct ServedObject {
 /// parent's objref, and kept until released. At one path there is an object of all clients, or one
 /// for each of them; below a client's own object everything is that client's. No user code runs
 /// under the lock.
+///
+/// Clients bring objects up, so there are only so many. Who has used an object is known while its
+/// session lasts: what nobody uses any more gives way to others, and where many are left, at the
+/// end of a session.
 class ObjectTree {
  public:
   using Object = std::shared_ptr<const ServedObject>;
   using Released = std::vector<Object>;
-  /// `attach` is called for each object that joins.
-  using Notice = std::function<void(const ServedObject&)>;
-  ObjectTree(std::string root_name, std::shared_ptr<Skeleton> root, Notice attach);
+  /// What the tree asks of its service.
+  struct Notices {
+    /// For each object that joins.
+    std::function<void(const ServedObject&)> attach;
+    /// Objects that had to give way.
+    std::function<void(Released)> drop;
+    /// Whether something keeps an object that nobody uses. Called under the lock.
+    std::function<bool(const ServedObject&)> is_held;
+  };
+  /// At most `limit` objects besides the root, and as many as the account allows. `patience`: how
+  /// long a request waits for an object that another one looks for.
+  ObjectTree(std::string root_name, std::shared_ptr<Skeleton> root, std::size_t limit,
+             std::shared_ptr<channel::Account> account, Notices notices,
+             channel::Milliseconds patience);
 
   /// Finds the object as a client sees it, perhaps by asking its ancestors, which is user code.
-  /// Whoever is no client (0) finds objects of all only. Throws rr::Error, and what user code
-  /// throws.
+  /// Whoever is no client (0) finds objects of all only. Throws rr::Error, out_of_system_resource
+  /// where there are too many objects, and what user code throws.
   Object find(std::string_view path, std::uint32_t client);
   [[nodiscard]] const Object& root() const { return root_; }
 
@@ -54,6 +72,9 @@ class ObjectTree {
   /// A client's own; nothing when it has none at the path.
   Released release(std::string_view path, std::uint32_t client);
   Released release_all_of(std::uint32_t client);
+  /// A client has left. While there are more than `limit` objects, those that nobody uses any more
+  /// are forgotten.
+  Released leave(std::uint32_t client, std::size_t limit);
   /// All, the root too, but not what is a client's own: that is released when the client has gone.
   Released clear();
 
@@ -67,6 +88,7 @@ class ObjectTree {
   struct Place {
     Object object;
     std::map<std::uint32_t, Object> own;
+    std::vector<std::uint32_t> users{};  // clients that have used the object of all; sorted
   };
   // What find_known() has found: an object, or that the caller has to look for it, as one of all or
   // as one of the client's own.
@@ -76,7 +98,10 @@ class ObjectTree {
     bool is_own = false;
   };
 
+  void await_settlement(std::unique_lock<std::mutex>& lock, channel::Time deadline);
   Known find_known(const std::string& path, std::uint32_t client, bool is_below_own);
+  bool take_room(const std::string& path, std::unique_lock<std::mutex>& lock);
+  static void add_user(Place& place, std::uint32_t client);
   Object look_up(const ServedObject& parent, const endpoint::PathSegment& segment,
                  const std::string& path, std::uint32_t client, bool is_own);
   std::shared_ptr<ServedObject> make(const ServedObject& parent,
@@ -84,14 +109,23 @@ class ObjectTree {
   void settle(const std::string& path, std::uint32_t client, bool is_own, Object object);
   template <class Condition>
   Released release_if(Condition condition);
+  Released release_unused();
+  void count_out(const std::string& path);
   void take(Object& object, Released& released);
   const MemberIndex& members_of(const ObjectType& type);
 
   Object root_;
-  const Notice attach_;
+  const std::size_t limit_;
+  const Notices notices_;
+  const channel::Milliseconds patience_;
   std::atomic<std::uint32_t> generation_{0};
   std::mutex mutex_;
   std::condition_variable settled_;
+  std::uint64_t settlements_ = 0;
+  std::size_t size_ = 0;        // objects besides the root, and those that are looked for
+  std::size_t path_size_ = 0;   // bytes of their paths
+  channel::Charge charge_;      // for them
+  channel::Time next_sweep_{};  // what is not used is looked for then, or later
   std::unordered_map<std::string, Place> places_;                       // all but the root
   std::unordered_map<std::uint32_t, std::set<std::string>> own_paths_;  // of clients' own
   std::map<const ObjectType*, std::unique_ptr<MemberIndex>> indexes_;

@@ -3,14 +3,19 @@
 
 #include <algorithm>
 #include <fstream>
+#include <functional>
 #include <iterator>
+#include <random>
 #include <utility>
 
 #include "rr/error.hpp"
 #include "rr/users.hpp"
-#include "runtime/cpp/src/service/md5.hpp"
+#include "runtime/cpp/src/service/password_hash.hpp"
 
 namespace rr {
+
+using service::are_same;
+using service::crypt_password;
 
 struct PasswordUsers::Account {
   User user;
@@ -43,22 +48,18 @@ bool can_be_hashed(std::string_view password) {
          password.find('\0') == std::string_view::npos;
 }
 
-// The hash of a password by what an existing hash, or a new setting, says. Empty when that fails.
-std::string crypt_password(std::string_view password, const std::string& setting) {
-  const auto room = std::make_unique<crypt_data>();  // large, and zero
-  const std::string text(password);
-  const char* const hash = crypt_rn(text.c_str(), setting.c_str(), room.get(), sizeof(*room));
-  return hash == nullptr ? std::string() : std::string(hash);
+// What a password is compared with.
+std::string hash_like(const std::string& password, const std::string& hash, bool is_unsalted) {
+  return is_unsalted ? service::md5(password) : crypt_password(password, hash);
 }
 
-// Takes as long whichever byte differs.
-bool are_same(std::string_view a, std::string_view b) {
-  if (a.size() != b.size()) return false;
-  unsigned different = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    different |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
-  }
-  return different == 0;
+// Differs from process to process, so that nobody foresees what is made of it.
+std::size_t secret() {
+  static const std::size_t number = [] {
+    std::random_device random;
+    return (static_cast<std::size_t>(random()) << 32U) ^ random();
+  }();
+  return number;
 }
 
 Error refusal() { return {ErrorCode::authentication_error, "Invalid username or password"}; }
@@ -144,14 +145,16 @@ User PasswordUsers::authenticate(const std::string& name,
                                     [&](const Account& item) { return item.user.name == name; });
   if (!can_be_hashed(*password)) throw refusal();
   if (account == accounts_.end()) {
-    // As much work as for a user that exists, which is not to be found out by the time it takes.
-    if (!accounts_.empty() && !accounts_.front().is_unsalted) {
-      crypt_password(*password, accounts_.front().hash);
+    // As much work as for a user that exists, which is not to be found out by the time it takes:
+    // always that of the same one for a name, as hashes may differ in what they cost.
+    if (!accounts_.empty()) {
+      const std::size_t place = std::hash<std::string>()(name) ^ secret();
+      const Account& other = accounts_[place % accounts_.size()];
+      hash_like(*password, other.hash, other.is_unsalted);
     }
     throw refusal();
   }
-  const std::string hash =
-      account->is_unsalted ? service::md5(*password) : crypt_password(*password, account->hash);
+  const std::string hash = hash_like(*password, account->hash, account->is_unsalted);
   const bool may_come =
       account->nodes.empty() ||
       std::find(account->nodes.begin(), account->nodes.end(), node) != account->nodes.end();

@@ -93,7 +93,8 @@ void PipeServerBase::send_all(const void* value) const {
     try {
       end->send_written(packet);
     } catch (const Error& error) {
-      if (error.code() == ErrorCode::buffer_limit_violation) {
+      if (error.code() == ErrorCode::buffer_limit_violation ||
+          error.code() == ErrorCode::out_of_system_resource) {
         PipeEnd(end).close();
       } else if (end->is_open() && error.code() != ErrorCode::connection_error &&
                  error.code() != ErrorCode::invalid_operation) {

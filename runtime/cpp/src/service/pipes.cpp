@@ -17,6 +17,8 @@ namespace rr::service {
 namespace {
 
 constexpr std::size_t ends_of_a_client = 4096;
+// What an endpoint takes without any packet, about.
+constexpr std::size_t end_cost = 2048;
 constexpr Parameter index_parameter = parameter<std::int32_t>("index");
 
 }  // namespace
@@ -61,6 +63,7 @@ struct Pipes::Served final : PipeEnd::State {
       : State(std::move(core), std::move(side), std::move(what)), place(std::move(where)) {}
 
   const std::shared_ptr<PipePlace> place;
+  channel::Charge charge;  // for the end itself
   // Guarded by the mutex of Pipes.
   bool is_announced = false;           // the client knows of it
   bool is_closed_unannounced = false;  // and must be told that it is gone already
@@ -80,12 +83,19 @@ Pipes::End Pipes::open(const Question& question, const ServedObject& object, con
   if (!index || ends_.size() >= ends_of_a_client) {
     throw Error(ErrorCode::out_of_system_resource, "too many pipe endpoints");
   }
+  channel::Charge charge(connection().account());
+  if (!charge.add(end_cost + object.path.size())) {
+    throw Error(ErrorCode::out_of_system_resource,
+                "the pipe endpoints of this client take too much memory");
+  }
+  if (!endpoint_.is_still_allowed(question)) throw ServerEndpoint::no_longer_allowed();
   const auto end = std::make_shared<Served>(
       endpoint_.directory_->core(),
       std::shared_ptr<endpoint::PipeSide>(endpoint_.shared_from_this(), this),
       PipeEnd::State::Identity{object.path, &member, member.holding, *index, is_unreliable, false,
                                endpoint_.client().endpoint, endpoint_.client().node},
       Skeleton::Places::of(*object.skeleton).pipe(member.name));
+  end->charge = std::move(charge);
   ends_.add(end);
   end->place->add(end);
   return end;
@@ -96,6 +106,10 @@ void Pipes::connect(const Question& question) {
   const Member& member = endpoint_.find_member(*object, question.entry.member, MemberKind::pipe);
   const End end = open(question, *object, member);
   try {
+    // What was released meanwhile has not been found among the ends.
+    if (endpoint_.find_object(question.entry.service_path) != object) {
+      throw Error(ErrorCode::object_not_found, "the object was released");
+    }
     const auto connected = end->place->connected();
     if (connected) connected(PipeEnd(end));
   } catch (...) {
@@ -141,7 +155,8 @@ void Pipes::take_packets(const Question& question) {
   const auto object = endpoint_.find_object(question.entry.service_path);
   const Member& member = endpoint_.find_member(*object, question.entry.member, MemberKind::pipe);
   endpoint::PipeArrival arrival(question.message, question.entry, question.owner,
-                                *endpoint_.host_->types());
+                                *endpoint_.host_->types(),
+                                {connection().account(), endpoint_.container_limit()});
   arrival.take([&](const endpoint::PipePacket& packet, Decoder&) -> endpoint::PipeArrival::Taken {
     const std::lock_guard lock(mutex_);
     auto end = ends_.find(object->path, member.name, packet.index);
@@ -178,6 +193,19 @@ void Pipes::finish(Served& end) {
   end.finish();
 }
 
+std::size_t Pipes::end_if(const Choice& is_over) {
+  std::vector<endpoint::PipeTable::End> over;
+  {
+    const std::lock_guard lock(mutex_);
+    over = ends_.all();
+  }
+  std::erase_if(over, [&](const auto& end) {
+    return !is_over(end->identity.path, end->identity.member->name);
+  });
+  for (const auto& end : over) close(*end, false);
+  return over.size();
+}
+
 void Pipes::release(std::string_view path) {
   std::vector<endpoint::PipeTable::End> ended;
   {
@@ -203,7 +231,11 @@ void Pipes::end() {
 
 channel::Connection& Pipes::connection() const { return endpoint_.connection(); }
 
+// A change of what the session may do ends its ends in a moment.
 void Pipes::stream(Writer& writer, const EntryHeader& header, std::string_view metadata) {
+  if (!endpoint_.access().may_send(header.type, header.service_path, header.member)) {
+    throw Error(ErrorCode::invalid_operation, "the pipe endpoint is closed");
+  }
   endpoint_.stream_packet(writer, header, metadata);
 }
 

@@ -56,6 +56,9 @@ class Pipes final : public endpoint::PipeSide {
   void take_packets(const Question& question);
   void take_acknowledgements(const Question& question);
 
+  /// Ends those for which `is_over(path, member)` holds, and tells the client. Returns how many.
+  using Choice = std::function<bool(std::string_view, std::string_view)>;
+  std::size_t end_if(const Choice& is_over);
   /// The object at a path is released, and those below it.
   void release(std::string_view path);
   /// The session is over.

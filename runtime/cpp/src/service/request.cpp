@@ -14,15 +14,13 @@ bool Request::is_set() const { return source_->is_set; }
 
 void Request::read_value(void* value) const {
   const service::Question& question = source_->question;
-  Decoder decoder(question.message.version, &question.message.strings, question.owner,
-                  &source_->types);
+  Decoder decoder = question.decoder(&source_->types);
   endpoint::read_value(decoder, question.entry, "value", *source_->member.type, value);
 }
 
 void Request::read_arguments(void* const* values) const {
   const service::Question& question = source_->question;
-  Decoder decoder(question.message.version, &question.message.strings, question.owner,
-                  &source_->types);
+  Decoder decoder = question.decoder(&source_->types);
   endpoint::read_values(decoder, question.entry, source_->member.parameters, values);
 }
 
@@ -38,8 +36,7 @@ void Request::answer(const void* value) {
   if (source.is_set) {
     source.endpoint.answer_empty(source.question);
   } else if (source.member.type != nullptr && value != nullptr) {
-    source.endpoint.answer_value(source.question, is_call ? "return" : "value", *source.member.type,
-                                 value);
+    source.endpoint.answer_result(source.question, source.member, source.made, value);
   } else if (is_call && source.member.type == nullptr) {
     const std::int32_t nothing = 0;  // what void looks like (07, section 8)
     source.endpoint.answer_value(source.question, "return", type_of<std::int32_t>, &nothing);
@@ -62,10 +59,16 @@ ReplyHandle Request::defer() {
     throw Error(ErrorCode::invalid_operation, "a generator cannot be given later");
   }
   const Entry& entry = source.question.entry;
-  auto state = std::make_unique<ReplyHandle::State>(ReplyHandle::State{
-      source.endpoint.weak_from_this(),
+  service::ServerEndpoint& endpoint = source.endpoint;
+  const std::uint64_t number = endpoint.owed_answers()->add(
+      endpoint.shared_from_this(),
       {entry.type, std::string(entry.service_path), std::string(entry.member), entry.request_id,
-       &source.member, source.question.gathering, source.question.place}});
+       &source.member, source.question.batch, source.question.place,
+       service::admission_of(source.question)},
+      endpoint.late_answer_limit());
+  auto state =
+      std::make_unique<ReplyHandle::State>(ReplyHandle::State{endpoint.owed_answers(), number});
+  source.made.end();  // it may be answered much later
   source.state = Source::State::deferred;
   return ReplyHandle(std::move(state));
 }
@@ -80,24 +83,26 @@ ReplyHandle& ReplyHandle::operator=(ReplyHandle&& other) noexcept {
 
 ReplyHandle::~ReplyHandle() {
   if (!state_) return;
-  if (const auto endpoint = state_->endpoint.lock()) {
-    endpoint->answer_late(
-        state_->answer, Error(ErrorCode::operation_aborted, "the request was dropped unanswered"));
+  if (const auto taken = state_->owed->take(state_->number)) {
+    taken->endpoint->answer_late(
+        taken->answer, Error(ErrorCode::operation_aborted, "the request was dropped unanswered"));
   }
 }
 
 void ReplyHandle::fail(std::exception_ptr error) {
   const auto state = std::exchange(state_, nullptr);
   if (!state) throw Error(ErrorCode::invalid_operation, "the request has been answered already");
-  if (const auto endpoint = state->endpoint.lock()) {
-    endpoint->answer_late(state->answer, endpoint::describe(error));
+  if (const auto taken = state->owed->take(state->number)) {
+    taken->endpoint->answer_late(taken->answer, endpoint::describe(error));
   }
 }
 
 void ReplyHandle::succeed(const void* result) {
   const auto state = std::exchange(state_, nullptr);
   if (!state) throw Error(ErrorCode::invalid_operation, "the request has been answered already");
-  if (const auto endpoint = state->endpoint.lock()) endpoint->answer_late(state->answer, result);
+  if (const auto taken = state->owed->take(state->number)) {
+    taken->endpoint->answer_late(taken->answer, result);
+  }
 }
 
 }  // namespace rr

@@ -7,6 +7,7 @@
 #include "rr/definition.hpp"
 #include "rr/registry.hpp"
 #include "rr/skeleton.hpp"
+#include "runtime/cpp/src/service/handler_memory.hpp"
 #include "runtime/cpp/src/service/server_endpoint.hpp"
 
 namespace rr {
@@ -21,6 +22,7 @@ struct Request::Source {
   const Member& member;
   const std::shared_ptr<const service::ServedObject>& object;
   bool is_set;
+  service::HandlerMemory& made;
   State state = State::open;
 
   /// Answers unless the handler has, or has put it off: nothing for what has no value.
@@ -30,8 +32,8 @@ struct Request::Source {
 /// An answer that is owed. It does not keep the session: an object that never gives it would keep
 /// itself.
 struct ReplyHandle::State {
-  std::weak_ptr<service::ServerEndpoint> endpoint;
-  service::ServerEndpoint::LateAnswer answer;
+  std::shared_ptr<service::OwedAnswers> owed;
+  std::uint64_t number;
 };
 
 }  // namespace rr

@@ -39,10 +39,22 @@ channel::Connection& ServedWireEnd::connection() const { return endpoint_->conne
 const NodeId& ServedWireEnd::node() const { return endpoint_->client().node; }
 std::uint32_t ServedWireEnd::client() const { return endpoint_->client().endpoint; }
 
+bool ServedWireEnd::is_allowed(std::atomic<std::uint32_t>& asked_at, bool is_taking) const {
+  const SessionAccess& access = endpoint_->access();
+  const std::uint32_t standing = access.standing();
+  if (asked_at.load(std::memory_order_relaxed) == standing) return true;
+  const bool is_allowed = is_taking
+                              ? access.may_receive(EntryType::wire_packet, path(), member().name)
+                              : access.may_send(EntryType::wire_packet, path(), member().name);
+  if (is_allowed) asked_at.store(standing, std::memory_order_relaxed);
+  return is_allowed;
+}
+
 void ServedWireEnd::check_sending() const {
   if ((member().access & writeonly) != 0) {
     throw Error(ErrorCode::write_only_member, "Write only member");
   }
+  if (!may_send()) throw Error(ErrorCode::invalid_operation, "the wire is not connected");
 }
 
 endpoint::SenderTime ServedWireEnd::draw_time() { return offered_->draw_time(clock()); }
@@ -58,6 +70,7 @@ void ServedWireEnd::transmit(Writer& writer, const channel::Newest& newest) {
 
 void ServedWireEnd::send_common(std::shared_ptr<const void> value, Writer& elements,
                                 endpoint::SenderTime time) {
+  if (!may_send()) return;
   keep_sent(std::move(value), time);
   Writer& writer = channel::thread_writer();
   writer.reset(elements.version());

@@ -31,6 +31,10 @@ class ServedWireEnd final : public WireEnd::State {
   [[nodiscard]] bool is_released() const { return is_released_; }
   [[nodiscard]] std::uint32_t client() const override;
 
+  /// Whether the client may send by it now; another answer than before only after what it may do
+  /// has changed.
+  bool may_take() { return is_allowed(taking_, true); }
+
   /// The client's node.
   [[nodiscard]] const NodeId& node() const;
   [[nodiscard]] const endpoint::SenderClock& clock() const { return core().clock(); }
@@ -44,6 +48,8 @@ class ServedWireEnd final : public WireEnd::State {
   static constexpr std::size_t fetch_steps = 3;
 
  private:
+  [[nodiscard]] bool may_send() const { return is_allowed(sending_, false); }
+  bool is_allowed(std::atomic<std::uint32_t>& asked_at, bool is_taking) const;
   [[nodiscard]] channel::Connection& connection() const override;
   void check_sending() const override;
   endpoint::SenderTime draw_time() override;
@@ -58,6 +64,9 @@ class ServedWireEnd final : public WireEnd::State {
   std::shared_ptr<const ServedObject> object_;
   const std::shared_ptr<OfferedWire> offered_;
   std::atomic<bool> is_released_ = false;
+  // The standing of the session (SessionAccess) in which it was allowed last.
+  mutable std::atomic<std::uint32_t> taking_{0};
+  mutable std::atomic<std::uint32_t> sending_{0};
 };
 
 }  // namespace rr::service

@@ -2,14 +2,17 @@
 // What a service's end of a connection sends, and how it ends.
 #include "runtime/cpp/src/service/server_endpoint.hpp"
 
+#include <tuple>
 #include <utility>
 
 #include "runtime/cpp/src/channel/scratch.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
 #include "runtime/cpp/src/endpoint/requests.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
+#include "runtime/cpp/src/service/decoded_memory.hpp"
 #include "runtime/cpp/src/service/directory.hpp"
-#include "runtime/cpp/src/service/gathering.hpp"
+#include "runtime/cpp/src/service/handler_memory.hpp"
+#include "runtime/cpp/src/service/response_batch.hpp"
 #include "runtime/cpp/src/service/service_host.hpp"
 
 namespace rr::service {
@@ -24,7 +27,10 @@ ServerEndpoint::ServerEndpoint(std::shared_ptr<Directory> directory,
                                std::shared_ptr<channel::Connection> connection)
     : directory_(std::move(directory)),
       connection_(std::move(connection)),
+      owed_answers_(std::make_shared<OwedAnswers>(connection_->account())),
       last_heard_(channel::coarse_now()) {}
+
+std::string ServerEndpoint::service_name() const { return host_ ? host_->name() : std::string(); }
 
 ServerEndpoint::~ServerEndpoint() {
   if (client_.endpoint != 0) directory_->core()->release_endpoint(client_.endpoint);
@@ -80,9 +86,12 @@ void ServerEndpoint::send_packet(const EntryHeader& header, std::span<const Para
   writer.entry(header, static_cast<std::uint32_t>(parameters.size()), 0);
   try {
     send_answer(writer, 1, header.type, Way::send, {}, is_urgent);
+    is_told_full_.store(false, std::memory_order_relaxed);
   } catch (const Error& error) {
     // When the client is gone or does not listen, its connection ends and with it the session.
     if (connection_->is_closed() || error.code() == ErrorCode::connection_error) return;
+    // Once, not for each packet to a client that takes none.
+    if (error.code() == ErrorCode::out_of_system_resource && is_told_full_.exchange(true)) return;
     directory_->core()->log(LogLevel::error, "`" + std::string(header.member) + "` of `" +
                                                  std::string(header.service_path) +
                                                  "` was not sent to a client: " + error.what());
@@ -116,15 +125,20 @@ const std::shared_ptr<const TypeRegistry>& ServerEndpoint::types() const { retur
 
 Writer& ServerEndpoint::begin_answer(const Question& question) const {
   Writer& writer = channel::thread_writer();
-  writer.reset(question.gathering ? question.gathering->version() : connection_->version());
+  writer.reset(question.batch ? question.batch->version() : connection_->version());
   return writer;
 }
 
-// Sends a finished answer, or puts it where those of the same message gather.
+// A user who has gone meanwhile, or may not have it any more, gets an error instead.
 void ServerEndpoint::finish(const Question& question, Writer& writer, std::string_view metadata) {
-  if (question.gathering) {
-    connection_->check_size(writer);
-    question.gathering->put(question.place, writer.copy());
+  if (!is_still_allowed(question)) throw no_longer_allowed();
+  deliver(question, writer, metadata);
+}
+
+// Sends a finished answer, or puts it where those of the same message gather.
+void ServerEndpoint::deliver(const Question& question, Writer& writer, std::string_view metadata) {
+  if (question.batch) {
+    question.batch->put(question.place, question.entry, writer);
   } else {
     send_answer(writer, 1, endpoint::answer_header(question.entry).type, Way::reply, metadata,
                 question.is_urgent);
@@ -134,9 +148,20 @@ void ServerEndpoint::finish(const Question& question, Writer& writer, std::strin
 void ServerEndpoint::answer_value(const Question& question, std::string_view name, const Type& type,
                                   const void* value) {
   Writer& writer = channel::thread_writer();
-  writer.reset(question.gathering ? question.gathering->version() : connection_->version());
+  writer.reset(question.batch ? question.batch->version() : connection_->version());
   type.write(writer, name, value);
   if (writer.failed()) throw endpoint::latched(writer);
+  writer.entry(endpoint::answer_header(question.entry), 1, 0);
+  finish(question, writer);
+}
+
+void ServerEndpoint::answer_result(const Question& question, const Member& member,
+                                   HandlerMemory& made, const void* value) {
+  const channel::OfferedCharge made_before(made.end());
+  Writer& writer = begin_answer(question);
+  member.type->write(writer, member.kind == MemberKind::function ? "return" : "value", value);
+  if (writer.failed()) throw endpoint::latched(writer);
+  host_->answer_sizes().note(member, writer.size());
   writer.entry(endpoint::answer_header(question.entry), 1, 0);
   finish(question, writer);
 }
@@ -145,7 +170,7 @@ void ServerEndpoint::answer_values(const Question& question, EntryType type,
                                    std::span<const Parameter> parameters,
                                    const void* const* values) {
   Writer& writer = channel::thread_writer();
-  writer.reset(question.gathering ? question.gathering->version() : connection_->version());
+  writer.reset(question.batch ? question.batch->version() : connection_->version());
   endpoint::write_values(writer, parameters, values);
   if (writer.failed()) throw endpoint::latched(writer);
   EntryHeader header = endpoint::answer_header(question.entry);
@@ -156,7 +181,7 @@ void ServerEndpoint::answer_values(const Question& question, EntryType type,
 
 void ServerEndpoint::answer_empty(const Question& question) {
   Writer& writer = channel::thread_writer();
-  writer.reset(question.gathering ? question.gathering->version() : connection_->version());
+  writer.reset(question.batch ? question.batch->version() : connection_->version());
   endpoint::write_empty_answer(writer, question.entry);
   finish(question, writer);
 }
@@ -168,19 +193,19 @@ void ServerEndpoint::answer_elements(const Question& question, Writer& writer,
 }
 
 void ServerEndpoint::answer_nothing(const Question& question) {
-  if (question.gathering) question.gathering->put(question.place, {});
+  if (question.batch) question.batch->put_nothing(question.place);
 }
 
 void ServerEndpoint::answer_error(const Question& question, const Error& error) {
   Writer& writer = channel::thread_writer();
-  writer.reset(question.gathering ? question.gathering->version() : connection_->version());
+  writer.reset(question.batch ? question.batch->version() : connection_->version());
   endpoint::write_error_answer(writer, question.entry, error);
-  finish(question, writer);
+  deliver(question, writer);
 }
 
 namespace {
 
-Entry question_of(const ServerEndpoint::LateAnswer& late) {
+Entry question_of(const LateAnswer& late) {
   Entry entry;
   entry.type = late.request_type;
   entry.service_path = late.path;
@@ -192,9 +217,13 @@ Entry question_of(const ServerEndpoint::LateAnswer& late) {
 }  // namespace
 
 void ServerEndpoint::answer_late(const LateAnswer& late, const void* result) {
+  if (!is_still_allowed(late.admission, late.path, late.member_name)) {
+    answer_late(late, no_longer_allowed());
+    return;
+  }
   const Entry entry = question_of(late);
   Writer& writer = channel::thread_writer();
-  writer.reset(late.gathering ? late.gathering->version() : connection_->version());
+  writer.reset(late.batch ? late.batch->version() : connection_->version());
   const bool is_call = late.member->kind == MemberKind::function;
   std::uint32_t count = 1;
   if (late.member->type != nullptr && result != nullptr) {
@@ -209,71 +238,68 @@ void ServerEndpoint::answer_late(const LateAnswer& late, const void* result) {
     answer_late(late, endpoint::latched(writer));
     return;
   }
+  host_->answer_sizes().note(*late.member, writer.size());
   writer.entry(endpoint::answer_header(entry), count, 0);
   finish_late(late, writer);
 }
 
 void ServerEndpoint::answer_late(const LateAnswer& late, const Error& error) {
   Writer& writer = channel::thread_writer();
-  writer.reset(late.gathering ? late.gathering->version() : connection_->version());
+  writer.reset(late.batch ? late.batch->version() : connection_->version());
   endpoint::write_error_answer(writer, question_of(late), error);
   finish_late(late, writer);
 }
 
 void ServerEndpoint::answer_late_text(const LateAnswer& late, std::string_view text) {
   Writer& writer = channel::thread_writer();
-  writer.reset(late.gathering ? late.gathering->version() : connection_->version());
+  writer.reset(late.batch ? late.batch->version() : connection_->version());
   writer.string_element("return", text);
   writer.entry(endpoint::answer_header(question_of(late)), 1, 0);
   finish_late(late, writer);
 }
 
 void ServerEndpoint::finish_late(const LateAnswer& late, Writer& writer) {
-  try {
-    if (late.gathering) {
-      connection_->check_size(writer);
-      late.gathering->put(late.place, writer.copy(), true);
+  const Entry request = question_of(late);
+  const auto send = [&] {
+    if (late.batch) {
+      late.batch->put(late.place, request, writer, true);
       return;
     }
     const bool is_urgent = late.member != nullptr && (late.member->access & urgent) != 0;
-    send_answer(writer, 1, endpoint::answer_header(question_of(late)).type, Way::send, {},
-                is_urgent);
+    send_answer(writer, 1, endpoint::answer_header(request).type, Way::send, {}, is_urgent);
+  };
+  try {
+    send();
   } catch (const Error& error) {
     if (connection_->is_closed() || error.code() == ErrorCode::connection_error) return;
-    answer_late(late, error);  // the answer was too large
+    // The answer was too large, for a message or for this client.
+    writer.reset(late.batch ? late.batch->version() : connection_->version());
+    endpoint::write_error_answer(writer, request, error);
+    try {
+      send();
+    } catch (const Error& last) {
+      connection_->close(last);
+    }
   }
 }
 
-void Gathering::put(std::size_t place, std::vector<std::byte> entry, bool is_late) {
-  {
-    const std::lock_guard lock(mutex_);
-    entries_[place] = std::move(entry);
-    if (--missing_ != 0) return;
+std::size_t ServerEndpoint::container_limit() const {
+  const NodeOptions& options = core()->options();
+  if (!host_ || (host_->requires_user() && !user())) {
+    return options.budget.containers_before_login;
   }
-  std::erase_if(entries_, [](const auto& each) { return each.empty(); });
-  const auto endpoint = endpoint_.lock();
-  if (endpoint && !entries_.empty()) send(*endpoint, 0, entries_.size(), is_late);
+  return options.budget.containers != 0 ? options.budget.containers
+                                        : 3 * std::size_t{options.limits.message_size};
 }
 
-void Gathering::send(ServerEndpoint& endpoint, std::size_t first, std::size_t end, bool is_late) {
-  Writer& writer = channel::thread_writer();
-  writer.reset(version_);
-  for (std::size_t i = end; i != first; --i) {
-    writer.prepend_bytes(entries_[i - 1].data(), entries_[i - 1].size());
-  }
-  try {
-    // Several entries have no type of their own; one that is left alone is a session's.
-    endpoint.send_answer(writer, static_cast<std::uint32_t>(end - first),
-                         EntryType::function_call_res,
-                         is_late ? ServerEndpoint::Way::send : ServerEndpoint::Way::reply);
-    return;
-  } catch (const Error& error) {
-    // Each fits alone. Otherwise the client is gone.
-    if (error.code() != ErrorCode::protocol_error || end - first == 1) return;
-  }
-  const std::size_t middle = first + (end - first) / 2;
-  send(endpoint, first, middle, is_late);
-  send(endpoint, middle, end, is_late);
+std::size_t ServerEndpoint::generator_limit() const { return host_->limits().generators; }
+std::size_t ServerEndpoint::late_answer_limit() const { return host_->limits().late_answers; }
+std::size_t ServerEndpoint::callback_limit() const { return host_->limits().callbacks; }
+
+Decoder Question::decoder(const TypeRegistry* types) const {
+  Decoder result(message.version, &message.strings, owner, types);
+  if (decoded != nullptr) result.set_budget(*decoded);
+  return result;
 }
 
 void ServerEndpoint::leave() {
@@ -282,37 +308,67 @@ void ServerEndpoint::leave() {
   connection_->close_after(close_delay);
 }
 
-void ServerEndpoint::lost(const Error& why, channel::Laters& laters) {
-  callbacks_.end(why.message(), laters);
-  wires_.end_all(laters);
+void ServerEndpoint::lost(const Error& why, channel::DeferredCallbacks& deferred) {
+  std::shared_ptr<Logins::Attempt> login;
+  {
+    const std::lock_guard lock(user_mutex_);
+    login = login_;
+  }
+  if (login) directory_->logins().cancel(login);
+  callbacks_.end(why.message(), deferred);
+  wires_.end_all(deferred);
+  generators_.end(deferred);
+  std::shared_ptr<ServiceHost> host;
+  ServiceClient client;
+  {
+    const std::lock_guard lock(user_mutex_);
+    std::tie(host, client) = session_;
+  }
+  if (host) host->monitors().leave_lines(client.endpoint);
+  announce_leaving(deferred);
 }
 
 void ServerEndpoint::closed() {
   if (is_member_.exchange(false)) host_->remove_client(*this);
   end_members();
   last_object_.reset();
-  belongings_.end(this);
+  unfinished_.clear();
+  client_values_.end(this);
   if (std::exchange(is_announced_, false)) {
     host_->release_objects_of(client_.endpoint);
     host_->announce_end(*this);
+    audit_.disconnected();
   }
 }
 
 // The client has gone: what it has begun ends with it.
 void ServerEndpoint::end_members() {
-  channel::Laters laters;
-  callbacks_.end("the client has left", laters);
-  wires_.end_all(laters);
-  callbacks_.post(std::move(laters));
+  channel::DeferredCallbacks deferred;
+  callbacks_.end("the client has left", deferred);
+  wires_.end_all(deferred);
+  callbacks_.post(std::move(deferred));
   pipes_.end();
-  generators_.end();
+  owed_answers_->end();
+  channel::DeferredCallbacks last_moments;
+  generators_.end(last_moments);
+  announce_leaving(last_moments);
+  for (const auto& later : last_moments) later();
 }
 
-void ServerEndpoint::release_path(const std::string& path, bool is_told) {
+// Once for each session, whatever ends it.
+void ServerEndpoint::announce_leaving(channel::DeferredCallbacks& deferred) {
+  const std::lock_guard lock(user_mutex_);
+  if (!present_at_) return;
+  deferred.emplace_back([host = std::exchange(present_at_, nullptr), client = session_.second] {
+    host->announce_leaving(client);
+  });
+}
+
+void ServerEndpoint::release_path(const std::string& path) {
   wires_.release(path);
   pipes_.release(path);
   generators_.release_path(path);
-  if (!is_told) return;
+  if (!access_.may_send(EntryType::service_path_released_req, path, {})) return;
   send_packet({.type = EntryType::service_path_released_req, .service_path = path}, {}, nullptr);
 }
 
@@ -322,17 +378,17 @@ void ServerEndpoint::attend(channel::Time now) {
     connection_->close(
         Error(ErrorCode::connection_error, "the client has been silent for too long"));
   }
-  channel::Laters laters;
-  generators_.drop_unused(now, directory_->core()->options().generator_timeout, laters);
-  callbacks_.post(std::move(laters));
+  channel::DeferredCallbacks deferred;
+  generators_.drop_unused(now, directory_->core()->options().generator_timeout, deferred);
+  callbacks_.post(std::move(deferred));
 }
 
 void ServerEndpoint::take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
-                                 channel::Laters& laters) {
+                                 channel::DeferredCallbacks& deferred) {
   last_heard_.store(channel::coarse_now(), std::memory_order_relaxed);
-  callbacks_.take_answer(message, entry, owner, laters);
+  callbacks_.take_answer(message, entry, owner, deferred);
   if (static_cast<ErrorCode>(entry.error) == ErrorCode::invalid_endpoint) {  // 07, section 1
-    laters.emplace_back([self = shared_from_this()] { self->leave(); });
+    deferred.emplace_back([self = shared_from_this()] { self->leave(); });
   }
 }
 

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
@@ -19,17 +20,23 @@
 #include "rr/writer.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
-#include "runtime/cpp/src/service/belongings.hpp"
+#include "runtime/cpp/src/service/audit_trail.hpp"
 #include "runtime/cpp/src/service/callbacks.hpp"
+#include "runtime/cpp/src/service/client_scoped_values.hpp"
 #include "runtime/cpp/src/service/generators.hpp"
+#include "runtime/cpp/src/service/logins.hpp"
 #include "runtime/cpp/src/service/object_tree.hpp"
+#include "runtime/cpp/src/service/owed_answers.hpp"
 #include "runtime/cpp/src/service/pipes.hpp"
+#include "runtime/cpp/src/service/session_access.hpp"
 #include "runtime/cpp/src/service/wires.hpp"
 
 namespace rr::service {
 
+class DecodedMemory;
 class Directory;
-class Gathering;
+class HandlerMemory;
+class ResponseBatch;
 class ServiceHost;
 
 /// One request of a session, and where its answer goes: into a message of its own, or, when it came
@@ -38,10 +45,22 @@ struct Question {
   const Message& message;
   const Entry& entry;
   const MemoryRef& owner;
-  std::shared_ptr<Gathering> gathering;  ///< null for a single one
-  std::size_t place = 0;                 ///< in the gathering
+  std::shared_ptr<ResponseBatch> batch;  ///< null for a single one
+  std::size_t place = 0;                 ///< in the batch
   bool is_urgent = false;                ///< the member is; known once that is found
+  DecodedMemory* decoded = nullptr;  ///< what its containers are drawn from; null for the wire's
+  // How it was admitted (SessionAccess); null before.
+  const AccessRow* row = nullptr;
+  std::uint32_t standing = 0;
+  std::uint32_t login = 0;
+
+  /// A decoder of its elements.
+  [[nodiscard]] Decoder decoder(const TypeRegistry* types = nullptr) const;
 };
+
+inline Admission admission_of(const Question& question) {
+  return {question.row, question.standing, question.login};
+}
 
 /// The service's end of a connection: answers special requests, and holds the session once a client
 /// has connected to a service.
@@ -54,17 +73,38 @@ class ServerEndpoint final : public channel::Receiver,
   ~ServerEndpoint() override;
 
   [[nodiscard]] const ServiceClient& client() const { return client_; }
+  /// Empty before a client has connected.
+  [[nodiscard]] std::string service_name() const;
   [[nodiscard]] channel::Connection& connection() const { return *connection_; }
   [[nodiscard]] Callbacks& callbacks() { return callbacks_; }
   [[nodiscard]] Generators& generators() { return generators_; }
-  [[nodiscard]] Belongings& belongings() { return belongings_; }
+  // How many of each the session may have.
+  [[nodiscard]] std::size_t generator_limit() const;
+  [[nodiscard]] std::size_t late_answer_limit() const;
+  [[nodiscard]] std::size_t callback_limit() const;
+  [[nodiscard]] ClientScopedValues& client_values() { return client_values_; }
   /// The endpoint whose request this thread handles; null outside of handlers.
   static ServerEndpoint* current();
   /// The path of the object that it asks.
   static std::string_view current_path();
 
+  /// Bytes that the containers of one request may take.
+  [[nodiscard]] std::size_t container_limit() const;
+  /// The requests of this session that are answered later.
+  [[nodiscard]] const std::shared_ptr<OwedAnswers>& owed_answers() const { return owed_answers_; }
+
   /// Who is logged in; null for nobody.
   [[nodiscard]] std::shared_ptr<const User> user() const;
+  /// What that allows.
+  [[nodiscard]] const SessionAccess& access() const { return access_; }
+  /// Whether what was admitted may go on: the same user may still do it. What is opened for a
+  /// request asks this once it is where end_what_is_not_allowed() finds it.
+  [[nodiscard]] bool is_still_allowed(const Question& question) const;
+  [[nodiscard]] bool is_still_allowed(const Admission& admission, std::string_view path,
+                                      std::string_view member) const;
+  static Error no_longer_allowed();
+  /// The service has other rules. On any thread.
+  void renew_rights(ServiceHost& host);
 
   /// Sends something that is not answered. Throws rr::Error for values that cannot be written; what
   /// cannot be sent is reported to the node's log, unless the client is gone.
@@ -75,7 +115,7 @@ class ServerEndpoint final : public channel::Receiver,
   void send_request(Writer& entry, EntryType type, bool is_urgent);
   /// The service has released the object at a path and those below, for this client at least; who
   /// may hear of it is told.
-  void release_path(const std::string& path, bool is_told);
+  void release_path(const std::string& path);
   /// Sends an entry that is not answered, with metadata in the message header; of which only the
   /// newest counts, unless `newest` is null. Throws rr::Error.
   void send_marked(Writer& writer, std::string_view metadata, const channel::Newest* newest);
@@ -100,6 +140,9 @@ class ServerEndpoint final : public channel::Receiver,
   // Answers of session requests. What cannot be written throws rr::Error, and nothing is sent.
   void answer_value(const Question& question, std::string_view name, const Type& type,
                     const void* value);
+  /// What a member has given.
+  void answer_result(const Question& question, const Member& member, HandlerMemory& made,
+                     const void* value);
   void answer_values(const Question& question, EntryType type,
                      std::span<const Parameter> parameters, const void* const* values);
   void answer_empty(const Question& question);
@@ -110,26 +153,26 @@ class ServerEndpoint final : public channel::Receiver,
   void answer_nothing(const Question& question);
   void answer_error(const Question& question, const Error& error);
   /// The same for an answer given later, by what is left of its question then.
-  struct LateAnswer;
   void answer_late(const LateAnswer& late, const void* result);
   void answer_late(const LateAnswer& late, const Error& error);
   void answer_late_text(const LateAnswer& late, std::string_view text);
 
   void take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
-                   channel::Laters& laters) override;
+                   channel::DeferredCallbacks& deferred) override;
   bool take_packet(const Message& message, const Entry& entry, const MemoryRef& owner,
-                   channel::Laters& laters) override;
+                   channel::DeferredCallbacks& deferred) override;
   void handle(const Message& message, const Entry& first, const MemoryRef& owner) override;
-  void lost(const Error& why, channel::Laters& laters) override;
+  void lost(const Error& why, channel::DeferredCallbacks& deferred) override;
   void closed() override;
   void attend(channel::Time now) override;
 
  private:
-  friend class Gathering;
+  friend class ResponseBatch;
   friend class Pipes;
 
   // Special requests (special_requests.cpp)
-  void handle_special(const Message& message);
+  void handle_special(const Message& message, const Entry& first);
+  static void add_refusals(Writer& writer, const Message& message, bool is_for_us);
   void write_special_answer(Writer& writer, const Message& message, const Entry& entry,
                             std::uint32_t& own_endpoint);
   std::uint32_t write_service_definition(Writer& writer, Decoder& decoder, const Entry& entry);
@@ -154,12 +197,25 @@ class ServerEndpoint final : public channel::Receiver,
   static void end_generator(ErrorCode wish, Generators::Use& generator);
   void answer_void(const Question& question);
   // Who may do what (access.cpp)
-  void check_access(const Question& question);
-  void log_in(std::string_view name, const std::map<std::string, VarValue>& credentials);
+  void check_access(Question& question);
+  void check_rights(const Question& question);
+  void check_member(const Question& question, const Member& member);
+  void check_locks(const Question& question, std::string_view member);
+  void become(std::shared_ptr<const User> user);
+  void log_out();
+  void end_what_is_not_allowed(ServiceHost& host, bool is_all);
   std::shared_ptr<const User> need_user() const;
   void answer_session_operation(const Question& question);
   void answer_user_operation(const Question& question);
   void answer_monitor_operation(const Question& question);
+
+  // Logging in (login_requests.cpp)
+  bool must_wait_for_login(const Message& message, const Entry& first, const MemoryRef& owner);
+  bool begin_login(const Message& message, const Entry& entry, const MemoryRef& owner);
+  bool read_login(const Message& message, const Entry& entry, const MemoryRef& owner,
+                  std::shared_ptr<ServiceHost>& host, std::string& name, VarStringMap& credentials);
+  void forget_login();
+  void log_in(std::string_view name);
 
   // Memories (memories.cpp)
   void answer_memory(const Question& question);
@@ -170,7 +226,18 @@ class ServerEndpoint final : public channel::Receiver,
   void answer_memory_parameter(const Question& question, Decoder& decoder, const Member& member,
                                const MemorySource& memory);
 
+  // A message of which some requests have been handled.
+  struct Unfinished {
+    std::shared_ptr<ResponseBatch> batch;
+    std::size_t next = 0;
+    std::size_t offset = 0;  // of the next one, in the message's entries
+  };
+  Unfinished begin_or_continue(const Message& message);
+  bool put_off(const Unfinished& state);
+
   void end_members();
+  void announce_leaving(channel::DeferredCallbacks& deferred);
+  void deliver(const Question& question, Writer& writer, std::string_view metadata = {});
   void finish_late(const LateAnswer& late, Writer& writer);
   enum class Way : std::uint8_t { reply, send, stream };
   void send_answer(Writer& writer, std::uint32_t entry_count, EntryType single_type, Way way,
@@ -189,13 +256,25 @@ class ServerEndpoint final : public channel::Receiver,
   std::atomic<bool> is_member_{false};  // of the host's clients
   bool is_announced_ = false;           // the service was told of it; with the dispatch turn
   bool is_leaving_ = false;             // has said farewell; with the dispatch turn
+  SessionAccess access_;                // near the begin: each value that is sent to all asks it
 
   Callbacks callbacks_{*this};
   Generators generators_;
-  Belongings belongings_;
+  ClientScopedValues client_values_;
   mutable std::mutex user_mutex_;
-  std::shared_ptr<const User> user_;
+  // The host and the client, for whoever has no turn; the same lock.
+  std::pair<std::shared_ptr<ServiceHost>, ServiceClient> session_;
+  std::shared_ptr<ServiceHost> present_at_;  // is to be told that the client leaves; the same lock
+  std::shared_ptr<Logins::Attempt> login_;   // of the message that is handled; under user_mutex_
+  // With the dispatch turn:
+  std::vector<Unfinished> unfinished_;       // the next one is the last
+  bool has_outcome_ = false;                 // of login_
+  std::shared_ptr<ServiceHost> login_host_;  // that it was checked for
+  unsigned failed_logins_ = 0;               // of the connection
+  AuditTrail audit_{*this};
 
+  const std::shared_ptr<OwedAnswers> owed_answers_;
+  std::atomic<bool> is_told_full_{false};  // the log, that packets are dropped
   std::atomic<std::uint16_t> next_message_id_{0};
   std::atomic<channel::Time> last_heard_;
 
@@ -207,19 +286,16 @@ class ServerEndpoint final : public channel::Receiver,
   std::weak_ptr<const ServedObject> last_object_;
   std::uint32_t last_generation_ = 0;
   const Member* last_member_ = nullptr;
+  // What the rules have said last, with the dispatch turn.
+  struct Granted {
+    std::uint32_t standing = 0;
+    RightSet rights = 0;
+    std::string path;
+    std::string member;
+  };
+  Granted granted_;
 
   Wires wires_{*this};
-};
-
-/// What a late answer must remember of its question.
-struct ServerEndpoint::LateAnswer {
-  EntryType request_type;
-  std::string path;
-  std::string member_name;
-  std::uint32_t request_id;
-  const Member* member;
-  std::shared_ptr<Gathering> gathering;
-  std::size_t place;
 };
 
 }  // namespace rr::service

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/endpoint/user_code.hpp"
 #include "runtime/cpp/src/service/directory.hpp"
 #include "runtime/cpp/src/service/object_types.hpp"
 #include "runtime/cpp/src/service/offered_wire.hpp"
@@ -54,6 +55,16 @@ Skeleton::Skeleton() : rr_places_(std::make_shared<Places>()) {}
 Skeleton::~Skeleton() = default;
 void Skeleton::rr_attached(ServiceContext& /*context*/, const std::string& /*path*/) {}
 
+std::string Skeleton::rr_path() const {
+  const auto places = rr_places_->all();
+  return places.empty() ? std::string() : places.front().path;
+}
+
+std::shared_ptr<ServiceContext> Skeleton::rr_service() const {
+  const auto places = rr_places_->all();
+  return places.empty() ? nullptr : places.front().host;
+}
+
 void Skeleton::rr_set_per_client() const { rr_places_->is_per_client = true; }
 
 void Skeleton::rr_fire(const Member& member, const void* const* arguments) const {
@@ -82,9 +93,27 @@ ServiceHost::ServiceHost(std::shared_ptr<endpoint::Core> core, std::weak_ptr<Dir
       options_(std::move(options)),
       types_(core_->types()),
       definitions_(all_definitions(*root, options_)),
-      objects_(name_, std::move(root), [this](const ServedObject& object) { attach(object); }),
-      monitors_(std::make_shared<Monitors>(core_, options_.monitor_patience)),
-      clients_(std::make_shared<const Clients>()) {}
+      objects_(name_, std::move(root), options_.limits.objects,
+               std::make_shared<channel::Account>(core_->pools().sessions, channel::no_limit),
+               {.attach = [this](const ServedObject& object) { attach(object); },
+                .drop =
+                    [this](ObjectTree::Released released) {
+                      detach(released);
+                      tell_released_later(std::move(released));
+                    },
+                .is_held = [this](const ServedObject& object) { return locks_.are_on(object); }},
+               core_->options().request_timeout),
+      locks_(options_.limits.locks),
+      monitors_(
+          std::make_shared<Monitors>(core_, options_.monitor_patience, options_.limits.monitors)),
+      clients_(std::make_shared<const Clients>()) {
+  if (options_.rights_file.empty()) return;
+  if (options_.rights) {
+    throw Error(ErrorCode::invalid_argument, "the rights of `" + name_ + "` are given twice");
+  }
+  rights_file_ = std::make_shared<RightsFile>(core_, options_.rights_file);
+  options_.rights = rights_file_->read();
+}
 
 void ServiceHost::start() {
   if (options_.users) {
@@ -93,6 +122,11 @@ void ServiceHost::start() {
     }
   }
   attach(*objects_.root());
+  if (rights_file_) {
+    rights_file_->watch([self = weak_from_this()](std::shared_ptr<const Rights> rights) {
+      if (const auto host = self.lock()) host->set_rights(std::move(rights));
+    });
+  }
   is_started_ = true;
 }
 
@@ -113,12 +147,8 @@ void ServiceHost::detach(const ObjectTree::Released& released) {
 // The objects may go with this. On a thread of the node.
 void ServiceHost::tell_released(const endpoint::Core& core, ObjectTree::Released released) {
   for (auto& object : released) {
-    try {
-      object->skeleton->rr_released(object->path);
-    } catch (const std::exception& error) {
-      core.log(LogLevel::error,
-               "rr_released of `" + object->path + "` has thrown: " + error.what());
-    }
+    endpoint::call_user_code(core, "rr_released of", object->path,
+                             [&] { object->skeleton->rr_released(object->path); });
     object.reset();
   }
 }
@@ -152,8 +182,18 @@ std::shared_ptr<const ServiceHost::Clients> ServiceHost::connected() const {
   return clients_;
 }
 
-bool ServiceHost::may_hear(const ServerEndpoint& client) const {
-  return !requires_user() || client.user() != nullptr;
+std::shared_ptr<const Rights> ServiceHost::rights() const {
+  const std::lock_guard lock(mutex_);
+  return options_.rights;
+}
+
+void ServiceHost::set_rights(std::shared_ptr<const Rights> rights) {
+  {
+    const std::lock_guard lock(mutex_);
+    options_.rights.swap(rights);  // the old ones go when the lock has
+  }
+  const auto clients = connected();
+  for (const auto& client : *clients) client->renew_rights(*this);
 }
 
 std::vector<ServiceClient> ServiceHost::clients() const {
@@ -193,6 +233,10 @@ void ServiceHost::remove_client(const ServerEndpoint& client) {
   monitors_->leave(client.client().endpoint);
 }
 
+void ServiceHost::announce_leaving(const ServiceClient& client) const {
+  notify(options_.on_client_leaving, client);
+}
+
 void ServiceHost::announce_end(const ServerEndpoint& client) const {
   notify(options_.on_client_disconnected, client.client());
 }
@@ -208,11 +252,7 @@ std::shared_ptr<ServerEndpoint> ServiceHost::find_client(std::uint32_t endpoint)
 void ServiceHost::notify(const std::function<void(const ServiceClient&)>& function,
                          const ServiceClient& client) const {
   if (!function) return;
-  try {
-    function(client);
-  } catch (const std::exception& error) {
-    core_->log(LogLevel::error, "a listener of `" + name_ + "` has thrown: " + error.what());
-  }
+  endpoint::call_user_code(*core_, "a listener of", name_, [&] { function(client); });
 }
 
 void ServiceHost::disconnect(std::uint32_t endpoint) {
@@ -238,7 +278,7 @@ void ServiceHost::release_path(const std::string& path) {
   if (released.empty()) throw Error(ErrorCode::service_error, "Unknown service path");
   detach(released);
   const auto clients = connected();
-  for (const auto& client : *clients) client->release_path(canonical, may_hear(*client));
+  for (const auto& client : *clients) client->release_path(canonical);
   tell_released_later(std::move(released));
 }
 
@@ -249,14 +289,26 @@ void ServiceHost::release_path(const std::string& path, std::uint32_t client) {
     throw Error(ErrorCode::service_error, "the client has no object of its own at this path");
   }
   detach(released);
-  if (const auto found = find_client(client)) found->release_path(canonical, may_hear(*found));
+  if (const auto found = find_client(client)) found->release_path(canonical);
   tell_released_later(std::move(released));
+}
+
+void ServiceHost::lock(const std::string& path, const std::string& user) {
+  locks_.lock(*objects_.find(path, 0), user);
+}
+
+bool ServiceHost::unlock(const std::string& path) {
+  const auto segments = endpoint::parse_path(path);
+  return segments && locks_.unlock(endpoint::canonical_path(*segments));
 }
 
 void ServiceHost::release_objects_of(std::uint32_t client) {
   ObjectTree::Released released = objects_.release_all_of(client);
   detach(released);
   tell_released(*core_, std::move(released));
+  ObjectTree::Released unused = objects_.leave(client, options_.limits.unused_objects);
+  detach(unused);
+  tell_released(*core_, std::move(unused));
 }
 
 void ServiceHost::fire(const std::string& path, std::uint32_t owner, const Member& member,
@@ -265,7 +317,8 @@ void ServiceHost::fire(const std::string& path, std::uint32_t owner, const Membe
       .type = EntryType::event_req, .service_path = path, .member = member.name};
   const bool is_urgent = (member.access & urgent) != 0;
   const auto send = [&](ServerEndpoint& client) {
-    if (may_hear(client)) client.send_packet(header, member.parameters, arguments, is_urgent);
+    if (!client.access().may_send(EntryType::event_req, path, member.name)) return;
+    client.send_packet(header, member.parameters, arguments, is_urgent);
   };
   if (owner != 0) {
     if (const auto client = find_client(owner)) send(*client);
@@ -284,7 +337,8 @@ void ServiceHost::close() {
   if (const auto directory = directory_.lock()) directory->remove(*this);
   const auto clients = connected();
   for (const auto& client : *clients) {
-    if (may_hear(*client)) client->send_packet({.type = EntryType::service_closed}, {}, nullptr);
+    if (!client->access().may_send(EntryType::service_closed, {}, {})) continue;
+    client->send_packet({.type = EntryType::service_closed}, {}, nullptr);
   }
   for (const auto& client : *clients) client->leave();
   ObjectTree::Released released = objects_.clear();

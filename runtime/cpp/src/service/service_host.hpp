@@ -13,9 +13,11 @@
 
 #include "rr/service.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/service/answer_sizes.hpp"
 #include "runtime/cpp/src/service/locks.hpp"
 #include "runtime/cpp/src/service/monitors.hpp"
 #include "runtime/cpp/src/service/object_tree.hpp"
+#include "runtime/cpp/src/service/rights_file.hpp"
 
 namespace rr::service {
 
@@ -38,6 +40,10 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   void set_attributes(std::map<std::string, VarValue> attributes) override;
   void release_path(const std::string& path) override;
   void release_path(const std::string& path, std::uint32_t client) override;
+  void lock(const std::string& path, const std::string& user) override;
+  bool unlock(const std::string& path) override;
+  [[nodiscard]] NodeContext& node() const override { return *core_; }
+  void set_rights(std::shared_ptr<const Rights> rights) override;
   [[nodiscard]] std::vector<ServiceClient> clients() const override;
   void disconnect(std::uint32_t endpoint) override;
   void close() override;
@@ -58,6 +64,10 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   [[nodiscard]] bool requires_user() const {
     return options_.users != nullptr && options_.require_user;
   }
+  [[nodiscard]] const ServiceLimits& limits() const { return options_.limits; }
+  /// What each user may do; null: everything.
+  [[nodiscard]] std::shared_ptr<const Rights> rights() const;
+  [[nodiscard]] AnswerSizes& answer_sizes() { return answer_sizes_; }
   [[nodiscard]] Locks& locks() { return locks_; }
   [[nodiscard]] Monitors& monitors() { return *monitors_; }
 
@@ -66,9 +76,11 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   void remove_client(const ServerEndpoint& client);
   /// The client of this number; null when there is none.
   [[nodiscard]] std::shared_ptr<ServerEndpoint> find_client(std::uint32_t endpoint) const;
-  /// Releases what was a client's own: on a thread of the node, behind its last request.
+  /// Releases what was a client's own, and what nobody uses any more where there is much of that:
+  /// on a thread of the node, behind its last request.
   void release_objects_of(std::uint32_t client);
   /// Tells that a client has gone: likewise.
+  void announce_leaving(const ServiceClient& client) const;
   void announce_end(const ServerEndpoint& client) const;
   /// Sends an event of the object at a path to all clients, or to the one whose own it is.
   void fire(const std::string& path, std::uint32_t owner, const Member& member,
@@ -77,9 +89,6 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
  private:
   using Clients = std::vector<std::shared_ptr<ServerEndpoint>>;
   [[nodiscard]] std::shared_ptr<const Clients> connected() const;
-  // Whether a client is sent what the service sends to all: not before it has logged in where it
-  // has to.
-  [[nodiscard]] bool may_hear(const ServerEndpoint& client) const;
   [[nodiscard]] std::string releasable(const std::string& path) const;
   void attach(const ServedObject& object);
   void detach(const ObjectTree::Released& released);
@@ -91,12 +100,14 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   const std::shared_ptr<endpoint::Core> core_;
   const std::weak_ptr<Directory> directory_;
   const std::string name_;
-  ServiceOptions options_;  // its attributes are guarded
+  ServiceOptions options_;  // its attributes and rights are guarded
   const std::shared_ptr<const TypeRegistry> types_;
   const std::vector<const Definition*> definitions_;
   ObjectTree objects_;
+  AnswerSizes answer_sizes_;
   Locks locks_;
   const std::shared_ptr<Monitors> monitors_;
+  std::shared_ptr<RightsFile> rights_file_;  // null without one
 
   std::atomic<bool> is_started_{false};
   mutable std::mutex mutex_;

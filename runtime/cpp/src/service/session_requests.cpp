@@ -6,11 +6,14 @@
 #include "runtime/cpp/src/endpoint/client_version.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
 #include "runtime/cpp/src/endpoint/requests.hpp"
+#include "runtime/cpp/src/endpoint/user_code.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
+#include "runtime/cpp/src/service/decoded_memory.hpp"
 #include "runtime/cpp/src/service/directory.hpp"
-#include "runtime/cpp/src/service/gathering.hpp"
+#include "runtime/cpp/src/service/handler_memory.hpp"
 #include "runtime/cpp/src/service/object_types.hpp"
 #include "runtime/cpp/src/service/request.hpp"
+#include "runtime/cpp/src/service/response_batch.hpp"
 #include "runtime/cpp/src/service/server_endpoint.hpp"
 #include "runtime/cpp/src/service/service_host.hpp"
 
@@ -51,14 +54,18 @@ ServerEndpoint* ServerEndpoint::current() { return current_endpoint; }
 std::string_view ServerEndpoint::current_path() { return path_of_request; }
 
 void ServerEndpoint::handle(const Message& message, const Entry& first, const MemoryRef& owner) {
+  if (connection_->is_closed()) return;  // nobody is left for whom this could be done
   last_heard_.store(channel::coarse_now(), std::memory_order_relaxed);
+  if (must_wait_for_login(message, first, owner)) return;
+  const bool brings_login = has_outcome_;
   const bool asks_type_in_session = first.type == EntryType::object_type_name &&
                                     message.entry_count == 1 && message.receiver_endpoint != 0;
   if (is_special(first.type) && !asks_type_in_session) {
-    handle_special(message);
+    handle_special(message, first);
   } else if (is_in_session(message)) {
     handle_session(message, first, owner);
   }
+  if (brings_login) forget_login();
   // Anything else is for nobody here, and nobody could be answered.
 }
 
@@ -71,9 +78,9 @@ bool ServerEndpoint::is_in_session(const Message& message) const {
 }
 
 bool ServerEndpoint::take_packet(const Message& message, const Entry& entry, const MemoryRef& owner,
-                                 channel::Laters& laters) {
+                                 channel::DeferredCallbacks& deferred) {
   last_heard_.store(channel::coarse_now(), std::memory_order_relaxed);
-  return wires_.take(message, entry, owner, laters);
+  return wires_.take(message, entry, owner, deferred);
 }
 
 void ServerEndpoint::handle_session(const Message& message, const Entry& first,
@@ -82,13 +89,37 @@ void ServerEndpoint::handle_session(const Message& message, const Entry& first,
     handle_question({message, first, owner, nullptr, 0});
     return;
   }
-  EntryReader entries(message);
-  Entry entry;
-  const auto gathering =
-      std::make_shared<Gathering>(shared_from_this(), connection_->version(), message.entry_count);
-  for (std::size_t place = 0; entries.next(entry); ++place) {
-    handle_question({message, entry, owner, gathering, place});
+  Unfinished state = begin_or_continue(message);
+  EntryReader entries(message, state.next, state.offset);
+  const channel::Time until = channel::Clock::now() + channel::longest_turn;
+  for (Entry entry; entries.next(entry);) {
+    if (connection_->is_closed()) return;
+    handle_question({message, entry, owner, state.batch, state.next++});
+    connection_->await_turn();
+    state.offset = entries.offset();
+    if (state.next < message.entry_count && channel::Clock::now() >= until && put_off(state)) {
+      return;
+    }
   }
+}
+
+// The message that was put off last is the first one that is handled again.
+ServerEndpoint::Unfinished ServerEndpoint::begin_or_continue(const Message& message) {
+  if (unfinished_.empty()) {
+    return {.batch = std::make_shared<ResponseBatch>(shared_from_this(), message.entry_count)};
+  }
+  Unfinished state = std::move(unfinished_.back());
+  unfinished_.pop_back();
+  return state;
+}
+
+// A message with so many requests that others have to wait for long: they come first, now and
+// then. Not with the outcome of a login, which is for this time only.
+bool ServerEndpoint::put_off(const Unfinished& state) {
+  if (has_outcome_ || !connection_->put_off()) return false;
+  unfinished_.push_back(state);
+  directory_->core()->reactor().post([connection = connection_] { connection->resume(); });
+  return true;
 }
 
 void ServerEndpoint::handle_question(Question question) {
@@ -97,10 +128,15 @@ void ServerEndpoint::handle_question(Question question) {
       is_odd(entry.type) && static_cast<ErrorCode>(entry.error) != ErrorCode::invalid_endpoint;
   if (!is_answered) {
     if (is_odd(entry.type)) leave();  // the client does not know of the session any more
-    if (entry.type == EntryType::pipe_packet_ret) pipes_.take_acknowledgements(question);
-    if (question.gathering) question.gathering->put(question.place, {});
+    if (entry.type == EntryType::pipe_packet_ret &&
+        access_.may_receive(entry.type, entry.service_path, entry.member)) {
+      pipes_.take_acknowledgements(question);
+    }
+    answer_nothing(question);
     return;
   }
+  DecodedMemory decoded(*this);
+  question.decoded = &decoded;
   const CurrentEndpoint current(*this, entry.service_path);
   std::exception_ptr exception;
   try {
@@ -113,6 +149,8 @@ void ServerEndpoint::handle_question(Question question) {
     answer_error(question, endpoint::describe(exception));
   } catch (const Error& error) {
     directory_->core()->log(LogLevel::error, error.what());
+    // The client would wait for the answer.
+    if (error.code() == ErrorCode::out_of_system_resource) connection_->close(error);
   }
 }
 
@@ -144,7 +182,7 @@ void ServerEndpoint::answer_question(Question& question) {
       pipes_.disconnect(question);
       break;
     case EntryType::object_type_name:
-      if (question.gathering) {
+      if (question.batch) {
         throw Error(ErrorCode::protocol_error, "Unknown request type");
       }
       answer_session_object_type(question);
@@ -177,7 +215,7 @@ void ServerEndpoint::answer_question(Question& question) {
 void ServerEndpoint::answer_session_object_type(const Question& question) {
   const Entry& entry = question.entry;
   const auto object = find_object(entry.service_path);
-  Decoder decoder(question.message.version, &question.message.strings);
+  Decoder decoder = question.decoder();
   std::optional<DefinitionVersion> version;
   std::string_view text;
   if (endpoint::find_text(decoder, entry, "clientversion", text)) {
@@ -226,16 +264,17 @@ void ServerEndpoint::answer_member(Question& question, MemberKind kind) {
   if (!is_set && (member.access & writeonly) != 0) {
     throw Error(ErrorCode::write_only_member, "Write only property");
   }
-  Request::Source source{*this, question, *host_->types(), member, object, is_set};
+  HandlerMemory made(*this, question, is_set ? 0 : host_->answer_sizes().expected(member));
+  Request::Source source{*this, question, *host_->types(), member, object, is_set, made};
   Request request(source);
   try {
     const auto place = static_cast<std::size_t>(&member - object->type->members.data());
     object->skeleton->rr_dispatch(place, request);
-  } catch (const std::exception& error) {
+  } catch (...) {
     if (source.state == Request::Source::State::open) throw;
-    directory_->core()->log(
-        LogLevel::error,
-        "`" + std::string(member.name) + "` has thrown after it had answered: " + error.what());
+    directory_->core()->log(LogLevel::error, "`" + std::string(member.name) +
+                                                 "` has thrown after it had answered: " +
+                                                 endpoint::text_of_current_exception());
   }
   source.complete();
 }

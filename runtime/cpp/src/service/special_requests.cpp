@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Requests that need no session (07, sections 1, 4 and 5).
+#include <atomic>
 #include <optional>
 #include <utility>
 
@@ -7,6 +8,7 @@
 #include "runtime/cpp/src/endpoint/errors.hpp"
 #include "runtime/cpp/src/endpoint/requests.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
+#include "runtime/cpp/src/service/decoded_memory.hpp"
 #include "runtime/cpp/src/service/directory.hpp"
 #include "runtime/cpp/src/service/object_types.hpp"
 #include "runtime/cpp/src/service/server_endpoint.hpp"
@@ -14,6 +16,9 @@
 
 namespace rr::service {
 namespace {
+
+// Nobody asks so much at once; what is more ends the connection.
+constexpr std::uint32_t most_special_entries = 16;
 
 // Whatever goes wrong with a special request is told in these words; the names are the reference's.
 Error service_not_found() {
@@ -24,6 +29,7 @@ Error object_not_found() {
   return {ErrorCode::object_not_found, "RobotRaconteur.ObjectNotFoundException",
           "Object not found"};
 }
+Error no_route() { return {ErrorCode::node_not_found, "Could not find route to remote node"}; }
 Error attributes_not_found() { return {ErrorCode::service_error, "Service not found"}; }
 
 std::optional<DefinitionVersion> client_version(Decoder& decoder, const Entry& entry) {
@@ -56,32 +62,28 @@ bool wants_definitions(Decoder& decoder, const Entry& entry) {
 
 }  // namespace
 
-void ServerEndpoint::handle_special(const Message& message) {
+// A special request travels alone: what comes behind it in its message is refused, and so is a
+// connection that makes a habit of it.
+void ServerEndpoint::handle_special(const Message& message, const Entry& first) {
   const NodeOptions& own = directory_->core()->options();
   const bool is_for_us = message.receiver_node == own.id ||
                          (message.receiver_node.is_any() &&
                           (message.receiver_name.empty() || message.receiver_name == own.name));
   std::uint32_t own_endpoint = message.receiver_endpoint;
+  if (message.entry_count > most_special_entries) {
+    connection_->close(Error(ErrorCode::protocol_error, "a message has too many special requests"));
+    return;
+  }
 
   Writer writer;  // not the thread's: user code runs on the way to objects, and hears of clients
-  const MessageVersion version = connection_->version();
-  std::vector<std::vector<std::byte>> answers;
-  EntryReader entries(message);
-  for (Entry entry; entries.next(entry);) {
-    writer.reset(version);
-    if (is_for_us) {
-      write_special_answer(writer, message, entry, own_endpoint);
-    } else {
-      endpoint::write_error_answer(
-          writer, entry, Error(ErrorCode::node_not_found, "Could not find route to remote node"));
-    }
-    if (connection_->is_closed()) return;
-    answers.push_back(writer.copy());
+  writer.reset(connection_->version());
+  if (is_for_us) {
+    write_special_answer(writer, message, first, own_endpoint);
+  } else {
+    endpoint::write_error_answer(writer, first, no_route());
   }
-  writer.reset(version);
-  for (auto answer = answers.rbegin(); answer != answers.rend(); ++answer) {
-    writer.prepend_bytes(answer->data(), answer->size());
-  }
+  if (connection_->is_closed()) return;
+  if (message.entry_count > 1) add_refusals(writer, message, is_for_us);
   // What is not for us is answered in the name of whom it was for.
   writer.message({.sender_node = is_for_us ? own.id : message.receiver_node,
                   .receiver_node = message.sender_node,
@@ -89,19 +91,43 @@ void ServerEndpoint::handle_special(const Message& message) {
                   .receiver_name = message.sender_name,
                   .sender_endpoint = own_endpoint,
                   .receiver_endpoint = message.sender_endpoint},
-                 static_cast<std::uint32_t>(answers.size()));
+                 message.entry_count);
   try {
     connection_->reply(writer, channel::Priority::fixed);
   } catch (const Error& error) {
     directory_->core()->log(LogLevel::error, error.what());
+    // The client would wait for it.
+    if (error.code() == ErrorCode::out_of_system_resource) connection_->close(error);
   }
   if (is_leaving_) leave();
+}
+
+// Puts refusals of the other entries behind the answer to the first one.
+void ServerEndpoint::add_refusals(Writer& writer, const Message& message, bool is_for_us) {
+  const Error refusal =
+      is_for_us ? Error(ErrorCode::protocol_error, "a special request must be alone in its message")
+                : no_route();
+  Writer refusals;
+  std::vector<std::byte> answers = writer.copy();
+  EntryReader entries(message);
+  Entry entry;
+  entries.next(entry);
+  while (entries.next(entry)) {
+    refusals.reset(writer.version());
+    endpoint::write_error_answer(refusals, entry, refusal);
+    const std::vector<std::byte> one = refusals.copy();
+    answers.insert(answers.end(), one.begin(), one.end());
+  }
+  writer.reset(writer.version());
+  writer.prepend_bytes(answers.data(), answers.size());
 }
 
 // One whole entry.
 void ServerEndpoint::write_special_answer(Writer& writer, const Message& message,
                                           const Entry& entry, std::uint32_t& own_endpoint) {
   Decoder decoder(message.version, &message.strings);
+  DecodedMemory decoded(*this);
+  decoder.set_budget(decoded);
   const auto attempt = [&](const Error& failure, auto&& write) {
     const MessageVersion version = writer.version();
     std::optional<Error> error;
@@ -113,9 +139,10 @@ void ServerEndpoint::write_special_answer(Writer& writer, const Message& message
       }
       error = failure;
     } catch (const Error& thrown) {
-      const bool is_told = thrown.code() == ErrorCode::authentication_error;
+      const bool is_told = thrown.code() == ErrorCode::authentication_error ||
+                           thrown.code() == ErrorCode::out_of_system_resource;
       error = is_told ? thrown : failure;
-    } catch (const std::exception&) {  // user code, on the way to an object
+    } catch (...) {  // user code, on the way to an object
       error = failure;
     }
     writer.reset(version);
@@ -184,8 +211,8 @@ std::uint32_t ServerEndpoint::write_object_type(Writer& writer, Decoder& decoder
   const std::string_view path = entry.service_path;
   const auto host = directory_->find(path.substr(0, path.find('.')));
   if (!host) throw object_not_found();
-  // Objects other than the root are for users only, and here nobody is one yet.
-  if (host->requires_user() && path != host->name()) throw object_not_found();
+  // Objects other than the root may be for users only, and here nobody is one yet.
+  if (!may_stranger_describe(*host, path)) throw object_not_found();
   const auto object = host->objects().find(path, 0);
   const auto type = type_for(*object->type, client_version(decoder, entry));
   if (!type) throw object_not_found();
@@ -236,33 +263,55 @@ std::uint32_t ServerEndpoint::connect(Writer& writer, Decoder& decoder, const Me
 // Whoever the credentials name is logged in; false when they name nobody.
 bool ServerEndpoint::let_in(Decoder& decoder, std::string_view user, const Element& credentials) {
   VarStringMap map;
-  if (!type_of<VarStringMap>.read(decoder, credentials, &map)) return false;
+  if (!type_of<VarStringMap>.read(decoder, credentials, &map)) {
+    if (decoder.code() == ErrorCode::out_of_system_resource) throw endpoint::latched(decoder);
+    return false;
+  }
   try {
-    log_in(user, map);
-  } catch (const std::exception& error) {
-    directory_->core()->log(LogLevel::info,
-                            "`" + std::string(user) + "` is not let in: " + error.what());
+    log_in(user);
+  } catch (...) {  // it has been logged
     return false;
   }
   return true;
 }
 
+namespace {
+
+std::uint64_t new_session() {
+  static std::atomic<std::uint64_t> last{0};
+  return last.fetch_add(1, std::memory_order_relaxed) + 1;
+}
+
+}  // namespace
+
 // Makes a session; returns its number.
 std::uint32_t ServerEndpoint::join(const std::shared_ptr<ServiceHost>& host,
                                    const Message& message) {
   const std::uint32_t number = directory_->core()->new_endpoint();
-  client_ = {number, message.sender_node, std::string(message.sender_name)};
+  client_ = {.endpoint = number,
+             .node = message.sender_node,
+             .node_name = std::string(message.sender_name),
+             .session = new_session()};
   remote_endpoint_ = message.sender_endpoint;
   host_ = host;
+  access_.open(*host);
   is_member_ = true;
   if (!host->add_client(shared_from_this())) {
     is_member_ = false;
+    access_.close();
     host_.reset();
     throw service_not_found();
   }
   is_announced_ = true;
+  {
+    const std::lock_guard lock(user_mutex_);
+    session_ = {host, client_};
+    present_at_ = host;
+  }
   connection_->set_endpoints(number, remote_endpoint_);
-  connection_->set_authorised();
+  connection_->set_authorised(!host->requires_user());
+  access_.renew_rights(*host);  // others may have been set before the host knew of this
+  audit_.connected();
   return number;
 }
 
@@ -270,13 +319,18 @@ std::uint32_t ServerEndpoint::join(const std::shared_ptr<ServiceHost>& host,
 void ServerEndpoint::quit() {
   if (is_member_.exchange(false)) host_->remove_client(*this);
   end_members();
-  if (std::exchange(is_announced_, false)) host_->announce_end(*this);
+  if (std::exchange(is_announced_, false)) {
+    host_->announce_end(*this);
+    audit_.disconnected();
+  }
+  access_.close();
   host_.reset();
   directory_->core()->release_endpoint(client_.endpoint);
   client_ = {};
   connection_->set_endpoints(0, 0);
+  connection_->set_authorised(false);
   const std::lock_guard lock(user_mutex_);
-  user_.reset();
+  session_ = {};
 }
 
 std::uint32_t ServerEndpoint::disconnect(Decoder& decoder, const Message& message,

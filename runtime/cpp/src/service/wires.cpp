@@ -6,9 +6,9 @@
 #include "rr/error.hpp"
 #include "runtime/cpp/src/endpoint/requests.hpp"
 #include "runtime/cpp/src/endpoint/wire_values.hpp"
-#include "runtime/cpp/src/service/gathering.hpp"
 #include "runtime/cpp/src/service/offered_wire.hpp"
 #include "runtime/cpp/src/service/places.hpp"
+#include "runtime/cpp/src/service/response_batch.hpp"
 #include "runtime/cpp/src/service/served_wire_end.hpp"
 #include "runtime/cpp/src/service/server_endpoint.hpp"
 
@@ -19,8 +19,8 @@ OfferedWire& offered(const ServedObject& object, const Member& member) {
   return *Skeleton::Places::of(*object.skeleton).wire(member);
 }
 
-void run(channel::Laters laters) {
-  for (const std::function<void()>& later : laters) later();
+void run(channel::DeferredCallbacks deferred) {
+  for (const std::function<void()>& later : deferred) later();
 }
 
 }  // namespace
@@ -49,11 +49,13 @@ void Wires::answer(const Question& question) {
 }
 
 bool Wires::take(const Message& message, const Entry& entry, const MemoryRef& owner,
-                 channel::Laters& laters) {
+                 channel::DeferredCallbacks& deferred) {
   if (entry.type != EntryType::wire_packet) return false;
   const auto end = table_.find(entry.service_path, entry.member);
   if (!end || !endpoint_.is_in_session(message)) return false;
-  end->take(message, entry, owner, *endpoint_.types(), laters);
+  // Who may not send any more is told so by handle().
+  if (!static_cast<ServedWireEnd&>(*end).may_take()) return false;
+  end->take(message, entry, owner, *endpoint_.types(), deferred);
   return true;
 }
 
@@ -62,11 +64,11 @@ bool Wires::take(const Message& message, const Entry& entry, const MemoryRef& ow
 void Wires::answer_packet(const Question& question, const ServedObject& object,
                           const Member& member) {
   if (const auto end = table_.find(object.path, member.name)) {
-    channel::Laters laters;
-    end->take(question.message, question.entry, question.owner, *endpoint_.types(), laters);
-    run(std::move(laters));
+    channel::DeferredCallbacks deferred;
+    end->take(question.message, question.entry, question.owner, *endpoint_.types(), deferred);
+    run(std::move(deferred));
   }
-  if (question.gathering) question.gathering->put(question.place, {});
+  if (question.batch) question.batch->put_nothing(question.place);
 }
 
 // A second request is answered as the first (07, section 13). The object's function is called, and
@@ -74,7 +76,7 @@ void Wires::answer_packet(const Question& question, const ServedObject& object,
 void Wires::answer_connect(const Question& question, std::shared_ptr<const ServedObject> object,
                            const Member& member) {
   std::shared_ptr<ServedWireEnd> end;
-  while (!(end = connect(object, member))) {
+  while (!(end = connect(question, object, member))) {
     // It was released meanwhile: the client gets the one that is there now.
     auto next = endpoint_.find_object(question.entry.service_path);
     if (next->type != object->type) {
@@ -88,7 +90,8 @@ void Wires::answer_connect(const Question& question, std::shared_ptr<const Serve
 }
 
 // Null when the object is no longer the one at its path.
-std::shared_ptr<ServedWireEnd> Wires::connect(const std::shared_ptr<const ServedObject>& object,
+std::shared_ptr<ServedWireEnd> Wires::connect(const Question& question,
+                                              const std::shared_ptr<const ServedObject>& object,
                                               const Member& member) {
   auto end = std::static_pointer_cast<ServedWireEnd>(table_.find(object->path, member.name));
   if (!end) {
@@ -100,15 +103,17 @@ std::shared_ptr<ServedWireEnd> Wires::connect(const std::shared_ptr<const Served
   }
   const auto give_up = [&] {
     table_.remove(*end);
-    channel::Laters laters;
-    end->finish(laters);
-    run(std::move(laters));
+    channel::DeferredCallbacks deferred;
+    end->finish(deferred);
+    run(std::move(deferred));
   };
   try {
     if (endpoint_.find_object(object->path) != object) {
       give_up();
       return nullptr;
     }
+    // Whoever has changed meanwhile what the session may do has not found it in the table.
+    if (!endpoint_.is_still_allowed(question)) throw ServerEndpoint::no_longer_allowed();
     offered(*object, member).join(end);
   } catch (...) {
     give_up();
@@ -124,9 +129,9 @@ void Wires::answer_disconnect(const Question& question, const ServedObject& obje
   const auto end = table_.find(object.path, member.name);
   if (!end) throw Error(ErrorCode::service_error, "Invalid wire connection");
   table_.remove(*end);
-  channel::Laters laters;
-  end->finish(laters);
-  run(std::move(laters));
+  channel::DeferredCallbacks deferred;
+  end->finish(deferred);
+  run(std::move(deferred));
   endpoint_.answer_empty(question);
 }
 
@@ -166,17 +171,26 @@ void Wires::answer_poke(const Question& question, const ServedObject& object,
   endpoint_.answer_empty(question);
 }
 
-void Wires::release(std::string_view path) {
-  channel::Laters laters;
-  for (const auto& end : table_.take_below(path)) {
-    static_cast<ServedWireEnd&>(*end).begin_release();
-    end->finish(laters);
+std::size_t Wires::end_if(const Choice& is_over) {
+  std::vector<endpoint::WireTable::End> over;
+  for (const auto& end : table_.all()) {
+    if (is_over(end->path(), end->member().name)) over.push_back(end);
   }
-  run(std::move(laters));
+  for (const auto& end : over) end->close();
+  return over.size();
 }
 
-void Wires::end_all(channel::Laters& laters) {
-  for (const auto& end : table_.take_all()) end->finish(laters);
+void Wires::release(std::string_view path) {
+  channel::DeferredCallbacks deferred;
+  for (const auto& end : table_.take_below(path)) {
+    static_cast<ServedWireEnd&>(*end).begin_release();
+    end->finish(deferred);
+  }
+  run(std::move(deferred));
+}
+
+void Wires::end_all(channel::DeferredCallbacks& deferred) {
+  for (const auto& end : table_.take_all()) end->finish(deferred);
 }
 
 }  // namespace rr::service

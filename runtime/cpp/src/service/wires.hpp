@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <string_view>
 
@@ -26,18 +28,22 @@ class Wires {
   void answer(const Question& question);
   /// A packet, where it is read. False when it is not of a connected wire.
   bool take(const Message& message, const Entry& entry, const MemoryRef& owner,
-            channel::Laters& laters);
+            channel::DeferredCallbacks& deferred);
   void remove(const WireEnd::State& end) { table_.remove(end); }
+  /// Ends those for which `is_over(path, member)` holds, and tells the client. Returns how many.
+  using Choice = std::function<bool(std::string_view, std::string_view)>;
+  std::size_t end_if(const Choice& is_over);
   /// An object and those below it are forgotten.
   void release(std::string_view path);
   /// The client is gone.
-  void end_all(channel::Laters& laters);
+  void end_all(channel::DeferredCallbacks& deferred);
 
  private:
   void answer_packet(const Question& question, const ServedObject& object, const Member& member);
   void answer_connect(const Question& question, std::shared_ptr<const ServedObject> object,
                       const Member& member);
-  std::shared_ptr<ServedWireEnd> connect(const std::shared_ptr<const ServedObject>& object,
+  std::shared_ptr<ServedWireEnd> connect(const Question& question,
+                                         const std::shared_ptr<const ServedObject>& object,
                                          const Member& member);
   void answer_disconnect(const Question& question, const ServedObject& object,
                          const Member& member);

@@ -106,7 +106,7 @@ Services::Reached Services::reach(const TargetPointer& target, const AttemptPoin
   for (const std::string& url : service.urls) {
     if (!wanted->takes_scheme(url)) continue;
     try {
-      Reached reached = connect(url, service, target, attempt);
+      Reached reached = connect(url, service, is_known, target, attempt);
       try {
         check(*reached.session, url, service, is_known);
       } catch (...) {
@@ -124,9 +124,13 @@ Services::Reached Services::reach(const TargetPointer& target, const AttemptPoin
               "the filter takes none of the URLs of `" + service.name + "`");
 }
 
+// `is_found` by discovery, so that others can have made the URL up.
 Services::Reached Services::connect(const std::string& url, const FoundService& service,
-                                    const TargetPointer& target, const AttemptPointer& attempt) {
-  const Url parsed = Url::parse(url);
+                                    bool is_found, const TargetPointer& target,
+                                    const AttemptPointer& attempt) {
+  Url parsed = Url::parse(url);
+  // Who was announced is who has to be there, whatever the URL says.
+  if (parsed.node_id.is_any()) parsed.node_id = service.node;
   const auto wanted = filter();
   const auto choice =
       wanted->choose_node(service.node.is_any() ? parsed.node_id : service.node,
@@ -136,8 +140,13 @@ Services::Reached Services::connect(const std::string& url, const FoundService& 
   if (!choice.is_wanted || !has_name) {
     throw Error(ErrorCode::service_not_found, "the filter does not take `" + url + "`");
   }
+  if (parsed.node_id.is_any() && choice.node != nullptr &&
+      (!choice.node->username.empty() || parsed.scheme == "rr+wss")) {
+    parsed.node_id = choice.node->id;  // what is meant for that node is sent to no other
+  }
   ConnectOptions options{.username = options_.username,
                          .credentials = options_.credentials,
+                         .allow_clear_credentials = options_.allow_clear_credentials,
                          .request_timeout = options_.request_timeout};
   if (choice.node != nullptr && !choice.node->username.empty()) {
     options.username = choice.node->username;
@@ -154,9 +163,11 @@ Services::Reached Services::connect(const std::string& url, const FoundService& 
     if (self && whose) self->session_ended(whose, *end, why);
   };
   auto session = std::make_shared<Session>(host_.core, parsed, std::move(options));
+  if (is_found) session->set_found();
   host_.keep(session);
   const channel::Interruption::Scope interruptible(attempt->interruption);
-  const CallScope scope(attempt->cancellation);
+  const CallOptions until_cancelled = stopped_by(attempt->cancellation.get_token());
+  const CallOptionsScope scope(until_cancelled);
   session->connect(parsed);
   return {std::move(session), end, url};
 }
@@ -215,7 +226,7 @@ void Services::succeed(const TargetPointer& target, const AttemptPointer& attemp
       inner_->add([members = members_, client = target->client] {
         for (const auto& member : members) member->client_came(client);
       });
-      on_connected_.tell(*program_, target->client->id);
+      on_connected_.notify(*program_, target->client->id);
     }
   }
   if (is_wanted && !ended) {
@@ -248,7 +259,7 @@ void Services::fail(const TargetPointer& target, const AttemptPointer& attempt, 
     if (is_closed_ || target->attempt != attempt || !is_this) return;
     ++target->failures;
     rest(*target, why);
-    on_failed_.tell(*program_, target->service.urls, why);
+    on_failed_.notify(*program_, target->service.urls, why);
     begin_waiting();
   }
   changed();
@@ -263,8 +274,8 @@ void Services::session_ended(const TargetPointer& target, SessionEnd& end, const
     if (is_closed_ || target->phase != Target::Phase::connected || target->end.get() != &end)
       return;
     const auto client = std::exchange(target->client, nullptr);
-    tell_left(client);
-    on_disconnected_.tell(*program_, client->id, why);
+    notify_left(client);
+    on_disconnected_.notify(*program_, client->id, why);
     if (target->is_fading) {
       target->phase = Target::Phase::gone;
       target->end.reset();

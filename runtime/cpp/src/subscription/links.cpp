@@ -43,7 +43,7 @@ void Link::on_timer() {
 
 Links::Links(std::shared_ptr<endpoint::Core> core, std::weak_ptr<Services> services,
              std::string member, std::string_view path)
-    : teller_(std::make_shared<Teller>(core)),
+    : notifier_(std::make_shared<Notifier>(core)),
       core_(std::move(core)),
       services_(std::move(services)),
       member_(std::move(member)),
@@ -100,7 +100,7 @@ void Links::end() {
     for (const LinkPointer& link : links) {
       if (std::exchange(link->phase, Link::Phase::over) == Link::Phase::open) open.push_back(link);
     }
-    on_failed_.end(*teller_);
+    on_failed_.end(*notifier_);
     end_functions();
   }
   for (const LinkPointer& link : open) leave(*link);
@@ -146,7 +146,7 @@ Subscription Links::on_failed(Function<void(const SubscriptionClientId&, const E
   const auto listener = on_failed_.add(std::move(function));
   for (const LinkPointer& link : links_) {
     if (!link->error) continue;
-    teller_->add(
+    notifier_->add(
         [listener, id = link->client->id, error = *link->error] { listener->call(id, error); });
   }
   return Subscription(listener);
@@ -195,6 +195,8 @@ Error Links::error_of(const std::exception_ptr& error) {
     return known;
   } catch (const std::exception& other) {
     return {ErrorCode::unknown_error, other.what()};
+  } catch (...) {
+    return {ErrorCode::unknown_error, "something that is no exception was thrown"};
   }
 }
 
@@ -259,7 +261,7 @@ void Links::failed(const LinkPointer& link, const Error& why) {
     if (link->phase != Link::Phase::connecting) return;
     if (is_alive) {
       link->error = why;
-      on_failed_.tell(*teller_, link->client->id, why);
+      on_failed_.notify(*notifier_, link->client->id, why);
     }
   }
   rest(link);
@@ -270,7 +272,7 @@ void Links::complain(const LinkPointer& link, const Error& why) {
   const std::lock_guard lock(mutex_);
   if (link->phase != Link::Phase::open || link->error) return;  // told once
   link->error = why;
-  on_failed_.tell(*teller_, link->client->id, why);
+  on_failed_.notify(*notifier_, link->client->id, why);
 }
 
 void Links::closed(const LinkPointer& link) {

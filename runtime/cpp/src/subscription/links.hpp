@@ -13,8 +13,8 @@
 #include "rr/member_subscription.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/subscription/notifier.hpp"
 #include "runtime/cpp/src/subscription/target.hpp"
-#include "runtime/cpp/src/subscription/teller.hpp"
 
 namespace rr::subscription {
 
@@ -114,7 +114,7 @@ class Links : public std::enable_shared_from_this<Links> {
   mutable std::mutex mutex_;
   bool is_open_ = true;
   std::vector<LinkPointer> links_;
-  const std::shared_ptr<Teller> teller_;  // to functions of the program
+  const std::shared_ptr<Notifier> notifier_;  // to functions of the program
 
  private:
   friend class Link;

@@ -7,6 +7,7 @@
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/endpoint/pipe_state.hpp"
+#include "runtime/cpp/src/endpoint/user_code.hpp"
 
 namespace rr::subscription {
 namespace {
@@ -128,7 +129,7 @@ Subscription PipeLinks::on_received(Function<void(const Packet&)> function) {
 
 void PipeLinks::deliver_soon() {
   if (!receiver_ || packets_.empty() || std::exchange(is_delivering_, true)) return;
-  teller_->add(
+  notifier_->add(
       [self = std::static_pointer_cast<PipeLinks>(shared_from_this())] { self->deliver(); });
 }
 
@@ -148,14 +149,8 @@ void PipeLinks::deliver() {
       packets_.pop_front();
     }
     bool is_taken = true;
-    try {
-      is_taken = receiver->call(packet);
-    } catch (const std::exception& error) {
-      core()->log(LogLevel::error,
-                  "a function for the pipe `" + member() + "` has thrown: " + error.what());
-    } catch (...) {
-      core()->log(LogLevel::error, "a function for the pipe `" + member() + "` has thrown");
-    }
+    endpoint::call_user_code(*core(), "a function for the pipe", member(),
+                             [&] { is_taken = receiver->call(packet); });
     if (is_taken) continue;
     const std::lock_guard lock(mutex_);
     packets_.push_front(std::move(packet));
@@ -164,7 +159,7 @@ void PipeLinks::deliver() {
 
 void PipeLinks::end_functions() {
   if (!receiver_) return;
-  teller_->add([receiver = std::exchange(receiver_, nullptr)] { receiver->disconnect(); });
+  notifier_->add([receiver = std::exchange(receiver_, nullptr)] { receiver->disconnect(); });
 }
 
 // Sending

@@ -20,7 +20,7 @@ channel::Milliseconds usable(channel::Milliseconds delay) {
 
 }  // namespace
 
-void Services::Farewell::say() {
+void Services::DisconnectBatch::send() {
   for (const AttemptPointer& attempt : attempts) attempt->give_up();
   for (const auto& session : sessions) session->drop();
 }
@@ -30,8 +30,8 @@ Services::Services(Host host, SubscriptionOptions options, std::weak_ptr<Owner> 
       host_(std::move(host)),
       options_(std::move(options)),
       owner_(std::move(owner)),
-      inner_(std::make_shared<Teller>(host_.core)),
-      program_(std::make_shared<Teller>(host_.core)),
+      inner_(std::make_shared<Notifier>(host_.core)),
+      program_(std::make_shared<Notifier>(host_.core)),
       filter_(std::make_shared<const Filter>(options_.filter)),
       delay_(usable(options_.retry_delay)),
       maximum_(channel::saturated(options_.max_retry_delay)) {}
@@ -46,7 +46,7 @@ Services::TargetPointer Services::find_target(const std::string& key) const {
 }
 
 void Services::appear(const std::string& key, FoundService service, bool is_known) {
-  Farewell farewell;
+  DisconnectBatch batch;
   {
     const std::lock_guard lock(mutex_);
     check_open();
@@ -65,27 +65,27 @@ void Services::appear(const std::string& key, FoundService service, bool is_know
         target->is_known = is_known;
         return;
       }
-      leave(target, farewell, closed_here);
+      leave(target, batch, closed_here);
     }
     target =
         std::make_shared<Target>(weak_from_this(), host_.core, key, std::move(service), is_known);
     targets_.push_back(target);
     begin_soon(target);
   }
-  farewell.say();
+  batch.send();
   changed();
 }
 
 void Services::disappear(const std::string& key) {
-  Farewell farewell;
+  DisconnectBatch batch;
   {
     const std::lock_guard lock(mutex_);
     const TargetPointer target = find_target(key);
     if (!target) return;
-    leave(target, farewell, closed_here);
+    leave(target, batch, closed_here);
     begin_waiting();
   }
-  farewell.say();
+  batch.send();
   changed();
 }
 
@@ -129,39 +129,39 @@ void Services::look_for(std::vector<std::string> types, ServiceFilter filter) {
   source->look_for(std::move(types), std::move(prepared));
 }
 
-// The target goes; what it has is left in the farewell, unless somebody has claimed it.
-void Services::leave(const TargetPointer& target, Farewell& farewell, const Error& why) {
+// The target goes; what it has is left in the batch, unless somebody has claimed it.
+void Services::leave(const TargetPointer& target, DisconnectBatch& batch, const Error& why) {
   host_.core->reactor().cancel(*target);
   target->phase = Target::Phase::gone;
   const auto client = std::exchange(target->client, nullptr);
   if (const auto attempt = std::exchange(target->attempt, nullptr)) {
-    farewell.attempts.push_back(attempt);
+    batch.attempts.push_back(attempt);
   }
   if (client) {
-    tell_left(client);
+    notify_left(client);
     if (!is_claimed(client->session)) {
-      farewell.sessions.push_back(client->session);
-      on_disconnected_.tell(*program_, client->id, why);
+      batch.sessions.push_back(client->session);
+      on_disconnected_.notify(*program_, client->id, why);
     }
   }
   std::erase(targets_, target);
 }
 
-void Services::tell_left(const std::shared_ptr<const LiveClient>& client) {
+void Services::notify_left(const std::shared_ptr<const LiveClient>& client) {
   inner_->add([members = members_, client] {
     for (const auto& member : members) member->client_left(client);
   });
 }
 
 void Services::close() {
-  Farewell farewell;
+  DisconnectBatch batch;
   std::vector<std::shared_ptr<Links>> members;
   std::shared_ptr<FindingSource> source;
   {
     const std::lock_guard lock(mutex_);
     if (std::exchange(is_closed_, true)) return;
     source.swap(source_);
-    while (!targets_.empty()) leave(TargetPointer(targets_.back()), farewell, closed_here);
+    while (!targets_.empty()) leave(TargetPointer(targets_.back()), batch, closed_here);
     members.swap(members_);
     on_connected_.end(*program_);
     on_disconnected_.end(*program_);
@@ -169,7 +169,7 @@ void Services::close() {
   }
   if (source) source->end();
   for (const auto& member : members) member->end();
-  farewell.say();
+  batch.send();
   changed();
   if (const auto owner = owner_.lock()) owner->forget(*this);
 }

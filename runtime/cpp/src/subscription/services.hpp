@@ -15,8 +15,8 @@
 #include "runtime/cpp/src/subscription/filter.hpp"
 #include "runtime/cpp/src/subscription/host.hpp"
 #include "runtime/cpp/src/subscription/links.hpp"
+#include "runtime/cpp/src/subscription/notifier.hpp"
 #include "runtime/cpp/src/subscription/target.hpp"
-#include "runtime/cpp/src/subscription/teller.hpp"
 #include "runtime/cpp/src/subscription/url_source.hpp"
 #include "runtime/cpp/src/subscription/waits.hpp"
 
@@ -99,11 +99,11 @@ class Services final : public Waits, public std::enable_shared_from_this<Service
   using AttemptPointer = std::shared_ptr<Attempt>;
 
   // What is to be done when the lock has gone.
-  struct Farewell {
+  struct DisconnectBatch {
     std::vector<AttemptPointer> attempts;
     std::vector<std::shared_ptr<Session>> sessions;
     /// Ends them without waiting.
-    void say();
+    void send();
   };
 
   // Attempts (attempts.cpp)
@@ -117,8 +117,8 @@ class Services final : public Waits, public std::enable_shared_from_this<Service
     std::string url;
   };
   Reached reach(const TargetPointer& target, const AttemptPointer& attempt);
-  Reached connect(const std::string& url, const FoundService& service, const TargetPointer& target,
-                  const AttemptPointer& attempt);
+  Reached connect(const std::string& url, const FoundService& service, bool is_found,
+                  const TargetPointer& target, const AttemptPointer& attempt);
   void check(const Session& session, const std::string& url, FoundService service,
              bool is_known) const;
   void succeed(const TargetPointer& target, const AttemptPointer& attempt, Reached reached);
@@ -134,8 +134,8 @@ class Services final : public Waits, public std::enable_shared_from_this<Service
   [[nodiscard]] std::vector<TargetPointer> connected() const;
   [[nodiscard]] bool is_claimed(const std::shared_ptr<Session>& session) const;
   void rest(Target& target, const Error& why);
-  void leave(const TargetPointer& target, Farewell& farewell, const Error& why);
-  void tell_left(const std::shared_ptr<const LiveClient>& client);
+  void leave(const TargetPointer& target, DisconnectBatch& batch, const Error& why);
+  void notify_left(const std::shared_ptr<const LiveClient>& client);
   std::shared_ptr<Links> add_member(std::shared_ptr<Links> member);
   void check_holding(std::string_view member, const Holding& holding) const;  // not under the lock
 
@@ -147,8 +147,8 @@ class Services final : public Waits, public std::enable_shared_from_this<Service
   const SubscriptionOptions options_;
   const std::weak_ptr<Owner> owner_;
   UrlSource urls_{*this};
-  const std::shared_ptr<Teller> inner_;    // to members
-  const std::shared_ptr<Teller> program_;  // to functions of the program
+  const std::shared_ptr<Notifier> inner_;    // to members
+  const std::shared_ptr<Notifier> program_;  // to functions of the program
 
   mutable std::mutex mutex_;
   bool is_closed_ = false;

@@ -35,13 +35,13 @@ struct SessionEnd {
 /// One attempt to connect to a service.
 struct Attempt {
   channel::Interruption interruption;
-  Cancellation cancellation;
+  std::stop_source cancellation;
   std::atomic<bool> is_over_time{false};
 
   /// Brings it to its end soon. Not under a lock.
   void give_up() {
     interruption.interrupt();
-    cancellation.cancel();
+    cancellation.request_stop();
   }
 };
 

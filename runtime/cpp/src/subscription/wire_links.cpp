@@ -6,6 +6,7 @@
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
+#include "runtime/cpp/src/endpoint/user_code.hpp"
 #include "runtime/cpp/src/endpoint/wire_end.hpp"
 
 namespace rr::subscription {
@@ -88,7 +89,7 @@ void WireLinks::take(WireLink& link) {
     newest_before = newest_.put(value, time);
     newest_client_ = link.client->id;
     link.sequence = ++sequence_;
-    tell_soon();
+    notify_soon();
   }
   arrived_.notify_all();
 }
@@ -149,29 +150,24 @@ Subscription WireLinks::on_received(Function<void(const Value&)> function) {
   const auto listener = std::make_shared<Listener<const Value&>>(std::move(function));
   const std::lock_guard lock(mutex_);
   check_open();
-  std::erase_if(told_, [](const Told& told) { return !told.listener->is_connected(); });
-  told_.push_back({listener});
-  tell_soon();
+  std::erase_if(notified_,
+                [](const Notified& notified) { return !notified.listener->is_connected(); });
+  notified_.push_back({listener});
+  notify_soon();
   return Subscription(listener);
 }
 
-void WireLinks::tell_soon() {
-  if (told_.empty() || std::exchange(is_telling_, true)) return;
-  teller_->add(
-      [self = std::static_pointer_cast<WireLinks>(shared_from_this())] { self->tell_all(); });
+void WireLinks::notify_soon() {
+  if (notified_.empty() || std::exchange(is_notifying_, true)) return;
+  notifier_->add(
+      [self = std::static_pointer_cast<WireLinks>(shared_from_this())] { self->notify_all(); });
 }
 
-void WireLinks::tell_all() {
+void WireLinks::notify_all() {
   for (auto turns = next_turn(); !turns.empty(); turns = next_turn()) {
     for (const Turn& turn : turns) {
-      try {
-        turn.listener->call(turn.value);
-      } catch (const std::exception& error) {
-        core()->log(LogLevel::error,
-                    "a function for the wire `" + member() + "` has thrown: " + error.what());
-      } catch (...) {
-        core()->log(LogLevel::error, "a function for the wire `" + member() + "` has thrown");
-      }
+      endpoint::call_user_code(*core(), "a function for the wire", member(),
+                               [&] { turn.listener->call(turn.value); });
     }
   }
 }
@@ -181,22 +177,22 @@ std::vector<WireLinks::Turn> WireLinks::next_turn() {
   std::vector<Turn> turns;
   const std::lock_guard lock(mutex_);
   const auto links = fresh_links();
-  for (Told& told : told_) {
+  for (Notified& notified : notified_) {
     for (const WireLink* const link : links) {
-      if (link->sequence <= told.seen) continue;
+      if (link->sequence <= notified.seen) continue;
       turns.push_back(
-          {told.listener, {link->newest.value(), link->newest.time(), link->client->id}});
+          {notified.listener, {link->newest.value(), link->newest.time(), link->client->id}});
     }
-    told.seen = sequence_;
+    notified.seen = sequence_;
   }
-  is_telling_ = !turns.empty();
+  is_notifying_ = !turns.empty();
   return turns;
 }
 
 void WireLinks::end_functions() {
-  if (told_.empty()) return;
-  teller_->add([told = std::exchange(told_, {})] {
-    for (const Told& each : told) each.listener->disconnect();
+  if (notified_.empty()) return;
+  notifier_->add([notified = std::exchange(notified_, {})] {
+    for (const Notified& each : notified) each.listener->disconnect();
   });
 }
 

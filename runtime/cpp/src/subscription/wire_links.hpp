@@ -57,7 +57,7 @@ class WireLinks final : public Links {
     std::uint64_t sequence = 0;  // of the newest value
   };
   // A function, and the last value that it was called with or has missed.
-  struct Told {
+  struct Notified {
     std::shared_ptr<Listener<const Value&>> listener;
     std::uint64_t seen = 0;
   };
@@ -75,8 +75,8 @@ class WireLinks final : public Links {
   void end_functions() override;
 
   void take(WireLink& link);
-  void tell_soon();
-  void tell_all();
+  void notify_soon();
+  void notify_all();
   std::vector<Turn> next_turn();
   [[nodiscard]] std::vector<const WireLink*> fresh_links() const;
 
@@ -86,8 +86,8 @@ class WireLinks final : public Links {
   SubscriptionClientId newest_client_;
   std::uint64_t sequence_ = 0;  // counts values
   std::chrono::milliseconds lifespan_{0};
-  std::vector<Told> told_;
-  bool is_telling_ = false;  // or will be, by the teller
+  std::vector<Notified> notified_;
+  bool is_notifying_ = false;  // or will be, by the notifier
 };
 
 }  // namespace rr::subscription

@@ -2,6 +2,7 @@
 #include <fcntl.h>
 #include <pthread.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "rr/tap.hpp"
+#include "runtime/cpp/src/tap/credentials.hpp"
 #include "runtime/cpp/src/tap/format.hpp"
 
 namespace rr {
@@ -29,6 +31,25 @@ Error cannot_write(const std::string& path, int error) {
   return {ErrorCode::io_error, "cannot write " + path + ": " + std::strerror(error)};
 }
 
+[[noreturn]] void refuse(const std::string& path, const std::string& why) {
+  throw Error(ErrorCode::io_error, "cannot write " + path + ": " + why);
+}
+
+// A file for its user alone, in place of one that is there. Others may have put something else
+// there, in a folder that all may write to, or have the old file open.
+int open_tape(const std::string& path) {
+  struct stat found {};
+  if (::lstat(path.c_str(), &found) == 0) {
+    if (S_ISLNK(found.st_mode)) refuse(path, "it is a symbolic link");
+    if (!S_ISREG(found.st_mode)) refuse(path, "it is no regular file");
+    if (found.st_uid != ::geteuid()) refuse(path, "it belongs to another user");
+    if (::unlink(path.c_str()) != 0) refuse(path, std::strerror(errno));
+  }
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+  if (file < 0) refuse(path, std::strerror(errno));
+  return file;
+}
+
 std::span<const std::byte> bytes_of_text(std::string_view text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }
@@ -40,12 +61,9 @@ Tap::~Tap() = default;
 // The file, the buffer in front of it, and the thread between them.
 class Recorder::Tape {
  public:
-  Tape(const std::filesystem::path& path, RecorderOptions options)
-      : path_(path.string()),
-        options_(options),
-        file_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)),
-        start_(Clock::now()) {
-    if (file_ < 0) throw cannot_write(path_, errno);
+  // Takes over the file.
+  Tape(std::string path, int file, RecorderOptions options)
+      : path_(std::move(path)), options_(options), file_(file), start_(Clock::now()) {
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     const auto header = tap::bytes_of(tap::FileHeader{
         .start = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()});
@@ -201,6 +219,7 @@ class Recorder::Tape {
       writing_size_ = writing.size();
       const bool is_well = failure_.empty();
       lock.unlock();
+      if (!options_.keeps_credentials) mask(writing);
       sum_up(writing);
       const int error = is_well ? write_all(writing) : 0;
       shrink(writing);
@@ -211,15 +230,31 @@ class Recorder::Tape {
     }
   }
 
-  static void sum_up(std::span<std::byte> records) {
+  template <class Work>
+  static void for_each_record(std::span<std::byte> records, Work&& work) {
     while (!records.empty()) {
       tap::RecordHeader header;
       tap::read(records, header);
       const std::span<std::byte> record = records.first(tap::RecordHeader::size + header.body_size);
-      const std::uint32_t sum = tap::record_sum(record);
-      std::memcpy(record.data() + tap::RecordHeader::sum_at, &sum, sizeof sum);
+      work(header, record);
       records = records.subspan(record.size());
     }
+  }
+
+  static void mask(std::span<std::byte> records) {
+    for_each_record(records, [](const tap::RecordHeader& header, std::span<std::byte> record) {
+      if (header.kind == tap::Kind::message &&
+          header.direction == static_cast<std::uint8_t>(Direction::to_service)) {
+        tap::mask_credentials(record.subspan(tap::RecordHeader::size));
+      }
+    });
+  }
+
+  static void sum_up(std::span<std::byte> records) {
+    for_each_record(records, [](const tap::RecordHeader& /*header*/, std::span<std::byte> record) {
+      const std::uint32_t sum = tap::record_sum(record);
+      std::memcpy(record.data() + tap::RecordHeader::sum_at, &sum, sizeof sum);
+    });
   }
 
   // After one large message the buffer is not to stay so large.
@@ -263,7 +298,10 @@ class Recorder::Tape {
 };
 
 Recorder::Recorder(const std::filesystem::path& path, RecorderOptions options)
-    : tape_(std::make_unique<Tape>(path, options)) {}
+    : tape_(std::make_unique<Tape>(path.string(), open_tape(path.string()), options)) {}
+Recorder::Recorder(int descriptor, RecorderOptions options)
+    : tape_(std::make_unique<Tape>("descriptor " + std::to_string(descriptor), descriptor,
+                                   options)) {}
 Recorder::~Recorder() = default;
 
 std::uint32_t Recorder::opened(const ConnectionOpened& connection) {

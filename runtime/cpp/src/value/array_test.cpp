@@ -6,6 +6,8 @@
 #include <array>
 #include <limits>
 
+#include "rr/sequence.hpp"
+
 namespace rr {
 namespace {
 
@@ -122,6 +124,21 @@ TEST(FixedMultiArray, CountsTheFirstIndexFastest) {
   EXPECT_EQ(array.items, (std::array<int, 6>{0, 0, 0, 0, 0, 7}));
   array(1, 0) = 8;
   EXPECT_EQ(array.items[1], 8);
+}
+
+Sequence<Array<double>> rising() {
+  co_yield Array<double>::of(1, 2);
+  co_yield Array<double>::of(3.0, 4, 5.5F);
+}
+
+TEST(Array, OfItemsCanBeYielded) {
+  const std::shared_ptr<GeneratorSource> sequence = rising().source();
+  Array<double> result;
+  ASSERT_TRUE(sequence->rr_step(nullptr, &result));
+  EXPECT_EQ(result, (Array<double>{1, 2}));
+  ASSERT_TRUE(sequence->rr_step(nullptr, &result));
+  EXPECT_EQ(result, (Array<double>{3, 4, 5.5}));
+  EXPECT_FALSE(sequence->rr_step(nullptr, &result));
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ class MapWriter final : public MapOperations::Visitor {
 };
 
 // What an item of a std::map takes besides key and value: its node, and the allocation of it.
-constexpr std::size_t map_node_size = 48;
+constexpr std::size_t map_node_size = 80;
 
 // Adds the item that an element names. Null when the key is there already; with the decoder failed
 // when it is no key.
@@ -49,6 +49,11 @@ void* add_item(Decoder& decoder, const Element& map, const Element& element,
       return operations.add_number(value, *key);
     }
   } else if (element.has_name) {
+    constexpr std::size_t in_place = 15;  // so long a key needs no memory of its own
+    if (element.name.size() > in_place &&
+        !decoder.reserve(element.name.size() + value::allocation_cost, map.name)) {
+      return nullptr;
+    }
     return operations.add_text(value, element.name);
   }
   decoder.fail(ErrorCode::data_type_error, "item of a map without a key", map.name);

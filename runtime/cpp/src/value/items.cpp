@@ -9,6 +9,8 @@ namespace {
 
 // Below this a copy is cheaper than keeping the whole received message alive.
 constexpr std::size_t slice_threshold = 4096;
+// What counts the references to an array's items.
+constexpr std::size_t array_cost = allocation_cost + 32;
 
 ElementType packed_type(const ItemType& item) {
   return item.record == nullptr ? item.number : record_of(item).number_type();
@@ -168,13 +170,14 @@ bool read_array(Decoder& decoder, const ReceivedItems& received, const ItemType&
   }
   const std::size_t bytes = std::size_t{received.count} * item.size;
   if (number == ElementType::void_) {
-    if (!decoder.reserve(bytes, received.element.name)) return false;
+    if (!decoder.reserve(bytes + array_cost, received.element.name)) return false;
     std::byte* room = array.make_room(received.count, item.size);
     // Pods are implicitly made by their bytes; all zero is an empty one.
     if (bytes != 0) std::memset(room, 0, bytes);
     return read_items(decoder, received, item, room);
   }
   decoder.count_copied_array(bytes);
+  if (bytes != 0 && !decoder.reserve(bytes + array_cost, received.element.name)) return false;
   return read_items(decoder, received, item, array.make_room(received.count, item.size));
 }
 

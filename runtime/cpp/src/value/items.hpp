@@ -23,6 +23,9 @@ struct AnyMultiArray {
 };
 static_assert(sizeof(AnyMultiArray) == sizeof(MultiArray<double>));
 
+/// What a value that is allocated by itself takes besides its bytes, about.
+inline constexpr std::size_t allocation_cost = 24;
+
 /// Fails the decoder for an element of another type than `expected`: null is an error of its own.
 bool fail_type(Decoder& decoder, const Element& element);
 

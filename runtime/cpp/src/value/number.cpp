@@ -41,7 +41,13 @@ bool StringType::read(Decoder& decoder, const Element& element, void* value) con
     }
     return value::fail_type(decoder, element);
   }
-  static_cast<std::string*>(value)->assign(element.text());
+  const std::string_view text = element.text();
+  auto& string = *static_cast<std::string*>(value);
+  if (text.size() > string.capacity() &&
+      !decoder.reserve(text.size() + value::allocation_cost, element.name)) {
+    return false;
+  }
+  string.assign(text);
   return true;
 }
 

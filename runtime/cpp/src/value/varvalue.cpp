@@ -33,8 +33,14 @@ struct BlockDeleter {
   void operator()(void* block) const { ::operator delete(block); }
 };
 
+// A value in a varvalue is allocated by itself.
+bool reserve_held(Decoder& decoder, const Element& element, std::size_t size) {
+  return decoder.reserve(value::allocation_cost + sizeof(HeldValue) + size, element.name);
+}
+
 template <class T>
 bool read_as(Decoder& decoder, const Element& element, VarValue& value) {
+  if (!reserve_held(decoder, element, sizeof(T))) return false;
   value = VarValue(type_of<T>, value_operations<T>);
   return type_of<T>.read(decoder, element, value.place());
 }
@@ -82,6 +88,7 @@ bool read_named(Decoder& decoder, const Element& element, VarValue& value) {
   if (type == nullptr || type->element_type() != element.type) {
     return decoder.fail(ErrorCode::data_type_error, "type name of another kind", element.name);
   }
+  if (!reserve_held(decoder, element, of_value->size)) return false;
   value = VarValue(*type, *of_value);
   return type->read(decoder, element, value.place());
 }

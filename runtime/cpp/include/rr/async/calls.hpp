@@ -43,65 +43,76 @@ class FindCompletion final : public HandlerCompletion<Handler> {
 };
 
 template <class R, class Token, class... Arguments>
-auto Stub::rr_async_call(const Member& member, Token&& token, const Arguments&... arguments) {
+auto Stub::rr_async_call(const Member& member, const CallOptions& options, Token&& token,
+                         const Arguments&... arguments) {
   return boost::asio::async_initiate<Token, typename CompletionSignature<R>::type>(
-      [this, call = &member](auto&& handler, const Arguments&... values) {
+      [this, call = &member, options](auto&& handler, const Arguments&... values) {
         using Handler = std::decay_t<decltype(handler)>;
         const void* const places[] = {&values..., nullptr};
-        rr_start(
-            *call, false, places,
-            std::make_unique<CallCompletion<Handler, R>>(std::forward<decltype(handler)>(handler)));
+        start_call(
+            std::make_unique<CallCompletion<Handler, R>>(std::forward<decltype(handler)>(handler)),
+            options,
+            [&](auto completion) { rr_start(*call, false, places, std::move(completion)); });
       },
       token, arguments...);
 }
 
 template <class T, class Token>
-auto Stub::rr_async_get(const Member& member, Token&& token) {
+auto Stub::rr_async_get(const Member& member, const CallOptions& options, Token&& token) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr, T)>(
-      [this, property = &member](auto&& handler) {
+      [this, property = &member, options](auto&& handler) {
         using Handler = std::decay_t<decltype(handler)>;
-        rr_start(
-            *property, false, nullptr,
-            std::make_unique<CallCompletion<Handler, T>>(std::forward<decltype(handler)>(handler)));
+        start_call(
+            std::make_unique<CallCompletion<Handler, T>>(std::forward<decltype(handler)>(handler)),
+            options,
+            [&](auto completion) { rr_start(*property, false, nullptr, std::move(completion)); });
       },
       token);
 }
 
 template <class T, class Token>
-auto Stub::rr_async_set(const Member& member, Token&& token, const T& value) {
+auto Stub::rr_async_set(const Member& member, const CallOptions& options, Token&& token,
+                        const T& value) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr)>(
-      [this, property = &member](auto&& handler, const T& wanted) {
+      [this, property = &member, options](auto&& handler, const T& wanted) {
         using Handler = std::decay_t<decltype(handler)>;
         const void* const place = &wanted;
-        rr_start(*property, true, &place,
-                 std::make_unique<CallCompletion<Handler, void>>(
-                     std::forward<decltype(handler)>(handler)));
+        start_call(std::make_unique<CallCompletion<Handler, void>>(
+                       std::forward<decltype(handler)>(handler)),
+                   options, [&](auto completion) {
+                     rr_start(*property, true, &place, std::move(completion));
+                   });
       },
       token, value);
 }
 
 template <class S, class Token, class... Index>
-auto Stub::rr_async_find(const Member& member, Token&& token, const Index&... index) {
+auto Stub::rr_async_find(const Member& member, const CallOptions& options, Token&& token,
+                         const Index&... index) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr, std::shared_ptr<S>)>(
-      [this, objref = &member](auto&& handler, const auto&... wanted) {
+      [this, objref = &member, options](auto&& handler, const auto&... wanted) {
         using Handler = std::decay_t<decltype(handler)>;
-        this->rr_start_find(*objref, wanted...,
-                            std::make_unique<FindCompletion<Handler, S>>(
-                                std::forward<decltype(handler)>(handler), *objref));
+        start_call(std::make_unique<FindCompletion<Handler, S>>(
+                       std::forward<decltype(handler)>(handler), *objref),
+                   options, [&](auto completion) {
+                     rr_start_find(*objref, wanted..., std::move(completion));
+                   });
       },
       token, index...);
 }
 
 template <class R, class Token, class... Arguments>
-auto Skeleton::rr_async_call_back(const Member& member, Token&& token, std::uint32_t client,
-                                  const Arguments&... arguments) const {
+auto Skeleton::rr_async_call_back(const Member& member, const CallOptions& options, Token&& token,
+                                  std::uint32_t client, const Arguments&... arguments) const {
   return boost::asio::async_initiate<Token, typename CompletionSignature<R>::type>(
-      [this, callback = &member, client](auto&& handler, const Arguments&... values) {
+      [this, callback = &member, options, client](auto&& handler, const Arguments&... values) {
         using Handler = std::decay_t<decltype(handler)>;
         const void* const places[] = {&values..., nullptr};
-        rr_start_asking(
-            *callback, client, places,
-            std::make_unique<CallCompletion<Handler, R>>(std::forward<decltype(handler)>(handler)));
+        start_call(
+            std::make_unique<CallCompletion<Handler, R>>(std::forward<decltype(handler)>(handler)),
+            options, [&](auto completion) {
+              rr_start_asking(*callback, client, places, std::move(completion));
+            });
       },
       token, arguments...);
 }

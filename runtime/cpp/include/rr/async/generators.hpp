@@ -61,65 +61,69 @@ class StepCompletion<Handler, void> final : public HandlerCompletion<Handler, Ge
 };
 
 template <class R, class P, class Token, class... Arguments>
-auto Stub::rr_async_generate(const Member& member, Token&& token, const Arguments&... arguments) {
+auto Stub::rr_async_generate(const Member& member, const CallOptions& options, Token&& token,
+                             const Arguments&... arguments) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr, Generator<R, P>)>(
-      [this, call = &member](auto&& handler, const Arguments&... values) {
+      [this, call = &member, options](auto&& handler, const Arguments&... values) {
         using Handler = std::decay_t<decltype(handler)>;
         const void* const places[] = {&values..., nullptr};
-        rr_start_generator(*call, places,
-                           std::make_unique<GeneratorCompletion<Handler, R, P>>(
-                               std::forward<decltype(handler)>(handler)));
+        start_call(std::make_unique<GeneratorCompletion<Handler, R, P>>(
+                       std::forward<decltype(handler)>(handler)),
+                   options, [&](auto completion) {
+                     rr_start_generator(*call, places, std::move(completion));
+                   });
       },
       token, arguments...);
 }
 
 template <class R, class P>
 template <class Token>
-auto Generator<R, P>::async_next(const P& parameter, Token&& token) {
+auto Generator<R, P>::async_next(const P& parameter, const CallOptions& options, Token&& token) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr, std::optional<R>)>(
-      [state = state_](auto&& handler, const P& value) {
+      [state = state_, options](auto&& handler, const P& value) {
         using Handler = std::decay_t<decltype(handler)>;
-        start_step(
-            state, &value,
-            std::make_unique<StepCompletion<Handler, R>>(std::forward<decltype(handler)>(handler)));
+        start_call(
+            std::make_unique<StepCompletion<Handler, R>>(std::forward<decltype(handler)>(handler)),
+            options, [&](auto step) { start_step(state, &value, std::move(step)); });
       },
       token, parameter);
 }
 
 template <class P>
 template <class Token>
-auto Generator<void, P>::async_next(const P& parameter, Token&& token) {
+auto Generator<void, P>::async_next(const P& parameter, const CallOptions& options, Token&& token) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr, bool)>(
-      [state = state_](auto&& handler, const P& value) {
+      [state = state_, options](auto&& handler, const P& value) {
         using Handler = std::decay_t<decltype(handler)>;
-        start_step(state, &value,
-                   std::make_unique<StepCompletion<Handler, void>>(
-                       std::forward<decltype(handler)>(handler)));
+        start_call(std::make_unique<StepCompletion<Handler, void>>(
+                       std::forward<decltype(handler)>(handler)),
+                   options, [&](auto step) { start_step(state, &value, std::move(step)); });
       },
       token, parameter);
 }
 
 template <class R>
 template <class Token>
-auto Generator<R, void>::async_next(Token&& token) {
+auto Generator<R, void>::async_next(const CallOptions& options, Token&& token) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr, std::optional<R>)>(
-      [state = state_](auto&& handler) {
+      [state = state_, options](auto&& handler) {
         using Handler = std::decay_t<decltype(handler)>;
-        start_step(
-            state, nullptr,
-            std::make_unique<StepCompletion<Handler, R>>(std::forward<decltype(handler)>(handler)));
+        start_call(
+            std::make_unique<StepCompletion<Handler, R>>(std::forward<decltype(handler)>(handler)),
+            options, [&](auto step) { start_step(state, nullptr, std::move(step)); });
       },
       token);
 }
 
 template <class Token>
-auto GeneratorHandle::async_end(Token&& token, bool aborts) {
+auto GeneratorHandle::async_end(bool aborts, const CallOptions& options, Token&& token) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr)>(
-      [state = state_, aborts](auto&& handler) {
+      [state = state_, aborts, options](auto&& handler) {
         using Handler = std::decay_t<decltype(handler)>;
-        start_end(state, aborts,
-                  std::make_unique<CallCompletion<Handler, void>>(
-                      std::forward<decltype(handler)>(handler)));
+        start_call(std::make_unique<CallCompletion<Handler, void>>(
+                       std::forward<decltype(handler)>(handler)),
+                   options,
+                   [&](auto completion) { start_end(state, aborts, std::move(completion)); });
       },
       token);
 }

@@ -17,16 +17,19 @@ namespace rr {
 
 template <class T>
 template <class Token>
-auto ArrayMemory<T>::async_read(std::uint64_t position, std::uint64_t count, Token&& token) const {
+auto ArrayMemory<T>::async_read(std::uint64_t position, std::uint64_t count,
+                                const CallOptions& options, Token&& token) const {
   return boost::asio::async_initiate<Token, void(std::exception_ptr, Array<T>)>(
-      [memory = *this, position, count](auto&& handler) {
+      [memory = *this, position, count, options](auto&& handler) {
         using Handler = std::decay_t<decltype(handler)>;
         auto completion = std::make_unique<CallCompletion<Handler, Array<T>>>(
             std::forward<decltype(handler)>(handler));
         auto& items = *static_cast<Array<T>*>(completion->result());
         items = Array<T>(size_of({&count, 1}));
-        memory.start_read({&position, 1}, {&count, 1}, items.mutate().data(), items.size(),
-                          std::move(completion));
+        start_call(std::move(completion), options, [&](auto ending) {
+          memory.start_read({&position, 1}, {&count, 1}, items.mutate().data(), items.size(),
+                            std::move(ending));
+        });
       },
       token);
 }
@@ -34,14 +37,17 @@ auto ArrayMemory<T>::async_read(std::uint64_t position, std::uint64_t count, Tok
 template <class T>
 template <class Token>
 auto ArrayMemory<T>::async_write(std::uint64_t position, const Array<T>& items,
-                                 Token&& token) const {
+                                 const CallOptions& options, Token&& token) const {
   return boost::asio::async_initiate<Token, void(std::exception_ptr)>(
-      [memory = *this, position](auto&& handler, const Array<T>& kept) {
+      [memory = *this, position, options](auto&& handler, const Array<T>& kept) {
         using Handler = std::decay_t<decltype(handler)>;
         const std::uint64_t count = kept.size();
-        memory.start_write({&position, 1}, {&count, 1}, kept.data(), kept.size(), kept.owner(),
-                           std::make_unique<CallCompletion<Handler, void>>(
-                               std::forward<decltype(handler)>(handler)));
+        start_call(std::make_unique<CallCompletion<Handler, void>>(
+                       std::forward<decltype(handler)>(handler)),
+                   options, [&](auto completion) {
+                     memory.start_write({&position, 1}, {&count, 1}, kept.data(), kept.size(),
+                                        kept.owner(), std::move(completion));
+                   });
       },
       token, items.owner() ? items : Array<T>(std::span<const T>(items)));
 }
@@ -49,17 +55,20 @@ auto ArrayMemory<T>::async_write(std::uint64_t position, const Array<T>& items,
 template <class T>
 template <class Token>
 auto MultiMemory<T>::async_read(std::vector<std::uint64_t> position,
-                                std::vector<std::uint64_t> count, Token&& token) const {
+                                std::vector<std::uint64_t> count, const CallOptions& options,
+                                Token&& token) const {
   return boost::asio::async_initiate<Token, void(std::exception_ptr, MultiArray<T>)>(
-      [memory = *this](auto&& handler, const std::vector<std::uint64_t>& where,
-                       const std::vector<std::uint64_t>& shape) {
+      [memory = *this, options](auto&& handler, const std::vector<std::uint64_t>& where,
+                                const std::vector<std::uint64_t>& shape) {
         using Handler = std::decay_t<decltype(handler)>;
         auto completion = std::make_unique<CallCompletion<Handler, MultiArray<T>>>(
             std::forward<decltype(handler)>(handler));
         auto& array = *static_cast<MultiArray<T>*>(completion->result());
         array = {{shape.begin(), shape.end()}, Array<T>(size_of(shape))};
-        memory.start_read(where, shape, array.items.mutate().data(), array.items.size(),
-                          std::move(completion));
+        start_call(std::move(completion), options, [&](auto ending) {
+          memory.start_read(where, shape, array.items.mutate().data(), array.items.size(),
+                            std::move(ending));
+        });
       },
       token, std::move(position), std::move(count));
 }
@@ -67,14 +76,17 @@ auto MultiMemory<T>::async_read(std::vector<std::uint64_t> position,
 template <class T>
 template <class Token>
 auto MultiMemory<T>::async_write(std::vector<std::uint64_t> position, const MultiArray<T>& array,
-                                 Token&& token) const {
+                                 const CallOptions& options, Token&& token) const {
   return boost::asio::async_initiate<Token, void(std::exception_ptr)>(
-      [memory = *this](auto&& handler, const std::vector<std::uint64_t>& where,
-                       const std::vector<std::uint64_t>& shape, const Array<T>& kept) {
+      [memory = *this, options](auto&& handler, const std::vector<std::uint64_t>& where,
+                                const std::vector<std::uint64_t>& shape, const Array<T>& kept) {
         using Handler = std::decay_t<decltype(handler)>;
-        memory.start_write(where, shape, kept.data(), kept.size(), kept.owner(),
-                           std::make_unique<CallCompletion<Handler, void>>(
-                               std::forward<decltype(handler)>(handler)));
+        start_call(std::make_unique<CallCompletion<Handler, void>>(
+                       std::forward<decltype(handler)>(handler)),
+                   options, [&](auto completion) {
+                     memory.start_write(where, shape, kept.data(), kept.size(), kept.owner(),
+                                        std::move(completion));
+                   });
       },
       token, std::move(position), std::vector<std::uint64_t>(array.dims.begin(), array.dims.end()),
       array.items.owner() ? array.items : Array<T>(std::span<const T>(array.items)));

@@ -15,52 +15,45 @@ namespace rr {
 
 template <class T>
 template <class Token>
-auto Wire<T>::async_connect(Token&& token) {
+auto Wire<T>::async_connect(const CallOptions& options, Token&& token) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr, WireConnection<T>)>(
-      [wire = *this](auto&& handler) mutable {
+      [wire = *this, options](auto&& handler) mutable {
         using Handler = std::decay_t<decltype(handler)>;
         auto completion = std::make_unique<CallCompletion<Handler, WireConnection<T>>>(
             std::forward<decltype(handler)>(handler));
         auto* const end = static_cast<WireConnection<T>*>(completion->result());
-        wire.start_connect(end, std::move(completion));
+        start_call(std::move(completion), options,
+                   [&](auto ending) { wire.start_connect(end, std::move(ending)); });
       },
       token);
 }
 
 template <class T>
 template <class Token>
-auto Wire<T>::async_peek(bool of_out, Token&& token) {
+auto Wire<T>::async_peek(bool of_out, const CallOptions& options, Token&& token) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr, Timed<T>)>(
-      [wire = *this, of_out](auto&& handler) mutable {
+      [wire = *this, of_out, options](auto&& handler) mutable {
         using Handler = std::decay_t<decltype(handler)>;
         auto completion = std::make_unique<CallCompletion<Handler, Timed<T>>>(
             std::forward<decltype(handler)>(handler));
         auto* const place = static_cast<Timed<T>*>(completion->result());
-        wire.start_peek(of_out, &place->value, &place->time, std::move(completion));
+        start_call(std::move(completion), options, [&](auto ending) {
+          wire.start_peek(of_out, &place->value, &place->time, std::move(ending));
+        });
       },
       token);
 }
 
 template <class T>
 template <class Token>
-auto Wire<T>::async_peek_in(Token&& token) {
-  return async_peek(false, std::forward<Token>(token));
-}
-
-template <class T>
-template <class Token>
-auto Wire<T>::async_peek_out(Token&& token) {
-  return async_peek(true, std::forward<Token>(token));
-}
-
-template <class T>
-template <class Token>
-auto Wire<T>::async_poke_out(const T& value, Token&& token) {
+auto Wire<T>::async_poke_out(const T& value, const CallOptions& options, Token&& token) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr)>(
-      [wire = *this](auto&& handler, const T& wanted) mutable {
+      [wire = *this, options](auto&& handler, const T& wanted) mutable {
         using Handler = std::decay_t<decltype(handler)>;
-        wire.start_poke(&wanted, std::make_unique<CallCompletion<Handler, void>>(
-                                     std::forward<decltype(handler)>(handler)));
+        start_call(std::make_unique<CallCompletion<Handler, void>>(
+                       std::forward<decltype(handler)>(handler)),
+                   options,
+                   [&](auto completion) { wire.start_poke(&wanted, std::move(completion)); });
       },
       token, value);
 }
@@ -82,12 +75,13 @@ class PacketCompletion final : public HandlerCompletion<Handler> {
 
 template <class T>
 template <class Token>
-auto PipeEndpoint<T>::async_receive(Token&& token) {
+auto PipeEndpoint<T>::async_receive(const CallOptions& options, Token&& token) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr, T)>(
-      [end = *this](auto&& handler) mutable {
+      [end = *this, options](auto&& handler) mutable {
         using Handler = std::decay_t<decltype(handler)>;
-        end.start_receive(std::make_unique<PacketCompletion<Handler, T>>(
-            std::forward<decltype(handler)>(handler)));
+        start_call(std::make_unique<PacketCompletion<Handler, T>>(
+                       std::forward<decltype(handler)>(handler)),
+                   options, [&](auto completion) { end.start_receive(std::move(completion)); });
       },
       token);
 }
@@ -109,14 +103,15 @@ class PipeCompletion final : public HandlerCompletion<Handler> {
 
 template <class T>
 template <class Token>
-auto Pipe<T>::async_connect(Token&& token, const PipeOptions& options) {
+auto Pipe<T>::async_connect(const PipeOptions& wishes, const CallOptions& options, Token&& token) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr, PipeEndpoint<T>)>(
-      [pipe = *this](auto&& handler, const PipeOptions& wishes) mutable {
+      [pipe = *this, wishes, options](auto&& handler) mutable {
         using Handler = std::decay_t<decltype(handler)>;
-        pipe.start_connect(wishes, std::make_unique<PipeCompletion<Handler, T>>(
-                                       std::forward<decltype(handler)>(handler)));
+        start_call(
+            std::make_unique<PipeCompletion<Handler, T>>(std::forward<decltype(handler)>(handler)),
+            options, [&](auto completion) { pipe.start_connect(wishes, std::move(completion)); });
       },
-      token, options);
+      token);
 }
 
 }  // namespace rr

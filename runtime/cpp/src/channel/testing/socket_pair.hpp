@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -27,6 +29,31 @@ class SocketPair {
       throw std::system_error(errno, std::generic_category(), "socketpair");
     }
   }
+  /// The same over TCP on the loopback interface, where the test's end has this address: any of
+  /// 127.0.0.0/8.
+  explicit SocketPair(const char* from) {
+    const auto at = [](const char* host) {
+      sockaddr_in address{};
+      address.sin_family = AF_INET;
+      inet_pton(AF_INET, host, &address.sin_addr);
+      return address;
+    };
+    sockaddr_in here = at("127.0.0.1");
+    const sockaddr_in there = at(from);
+    socklen_t size = sizeof here;
+    const int listener = ::socket(AF_INET, SOCK_STREAM, 0);
+    ends_[0] = ::socket(AF_INET, SOCK_STREAM, 0);
+    const bool is_connected =
+        ::bind(listener, reinterpret_cast<const sockaddr*>(&here), size) == 0 &&
+        ::listen(listener, 1) == 0 &&
+        ::getsockname(listener, reinterpret_cast<sockaddr*>(&here), &size) == 0 &&
+        ::bind(ends_[0], reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0 &&
+        ::connect(ends_[0], reinterpret_cast<const sockaddr*>(&here), size) == 0;
+    const int error = errno;
+    if (is_connected) ends_[1] = ::accept(listener, nullptr, nullptr);
+    ::close(listener);
+    if (!is_connected) throw std::system_error(error, std::generic_category(), "connect");
+  }
   ~SocketPair() {
     for (const int end : ends_) {
       if (end >= 0) ::close(end);
@@ -36,6 +63,13 @@ class SocketPair {
   SocketPair& operator=(const SocketPair&) = delete;
 
   [[nodiscard]] int other() const { return ends_[1]; }
+  /// The test's end.
+  [[nodiscard]] int own() const { return ends_[0]; }
+  /// Whether there is room to send in time.
+  [[nodiscard]] bool may_send(int milliseconds) const {
+    pollfd writable{.fd = ends_[0], .events = POLLOUT, .revents = 0};
+    return poll(&writable, 1, milliseconds) == 1 && (writable.revents & POLLOUT) != 0;
+  }
   /// The caller closes it from now on.
   int give_away() { return std::exchange(ends_[1], -1); }
 

@@ -111,7 +111,9 @@ std::shared_ptr<Skeleton> BoardSkeleton::rr_child(std::size_t /*place*/,
   return get_child();
 }
 
-void BoardSkeleton::stray(std::uint32_t client) const { rr_call_back<void>(stray_member, client); }
+void BoardSkeleton::stray(std::uint32_t client) const {
+  rr_call_back<void>(stray_member, {}, client);
+}
 
 namespace {
 

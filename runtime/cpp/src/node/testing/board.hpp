@@ -64,36 +64,36 @@ class BoardStub : public virtual Stub {
   }
   Callback<double(std::string)> fail() { return {*this, member(fail_place)}; }
 
-  double run(const std::string& what) { return rr_call<double>(member(run_place), what); }
+  double run(const std::string& what) { return rr_call<double>(member(run_place), {}, what); }
   Generator<std::int32_t> count_to(std::int32_t limit) {
-    return rr_generate<std::int32_t, void>(member(count_to_place), limit);
+    return rr_generate<std::int32_t, void>(member(count_to_place), {}, limit);
   }
   Generator<std::string> names(const std::string& label) {
-    return rr_generate<std::string, void>(member(names_place), label);
+    return rr_generate<std::string, void>(member(names_place), {}, label);
   }
   Generator<std::optional<Note>> notes() {
-    return rr_generate<std::optional<Note>, void>(member(notes_place));
+    return rr_generate<std::optional<Note>, void>(member(notes_place), {});
   }
   Generator<void, double> collect(const std::string& label) {
-    return rr_generate<void, double>(member(collect_place), label);
+    return rr_generate<void, double>(member(collect_place), {}, label);
   }
   Generator<double, double> running_sum(double start) {
-    return rr_generate<double, double>(member(running_sum_place), start);
+    return rr_generate<double, double>(member(running_sum_place), {}, start);
   }
   std::shared_ptr<BoardStub> get_child() {
-    return rr_find_as<BoardStub>(member(board_child_place));
+    return rr_find_as<BoardStub>(member(board_child_place), {});
   }
   Event<std::string>& note_down() { return note_down_; }
 
   // The asynchronous forms.
   template <class Token>
   auto async_run(const std::string& what, Token&& token) {
-    return rr_async_call<double>(member(run_place), std::forward<Token>(token), what);
+    return rr_async_call<double>(member(run_place), {}, std::forward<Token>(token), what);
   }
   template <class Token>
   auto async_count_to(std::int32_t limit, Token&& token) {
-    return rr_async_generate<std::int32_t, void>(member(count_to_place), std::forward<Token>(token),
-                                                 limit);
+    return rr_async_generate<std::int32_t, void>(member(count_to_place), {},
+                                                 std::forward<Token>(token), limit);
   }
 
  private:
@@ -107,27 +107,32 @@ class BoardSkeleton : public Skeleton {
   void rr_dispatch(std::size_t place, Request& request) override;
   std::shared_ptr<Skeleton> rr_child(std::size_t place, const ObjectIndex& index) override;
 
-  void ping(std::uint32_t client) const { rr_call_back<void>(member(ping_place), client); }
+  void ping(std::uint32_t client) const { rr_call_back<void>(member(ping_place), {}, client); }
   std::int32_t sum(std::uint32_t client, std::int32_t a, std::int32_t b) const {
-    return rr_call_back<std::int32_t>(member(sum_place), client, a, b);
+    return rr_call_back<std::int32_t>(member(sum_place), {}, client, a, b);
   }
   std::optional<Note> describe(std::uint32_t client, const std::string& text,
                                const Array<double>& numbers) const {
-    return rr_call_back<std::optional<Note>>(member(describe_place), client, text, numbers);
+    return rr_call_back<std::optional<Note>>(member(describe_place), {}, client, text, numbers);
   }
   double fail(std::uint32_t client, const std::string& text) const {
-    return rr_call_back<double>(member(fail_place), client, text);
+    return rr_call_back<double>(member(fail_place), {}, client, text);
   }
   /// A callback that the definition does not have.
   void stray(std::uint32_t client) const;
   template <class Token>
   auto async_sum(std::uint32_t client, std::int32_t a, std::int32_t b, Token&& token) const {
-    return rr_async_call_back<std::int32_t>(member(sum_place), std::forward<Token>(token), client,
-                                            a, b);
+    return rr_async_call_back<std::int32_t>(member(sum_place), {}, std::forward<Token>(token),
+                                            client, a, b);
+  }
+  template <class Token>
+  auto async_ping(std::uint32_t client, const CallOptions& options, Token&& token) const {
+    return rr_async_call_back<void>(member(ping_place), options, std::forward<Token>(token),
+                                    client);
   }
   template <class Token>
   auto async_ping(std::uint32_t client, Token&& token) const {
-    return rr_async_call_back<void>(member(ping_place), std::forward<Token>(token), client);
+    return async_ping(client, CallOptions(), std::forward<Token>(token));
   }
   void note_down(const std::string& text) const { rr_fire_event(member(note_down_place), text); }
 

@@ -130,48 +130,50 @@ constinit const Definition rr_definition{"test.counter", definition_text, {0, 10
                                          records,        exceptions,      objects};
 
 const ObjectType& NamedStub::rr_object_type() const { return rr_Named; }
-std::string NamedStub::get_name() { return rr_get<std::string>(named_members[0]); }
+std::string NamedStub::get_name() { return rr_get<std::string>(named_members[0], {}); }
 
 CounterStub::CounterStub() : ticked_(*this, members[ticked_place]) {}
 const ObjectType& CounterStub::rr_object_type() const { return rr_Counter; }
-double CounterStub::get_value() { return rr_get<double>(members[value_place]); }
-void CounterStub::set_value(double value) { rr_set(members[value_place], &value); }
-double CounterStub::get_fixed() { return rr_get<double>(members[fixed_place]); }
-void CounterStub::set_hidden(double hidden) { rr_set(members[hidden_place], &hidden); }
-double CounterStub::add(double a, double b) { return rr_call<double>(members[add_place], a, b); }
-void CounterStub::reset() { rr_call<void>(members[reset_place]); }
+double CounterStub::get_value() { return rr_get<double>(members[value_place], {}); }
+void CounterStub::set_value(double value) { rr_set(members[value_place], {}, &value); }
+double CounterStub::get_fixed() { return rr_get<double>(members[fixed_place], {}); }
+void CounterStub::set_hidden(double hidden) { rr_set(members[hidden_place], {}, &hidden); }
+double CounterStub::add(double a, double b) {
+  return rr_call<double>(members[add_place], {}, a, b);
+}
+void CounterStub::reset() { rr_call<void>(members[reset_place], {}); }
 std::string CounterStub::echo(const std::string& text) {
-  return rr_call<std::string>(members[echo_place], text);
+  return rr_call<std::string>(members[echo_place], {}, text);
 }
 std::optional<Reading> CounterStub::read(const std::string& label) {
-  return rr_call<std::optional<Reading>>(members[read_place], label);
+  return rr_call<std::optional<Reading>>(members[read_place], {}, label);
 }
 Array<std::uint8_t> CounterStub::blob(std::uint32_t size) {
-  return rr_call<Array<std::uint8_t>>(members[blob_place], size);
+  return rr_call<Array<std::uint8_t>>(members[blob_place], {}, size);
 }
 std::uint64_t CounterStub::take(const Array<double>& numbers) {
-  return rr_call<std::uint64_t>(members[take_place], numbers);
+  return rr_call<std::uint64_t>(members[take_place], {}, numbers);
 }
 void CounterStub::raise(std::int32_t code, const std::string& text) {
-  rr_call<void>(members[raise_place], code, text);
+  rr_call<void>(members[raise_place], {}, code, text);
 }
 void CounterStub::slow(std::int32_t milliseconds) {
-  rr_call<void>(members[slow_place], milliseconds);
+  rr_call<void>(members[slow_place], {}, milliseconds);
 }
-void CounterStub::fire(std::int32_t count) { rr_call<void>(members[fire_place], count); }
+void CounterStub::fire(std::int32_t count) { rr_call<void>(members[fire_place], {}, count); }
 VarValue CounterStub::any(const VarValue& value) {
-  return rr_call<VarValue>(members[any_place], value);
+  return rr_call<VarValue>(members[any_place], {}, value);
 }
 std::shared_ptr<CounterStub> CounterStub::get_child() {
-  return rr_find_as<CounterStub>(members[child_place]);
+  return rr_find_as<CounterStub>(members[child_place], {});
 }
 std::shared_ptr<CounterStub> CounterStub::get_by_number(std::int32_t index) {
-  return rr_find_as<CounterStub>(members[by_number_place], index);
+  return rr_find_as<CounterStub>(members[by_number_place], {}, index);
 }
 std::shared_ptr<CounterStub> CounterStub::get_by_name(const std::string& index) {
-  return rr_find_as<CounterStub>(members[by_name_place], index);
+  return rr_find_as<CounterStub>(members[by_name_place], {}, index);
 }
-std::shared_ptr<Stub> CounterStub::get_anything() { return rr_find(members[anything_place]); }
+std::shared_ptr<Stub> CounterStub::get_anything() { return rr_find(members[anything_place], {}); }
 
 const ObjectType& CounterSkeleton::rr_object_type() const { return rr_Counter; }
 

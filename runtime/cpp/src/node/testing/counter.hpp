@@ -79,9 +79,13 @@ class CounterStub : public virtual NamedStub {
   template <class Token>
   auto async_add(double a, double b, Token&& token);
   template <class Token>
+  auto async_add(double a, double b, const CallOptions& options, Token&& token);
+  template <class Token>
   auto async_echo(const std::string& text, Token&& token);
   template <class Token>
   auto async_slow(std::int32_t milliseconds, Token&& token);
+  template <class Token>
+  auto async_slow(std::int32_t milliseconds, const CallOptions& options, Token&& token);
   template <class Token>
   auto async_raise(std::int32_t code, const std::string& text, Token&& token);
   template <class Token>

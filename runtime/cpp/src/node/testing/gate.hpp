@@ -39,4 +39,16 @@ class Gate {
   bool is_open_ = false;
 };
 
+/// Opens a gate when it ends, so that nobody waits there for ever when a test fails.
+class OpenAtEnd {
+ public:
+  explicit OpenAtEnd(Gate& gate) : gate_(gate) {}
+  ~OpenAtEnd() { gate_.open(); }
+  OpenAtEnd(const OpenAtEnd&) = delete;
+  OpenAtEnd& operator=(const OpenAtEnd&) = delete;
+
+ private:
+  Gate& gate_;
+};
+
 }  // namespace rr::testing

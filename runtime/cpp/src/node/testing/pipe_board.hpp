@@ -41,9 +41,9 @@ class PipeBoardStub : public virtual Stub {
   Pipe<std::string> in() { return {*this, board_members[in_place]}; }
   Pipe<std::int32_t> lossy() { return {*this, board_members[lossy_place]}; }
   /// Returns when all that was sent before has been handled.
-  void sync() { rr_call<void>(board_members[sync_place]); }
+  void sync() { rr_call<void>(board_members[sync_place], {}); }
   std::shared_ptr<PipeBoardStub> get_child() {
-    return rr_find_as<PipeBoardStub>(board_members[child_board_place]);
+    return rr_find_as<PipeBoardStub>(board_members[child_board_place], {});
   }
 };
 

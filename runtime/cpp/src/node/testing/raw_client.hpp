@@ -52,12 +52,26 @@ class RawClient {
       }
       return value.value();
     }
+    /// The same of another type.
+    template <class T>
+    [[nodiscard]] T value_of(std::string_view name) const {
+      Decoder decoder(MessageVersion::v2);
+      Element element;
+      std::optional<T> value;
+      if (find_element(decoder, elements, element_count, name, element)) {
+        type_of<T>.read(decoder, element, &value.emplace());
+      }
+      return std::move(value.value());
+    }
   };
 
-  RawClient(Node& node, const std::string& service) : server_(node.id()) {
-    node.adopt(sockets_.give_away());
-    send(EntryType::connect_client, service, "");
-    if (!receive()) throw Error(ErrorCode::connection_error, "no answer");
+  /// One that is not connected to any service.
+  explicit RawClient(Node& node) : server_(node.id()) { node.adopt(sockets_.give_away()); }
+  RawClient(Node& node, const std::string& service) : server_(node.id()) { connect(node, service); }
+  /// From an address of the loopback interface.
+  RawClient(Node& node, const std::string& service, const char* from)
+      : server_(node.id()), sockets_(from) {
+    connect(node, service);
   }
 
   void send(EntryType type, std::string_view path, std::string_view member,
@@ -121,6 +135,12 @@ class RawClient {
   }
 
  private:
+  void connect(Node& node, const std::string& service) {
+    node.adopt(sockets_.give_away());
+    send(EntryType::connect_client, service, "");
+    if (!receive()) throw Error(ErrorCode::connection_error, "no answer");
+  }
+
   const NodeId own_ = NodeId::random();
   const NodeId server_;
   std::uint32_t endpoint_ = 0;

@@ -59,10 +59,10 @@ Wire<std::string> WiredStub::note() { return {*this, members[note_place]}; }
 Wire<Array<double>> WiredStub::trace() { return {*this, members[trace_place]}; }
 Wire<double> WiredStub::reading() { return {*this, members[reading_place]}; }
 Wire<double> WiredStub::target() { return {*this, members[target_place]}; }
-void WiredStub::set_level(double value) { rr_call<void>(members[set_level_place], value); }
-void WiredStub::close_level() { rr_call<void>(members[close_level_place]); }
+void WiredStub::set_level(double value) { rr_call<void>(members[set_level_place], {}, value); }
+void WiredStub::close_level() { rr_call<void>(members[close_level_place], {}); }
 std::shared_ptr<WiredStub> WiredStub::get_child(const std::string& index) {
-  return rr_find_as<WiredStub>(members[child_place], index);
+  return rr_find_as<WiredStub>(members[child_place], {}, index);
 }
 
 const ObjectType& Wired::rr_object_type() const { return rr_Wired; }

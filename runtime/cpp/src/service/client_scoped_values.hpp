@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "rr/stored.hpp"
+
+namespace rr::service {
+
+/// Who keeps values for one client, and forgets them when it leaves.
+class ClientScopedValues {
+ public:
+  /// False when the client has left.
+  bool add(const std::shared_ptr<ClientValues>& values);
+  /// The client leaves: all forget what they keep for the session.
+  void end(const void* session);
+
+ private:
+  std::mutex mutex_;
+  bool has_ended_ = false;
+  std::vector<std::weak_ptr<ClientValues>> keepers_;
+};
+
+}  // namespace rr::service

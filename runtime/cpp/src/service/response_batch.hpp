@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "rr/buffer.hpp"
+#include "rr/reader.hpp"
+#include "rr/wire.hpp"
+#include "rr/writer.hpp"
+#include "runtime/cpp/src/channel/account.hpp"
+
+namespace rr::service {
+
+class ServerEndpoint;
+
+/// Answers to the requests of one message, which leave in one message too when the last is there;
+/// in several, in their order, as soon as one cannot hold them. What waits here is drawn from the
+/// account of the connection. Any thread.
+class ResponseBatch {
+ public:
+  ResponseBatch(const std::shared_ptr<ServerEndpoint>& endpoint, std::size_t count);
+
+  [[nodiscard]] MessageVersion version() const { return version_; }
+  /// A whole entry. `is_late` when it comes after the message has been handled. Throws rr::Error,
+  /// and the answer is still missing: protocol_error for one that is too large to be sent,
+  /// out_of_system_resource when this client makes the node hold too much.
+  void put(std::size_t place, const Entry& request, Writer& answer, bool is_late = false);
+  /// For what is not answered.
+  void put_nothing(std::size_t place);
+
+ private:
+  // A part of an answer: small ones are copied together, large arrays are kept by their owners.
+  struct Part {
+    MemoryRef owner;
+    std::span<const std::byte> bytes;
+  };
+  struct Answer {
+    std::vector<Part> parts{};
+    std::size_t size = 0;
+    std::size_t cost = 0;  // what is drawn for it
+    // Of the request, for an error in its place.
+    EntryType request_type{};
+    std::uint32_t request_id = 0;
+    std::string path{};
+    std::string member{};
+  };
+  using Answers = std::vector<Answer>;
+
+  static Answer kept(const Entry& request, Writer& answer);
+  void settle(std::size_t place);
+  void flush(std::unique_lock<std::mutex>& lock, bool is_late);
+  Answers take_ready();
+  void send(ServerEndpoint& endpoint, std::span<const Answer> answers, bool is_late);
+  void send_errors(ServerEndpoint& endpoint, const Answer& answer, bool is_late);
+
+  const std::weak_ptr<ServerEndpoint> endpoint_;  // not kept by answers that are owed
+  const MessageVersion version_;
+  const std::size_t message_room_;  // bytes of answers that one message holds
+
+  std::mutex mutex_;
+  channel::Charge charge_;
+  std::map<std::size_t, Answer> waiting_;  // by their places
+  std::vector<bool> settled_;              // the places that nothing more comes for
+  std::size_t missing_;                    // places that are not settled
+  std::size_t ready_ = 0;                  // all before this place are settled
+  std::size_t ready_size_ = 0;             // bytes of answers before it
+  bool must_flush_ = false;                // what is ready, though more would fit
+  bool is_sending_ = false;                // a thread is in flush()
+};
+
+}  // namespace rr::service
