@@ -36,6 +36,8 @@
  */
 
 #include "rr_c/client.h"
+#include "rr_c/discovery.h"
+#include "rr_c/filters.h"
 #include "rr_c/node.h"
 #include "rr_c/service.h"
 #include "rr_c/streams.h"

@@ -63,6 +63,18 @@ std::string_view text(rr_str given) {
   return {&need(given.data, "a text is NULL"), given.size};
 }
 
+std::vector<std::string> read_texts(const rr_str* texts, std::size_t count, const char* none) {
+  std::vector<std::string> result;
+  for (std::size_t i = 0; i < count; ++i) result.emplace_back(text((&need(texts, none))[i]));
+  return result;
+}
+
+std::vector<rr_str> view_all(const std::vector<std::string>& texts) {
+  std::vector<rr_str> result;
+  for (const std::string& each : texts) result.push_back(view(each));
+  return result;
+}
+
 rr_str view(std::string_view given) { return {given.data(), given.size()}; }
 
 rr_node_id id_of(const NodeId& id) {
@@ -86,13 +98,13 @@ std::chrono::milliseconds duration(std::int32_t milliseconds) {
 
 std::chrono::milliseconds patience(std::int32_t milliseconds) { return duration(milliseconds); }
 
-Terms::Terms(const rr_call_options* options) : options_(known(options)) {
-  if (options_.cancellation != nullptr) {
-    scope_.emplace(duration(options_.timeout_ms), options_.cancellation->cancellation);
-  } else if (options_.timeout_ms != 0) {
-    scope_.emplace(duration(options_.timeout_ms));
-  }
-}
+Terms::Terms(const rr_call_options* options)
+    : options_(known(options)),
+      call_options_{duration(options_.timeout_ms),
+                    options_.cancellation != nullptr
+                        ? options_.cancellation->cancellation.get_token()
+                        : std::stop_token()},
+      scope_(call_options_) {}
 
 Error read_info(const rr_error_info* given) {
   const rr_error_info info = known(given, true);
@@ -144,7 +156,7 @@ rr_status rr_cancellation_new(rr_cancellation** out_cancellation, rr_error** err
 
 void rr_cancellation_cancel(rr_cancellation* cancellation) {
   rr::capi::guarded_or(0, [&] {
-    if (cancellation != nullptr) cancellation->cancellation.cancel();
+    if (cancellation != nullptr) cancellation->cancellation.request_stop();
     return 0;
   });
 }

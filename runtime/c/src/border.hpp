@@ -97,7 +97,11 @@ void fill(T* place, T value) {
 }
 
 std::string_view text(rr_str given);
+/// An array of texts, of which `none` says what is missing when it is NULL.
+std::vector<std::string> read_texts(const rr_str* texts, std::size_t count, const char* none);
 rr_str view(std::string_view given);
+/// Views of these, which stay where they are.
+std::vector<rr_str> view_all(const std::vector<std::string>& texts);
 rr_node_id id_of(const NodeId& id);
 NodeId id_of(const rr_node_id& id);
 rr_time time_of(const TimeSpec& time);
@@ -157,7 +161,8 @@ class Terms {
 
  private:
   const rr_call_options options_;
-  std::optional<CallScope> scope_;
+  CallOptions call_options_;
+  CallOptionsScope scope_;
 };
 
 /// Of what the program says has failed.
@@ -180,5 +185,5 @@ struct rr_error {
   rr::capi::ErrorInfo content;
 };
 struct rr_cancellation {
-  rr::Cancellation cancellation;
+  std::stop_source cancellation;
 };

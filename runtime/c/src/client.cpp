@@ -208,7 +208,7 @@ rr_status rr_object_find(rr_object* object, rr_str member, const rr_index* index
     const Terms terms(options);
     const rr::Member objref = rr::capi::objref_to(member, type);
     *out_object = rr::capi::make_object(rr::capi::with_index(
-        index, [&](const auto&... item) { return stub.rr_find(objref, item...); }));
+        index, [&](const auto&... item) { return stub.rr_find(objref, {}, item...); }));
   });
 }
 

@@ -82,8 +82,8 @@ rr_status rr_event_subscribe(rr_object* object, rr_str member, const rr_event_ha
         stub.tables().member(rr::capi::text(member), rr::MemberKind::event, 0);
     auto subscription = std::make_unique<rr_subscription>();
     subscription->tables = stub.shared_tables();
-    subscription->subscription =
-        stub.rr_connect(event, std::make_unique<rr::capi::RawEventHandler>(event, std::move(kept)));
+    subscription->subscriptions.push_back(stub.rr_connect(
+        event, std::make_unique<rr::capi::RawEventHandler>(event, std::move(kept))));
     *out_subscription = subscription.release();
   });
 }

@@ -37,7 +37,8 @@ class Opening {
             .member = member_.name,
             .parameters = values_.parameters(),
             .values = values_.places(),
-            .is_urgent = (member_.access & urgent) != 0};
+            .is_urgent = (member_.access & urgent) != 0,
+            .opens_generator = true};
   }
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Wires, pipes and objects of services that come and go.
+#include <algorithm>
 #include <utility>
 
 #include "runtime/c/src/service_subscription.hpp"
@@ -13,6 +14,7 @@ class RawWireSubscription : public WireSubscriptionBase {
  public:
   RawWireSubscription() = default;
   explicit RawWireSubscription(const WireSubscription<Raw>& wire) : WireSubscriptionBase(wire) {}
+  using WireSubscriptionBase::all_received;
   using WireSubscriptionBase::on_received;
   using WireSubscriptionBase::received;
   using WireSubscriptionBase::send_all;
@@ -49,6 +51,28 @@ struct rr_object_subscription {
 namespace rr::capi {
 namespace {
 
+void need_value(const RawWireSubscription::Value& value) {
+  if (!value.value) throw Error(ErrorCode::value_not_set, "Value not set");
+}
+
+// Calls a function of the program with what a client has sent.
+void tell_value(const RawWireSubscription::Value& value, void* context, rr_each_value each) {
+  const Data& data = static_cast<const Raw*>(value.value.get())->data;
+  const rr_elements elements = data.elements();
+  const rr_time time = time_of(value.time);
+  const rr_subscribed_client client = client_of(value.client);
+  each(context, &client, &elements, &time, data.get());
+}
+
+using EachPacket = void (*)(void* context, const rr_subscribed_client* client,
+                            const rr_elements* packet, rr_data* data);
+void tell_packet(const RawPipeSubscription::Packet& packet, void* context, EachPacket each) {
+  const Data& data = static_cast<const Raw*>(packet.value.get())->data;
+  const rr_elements elements = data.elements();
+  const rr_subscribed_client client = client_of(packet.client);
+  each(context, &client, &elements, data.get());
+}
+
 void set_handler(rr_wire_subscription* handle, const rr_wire_subscription_handler* given) {
   const auto functions =
       given != nullptr ? take_handler(given, &rr_wire_subscription_handler::on_value) : nullptr;
@@ -56,11 +80,7 @@ void set_handler(rr_wire_subscription* handle, const rr_wire_subscription_handle
   of.values.exchange({}).disconnect();
   if (!functions) return;
   auto values = of.wire.on_received([functions](const RawWireSubscription::Value& value) {
-    const Data& data = static_cast<const Raw*>(value.value.get())->data;
-    const rr_elements elements = data.elements();
-    const rr_time time = time_of(value.time);
-    const rr_subscribed_client client = client_of(value.client);
-    (*functions)->on_value((*functions)->context, &client, &elements, &time, data.get());
+    tell_value(value, (*functions)->context, (*functions)->on_value);
   });
   of.values.exchange(std::move(values)).disconnect();  // of another thread, which came first
 }
@@ -72,10 +92,7 @@ void set_handler(rr_pipe_subscription* handle, const rr_pipe_subscription_handle
   of.packets.exchange({}).disconnect();
   if (!functions) return;
   auto packets = of.pipe.on_received([functions](const RawPipeSubscription::Packet& packet) {
-    const Data& data = static_cast<const Raw*>(packet.value.get())->data;
-    const rr_elements elements = data.elements();
-    const rr_subscribed_client client = client_of(packet.client);
-    (*functions)->on_packet((*functions)->context, &client, &elements, data.get());
+    tell_packet(packet, (*functions)->context, (*functions)->on_packet);
   });
   of.packets.exchange(std::move(packets)).disconnect();
 }
@@ -133,10 +150,47 @@ rr_status rr_wire_subscription_received(const rr_wire_subscription* wire, rr_dat
   return guarded(error, [&] {
     output(out_value) = nullptr;
     const auto newest = need(wire, "there is no wire").wire.received();
-    if (!newest.value) throw rr::Error(rr::ErrorCode::value_not_set, "Value not set");
+    rr::capi::need_value(newest);
     *out_value =
         rr::capi::Data(static_cast<const rr::capi::Raw*>(newest.value.get())->data).hand_out();
     if (out_time != nullptr) *out_time = rr::capi::time_of(newest.time);
+  });
+}
+
+rr_status rr_wire_subscription_newest(const rr_wire_subscription* wire, void* context,
+                                      rr_each_value each, rr_error** error) {
+  return guarded(error, [&] {
+    need(each, "a function is NULL that is needed");
+    const auto newest = need(wire, "there is no wire").wire.received();
+    rr::capi::need_value(newest);
+    rr::capi::tell_value(newest, context, each);
+  });
+}
+
+rr_status rr_wire_subscription_values(const rr_wire_subscription* wire, void* context,
+                                      rr_each_value each, rr_error** error) {
+  return guarded(error, [&] {
+    need(each, "a function is NULL that is needed");
+    for (const auto& value : need(wire, "there is no wire").wire.all_received()) {
+      rr::capi::tell_value(value, context, each);
+    }
+  });
+}
+
+rr_status rr_wire_subscription_clients(const rr_wire_subscription* wire, void* context,
+                                       void (*each)(void* context,
+                                                    const rr_subscribed_client* client),
+                                       rr_error** error) {
+  return guarded(error, [&] {
+    rr::capi::tell_each(need(wire, "there is no wire").wire.clients(), context, each);
+  });
+}
+
+rr_status rr_wire_subscription_set_lifespan(rr_wire_subscription* wire, int32_t lifespan_ms,
+                                            rr_error** error) {
+  return guarded(error, [&] {
+    need(wire, "there is no wire")
+        .wire.set_lifespan(std::chrono::milliseconds(std::max(lifespan_ms, 0)));
   });
 }
 
@@ -223,6 +277,26 @@ rr_status rr_pipe_subscription_receive(rr_pipe_subscription* pipe, rr_data** out
     if (!packet.value) return;
     *out_packet =
         rr::capi::Data(static_cast<const rr::capi::Raw*>(packet.value.get())->data).hand_out();
+  });
+}
+
+rr_status rr_pipe_subscription_take(rr_pipe_subscription* pipe, void* context,
+                                    void (*each)(void* context, const rr_subscribed_client* client,
+                                                 const rr_elements* packet, rr_data* data),
+                                    rr_error** error) {
+  return guarded(error, [&] {
+    need(each, "a function is NULL that is needed");
+    const auto packet = need(pipe, "there is no pipe").pipe.take();
+    if (packet.value) rr::capi::tell_packet(packet, context, each);
+  });
+}
+
+rr_status rr_pipe_subscription_clients(const rr_pipe_subscription* pipe, void* context,
+                                       void (*each)(void* context,
+                                                    const rr_subscribed_client* client),
+                                       rr_error** error) {
+  return guarded(error, [&] {
+    rr::capi::tell_each(need(pipe, "there is no pipe").pipe.clients(), context, each);
   });
 }
 

@@ -29,7 +29,7 @@ PieceTransfer::PieceTransfer(const RawStub& stub, const Member& member, Directio
     : tables_(stub.shared_tables()),
       session_(stub.rr_session()),
       timeout_(stub.rr_timeout()),
-      terms_(CallTerms::current()),
+      terms_(CallTerms::of_started_call()),
       direction_(direction),
       functions_(known(given, true)),
       transfer_(stub.rr_path(), member, direction, position, count, nullptr, size,
@@ -88,7 +88,7 @@ void PieceTransfer::start(std::unique_ptr<Completion> completion) {
 
 void PieceTransfer::go_on() {
   // As if the thread that began the transfer made all its calls.
-  const CallScope scope(terms_.timeout, Cancellation(terms_.cancellation));
+  const CallOptionsScope scope(terms_);
   if (is_asking_) {
     session_->start(transfer_.question(), {"return", &type_of<std::uint32_t>, &limit_}, timeout_,
                     shared_from_this());

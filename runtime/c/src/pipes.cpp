@@ -185,7 +185,13 @@ int32_t rr_pipe_wait(const rr_pipe* pipe, int32_t timeout_ms) {
 }
 
 rr_status rr_pipe_receive_async(rr_pipe* pipe, const rr_completion* completion, rr_error** error) {
+  return rr_pipe_receive_within_async(pipe, nullptr, completion, error);
+}
+
+rr_status rr_pipe_receive_within_async(rr_pipe* pipe, const rr_call_options* options,
+                                       const rr_completion* completion, rr_error** error) {
   return guarded(error, [&] {
+    const Terms terms(options);
     end_of(pipe).start_receive(rr::capi::complete<std::shared_ptr<void>>(
         completion, [](std::shared_ptr<void>& packet) -> void* {
           return rr::capi::data_of(packet).hand_out();

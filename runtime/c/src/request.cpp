@@ -46,6 +46,7 @@ void describe_client(rr_request_info& info) {
   const service::ServerEndpoint* const endpoint = service::ServerEndpoint::current();
   if (endpoint == nullptr) return;
   info.client = endpoint->client().endpoint;
+  info.session = endpoint->client().session;
   info.answer_version = static_cast<std::uint32_t>(endpoint->connection().version());
 }
 

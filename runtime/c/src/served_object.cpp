@@ -51,7 +51,7 @@ void RawSkeleton::set_memory(std::uint32_t place, std::shared_ptr<MemorySource> 
 void RawSkeleton::rr_attached(ServiceContext& context, const std::string& path) {
   if ((*handler_)->on_attached == nullptr) return;
   auto& host = dynamic_cast<service::ServiceHost&>(context);
-  auto handle = std::make_unique<rr_service>(rr_service{host.weak_from_this(), host.name()});
+  auto handle = std::make_unique<::rr_service>(::rr_service{host.weak_from_this(), host.name()});
   (*handler_)->on_attached((*handler_)->context, handle.release(), view(path));
 }
 

@@ -16,6 +16,7 @@ rr_client_info info_of(const ServiceClient& client) {
   info.node = id_of(client.node);
   info.node_name = view(client.node_name);
   info.user = view(client.user);
+  info.session = client.session;
   return info;
 }
 
@@ -45,6 +46,13 @@ ServiceOptions read_options(const rr_service_options& given,
     const rr_client_info info = info_of(client);
     if (call != nullptr) call(context->data(), &info);
   };
+  if (given.on_client_leaving != nullptr) {
+    options.on_client_leaving = [call = given.on_client_leaving,
+                                 context](const ServiceClient& client) {
+      const rr_client_info info = info_of(client);
+      call(context->data(), &info);
+    };
+  }
   return options;
 }
 

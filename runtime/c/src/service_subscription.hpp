@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "rr/subscription.hpp"
 #include "runtime/c/src/border.hpp"
 #include "runtime/c/src/node.hpp"
@@ -14,8 +16,19 @@ struct rr_service_subscription {
 
 namespace rr::capi {
 
+/// A view of an id, for as long as it stays.
 inline rr_subscribed_client client_of(const SubscriptionClientId& id) {
   return {sizeof(rr_subscribed_client), id_of(id.node), view(id.service)};
+}
+
+/// Calls a function of the program for each of these.
+inline void tell_each(const std::vector<SubscriptionClientId>& clients, void* context,
+                      void (*each)(void* context, const rr_subscribed_client* client)) {
+  need(each, "a function is NULL that is needed");
+  for (const SubscriptionClientId& id : clients) {
+    const rr_subscribed_client client = client_of(id);
+    each(context, &client);
+  }
 }
 
 // The object of whichever client there is; waits for one if it is to.

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "rr/stub.hpp"
 #include "runtime/c/src/tables.hpp"
 
-/// Ends its function's connection when it is destroyed; then may the tables go.
+/// Disconnects its functions when it is destroyed; after that the tables may be destroyed, too.
 struct rr_subscription {
   std::shared_ptr<const rr::capi::ClientTables> tables;
-  rr::Subscription subscription;
+  std::vector<rr::Subscription> subscriptions;
 };

@@ -79,6 +79,50 @@ TEST(Services, AreToldOfTheirClients) {
   EXPECT_TRUE(eventually([&] { return rr_client_is_open(silent.client.get()) == 0; }));
 }
 
+TEST(Services, AreToldThatAClientLeavesWhileItsRequestIsOpen) {
+  struct State {
+    std::atomic<std::uint64_t> session = 0;
+    std::atomic<std::uint64_t> leaves = 0;
+    std::atomic<std::uint64_t> left = 0;
+    std::atomic<int> count = 0;
+  } state;
+  rr_service_options options{};
+  options.size = sizeof options;
+  options.context = &state;
+  options.on_client_connected = [](void* context, const rr_client_info* client) {
+    static_cast<State*>(context)->session = client->session;
+  };
+  options.on_client_disconnected = [](void* context, const rr_client_info* client) {
+    auto& of = *static_cast<State*>(context);
+    EXPECT_EQ(of.leaves, client->session);
+    of.left = client->session;
+  };
+  options.on_client_leaving = [](void* context, const rr_client_info* client) {
+    auto& of = *static_cast<State*>(context);
+    of.leaves = client->session;
+    ++of.count;
+  };
+  SilentService silent(nullptr, &options);
+  Done done([](rr_status, void*) {});
+  rr_completion completion = done.completion();
+  ASSERT_EQ(rr_object_call_async(silent.root.get(), RR_FUNCTION_CALL, view("ask"), nullptr, nullptr,
+                                 &completion, nullptr),
+            RR_OK);
+  silent.wait_for_requests(1);
+  rr_request* const request = silent.take();
+  rr_request_info info{};
+  info.size = sizeof info;
+  rr_request_read(request, &info);
+  EXPECT_NE(info.session, 0U);
+  EXPECT_EQ(info.session, state.session);
+  rr_service_close(silent.service.get());
+  EXPECT_TRUE(eventually([&] { return state.leaves == info.session; }));
+  EXPECT_TRUE(eventually([&] { return state.left == info.session; }));
+  EXPECT_EQ(state.count, 1);
+  rr_request_release(request);
+  EXPECT_TRUE(eventually([&] { return rr_client_is_open(silent.client.get()) == 0; }));
+}
+
 TEST(Services, TellTheirAttributes) {
   Packed level;
   level.number("level", 2.5);

@@ -95,6 +95,47 @@ TEST(Pipes, GoBothWaysByFunctions) {
   rr_pipe_release(served.pipe);
 }
 
+TEST(Pipes, CancelledReceivesTakeNoPacket) {
+  SilentService silent;
+  rr_pipe* made = nullptr;
+  ASSERT_EQ(rr_pipe_connect(silent.root.get(), view("numbers"), nullptr, nullptr, &made, nullptr),
+            RR_OK);
+  const PipeHandle pipe(made);
+  rr_cancellation* stop = nullptr;
+  ASSERT_EQ(rr_cancellation_new(&stop, nullptr), RR_OK);
+  const CancellationHandle stop_owner(stop);
+  rr_call_options options{};
+  options.size = sizeof options;
+  options.cancellation = stop;
+  Result<rr_data> cancelled;
+  Result<rr_data> kept;
+  ASSERT_EQ(rr_pipe_receive_within_async(made, &options, &cancelled.completion, nullptr), RR_OK);
+  ASSERT_EQ(rr_pipe_receive_within_async(made, nullptr, &kept.completion, nullptr), RR_OK);
+  rr_cancellation_cancel(stop);
+  EXPECT_TRUE(eventually([&] { return cancelled.is_done.load(); }));
+  EXPECT_EQ(cancelled.status, RR_OPERATION_CANCELLED);
+  Result<rr_data> late;  // of a cancellation that has been used
+  ASSERT_EQ(rr_pipe_receive_within_async(made, &options, &late.completion, nullptr), RR_OK);
+  EXPECT_TRUE(eventually([&] { return late.is_done.load(); }));
+  EXPECT_EQ(late.status, RR_OPERATION_CANCELLED);
+  options.cancellation = nullptr;
+  options.timeout_ms = 20;
+  Result<rr_data> expired;
+  ASSERT_EQ(rr_pipe_receive_within_async(made, &options, &expired.completion, nullptr), RR_OK);
+  EXPECT_TRUE(eventually([&] { return expired.is_done.load(); }));
+  EXPECT_EQ(expired.status, RR_REQUEST_TIMEOUT);
+  for (int i = 1; i <= 2; ++i) {
+    Packed packet;
+    packet.number("", i);
+    ASSERT_EQ(rr_served_pipe_send(silent.object.get(), numbers_place, &packet, nullptr), RR_OK);
+  }
+  EXPECT_EQ(number_in(kept.wait()), 1);
+  ASSERT_EQ(rr_pipe_wait(made, 20'000), 1);
+  rr_data* next = nullptr;
+  ASSERT_EQ(rr_pipe_receive(made, &next, nullptr), RR_OK);
+  EXPECT_EQ(number_in(next), 2);
+}
+
 TEST(Pipes, FullQueuesLoseWhatTheyAreToldTo) {
   SilentService silent;
   rr_pipe* made = nullptr;

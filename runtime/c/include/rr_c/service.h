@@ -250,7 +250,8 @@ typedef struct rr_client_info {
   uint32_t reserved;
   rr_node_id node;
   rr_str node_name;
-  rr_str user; /* who is logged in; empty for nobody, and in on_client_... */
+  rr_str user;      /* who is logged in; empty for nobody, and in on_client_... */
+  uint64_t session; /* no other session of this process has had this number (minor version 2) */
 } rr_client_info;
 
 typedef struct rr_service_options {
@@ -265,6 +266,11 @@ typedef struct rr_service_options {
   void (*on_client_connected)(void* context, const rr_client_info* client);
   void (*on_client_disconnected)(void* context, const rr_client_info* client);
   void (*drop)(void* context); /* behind the end of the service */
+  /* Once, as soon as nobody waits for answers of a session any more: its client has left or is
+   * lost, or the service was closed. What it has asked for may still be handled, and is to be
+   * broken off. On a thread of the node or that of rr_service_close or _disconnect, before
+   * on_client_disconnected (minor version 2). */
+  void (*on_client_leaving)(void* context, const rr_client_info* client);
 } rr_service_options;
 
 /* Offers an object and what it refers to, until the service is closed or the node ends.

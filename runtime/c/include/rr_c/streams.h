@@ -59,6 +59,11 @@ RR_API int32_t rr_pipe_wait(const rr_pipe* pipe, int32_t timeout_ms);
  * Result: rr_data*. */
 RR_API rr_status rr_pipe_receive_async(rr_pipe* pipe, const rr_completion* completion,
                                        rr_error** error);
+/* The same, until options->cancellation ends it with RR_OPERATION_CANCELLED, or a time-out with
+ * RR_REQUEST_TIMEOUT: then no packet is taken. Without a time-out it waits for ever. `options` may
+ * be NULL. Minor version 2. */
+RR_API rr_status rr_pipe_receive_within_async(rr_pipe* pipe, const rr_call_options* options,
+                                              const rr_completion* completion, rr_error** error);
 RR_API size_t rr_pipe_available(const rr_pipe* pipe);
 
 enum { RR_DROP_OLDEST = 0, RR_DROP_NEWEST = 1, RR_CLOSE = 2 };

@@ -20,7 +20,7 @@ extern "C" {
 /* Major part in the upper 16 bits, minor in the lower. A program refuses another major version than
  * that of the header it was made with, and a lower minor one. Minor versions add functions, and
  * fields at the end of structs that have a size. */
-#define RR_ABI_VERSION 0x00010001u
+#define RR_ABI_VERSION 0x00010003u
 
 /* The version of the library that is loaded. To be called first. */
 RR_API uint32_t rr_abi_version(void);
@@ -251,6 +251,8 @@ typedef struct rr_request_info {
   uint32_t reserved;
   rr_str name;     /* RR_REQUEST_FIND with a string index: that; RR_REQUEST_AUTHENTICATE */
   rr_node_id node; /* RR_REQUEST_AUTHENTICATE: what the client says of itself */
+  uint64_t
+      session; /* of the client that asks, as in rr_client_info (minor version 2); 0 for none */
 } rr_request_info;
 
 RR_API void rr_request_read(const rr_request* request, rr_request_info* info);
