@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Generates C# for definitions, and builds a project of this folder with it.
-#   build.sh ROBDEF NATIVE_DIR ARTIFACTS PROJECT DEFINITIONS...
+#   build.sh ROBDEF NATIVE_DIR ARTIFACTS PROJECT [OPTION...] DEFINITIONS...
 # Packages come from the sources that the machine's NuGet has, or from the folder ROBDEF_NUGET_SOURCE.
 set -eu
 robdef=$1 native=$2 artifacts=$3 project=$4

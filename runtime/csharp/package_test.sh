@@ -10,8 +10,25 @@ fail() { echo "package_test: $*" >&2; exit 1; }
 
 rm -rf "$work"
 mkdir -p "$work/feed"
+# .NET 8 needs its reference pack, which not every source of packages has.
+frameworks='net8.0;net10.0'
+if ! dotnet restore "$here/Robdef.Runtime" --artifacts-path "$work/runtime" "-p:RobdefFrameworks=\"$frameworks\"" >"$work/restore.log" 2>&1; then
+  cat "$work/restore.log" >&2
+  [ "${CI:-}" != true ] || fail "no reference pack of .NET 8, and CI=true leaves nothing out"
+  echo 'package_test: no reference pack of .NET 8: for .NET 10 alone' >&2
+  frameworks=net10.0
+fi
 dotnet pack "$here/Robdef.Runtime" -c Release -m:2 --artifacts-path "$work/runtime" -o "$work/feed" \
-  -p:RunAnalyzers=false -p:NativeDir="$native" -p:RobdefCompiler="$robdef"
+  "-p:RobdefFrameworks=\"$frameworks\"" -p:RunAnalyzers=false -p:NativeDir="$native" -p:RobdefCompiler="$robdef" \
+  -p:RobdefProjectUrl=https://example.org/robdef -p:RobdefRepositoryUrl=https://example.org/robdef.git
+
+[ -f "$work/feed/Robdef.Runtime.0.1.0.snupkg" ] || fail "there are no symbols"
+python3 -m zipfile -e "$work/feed/Robdef.Runtime.0.1.0.nupkg" "$work/unpacked"
+for line in '<projectUrl>https://example.org/robdef</projectUrl>' '<icon>icon.png</icon>' '<readme>README.md</readme>' \
+  '<repository type="git" url="https://example.org/robdef.git"' 'robotics'; do
+  grep -q "$line" "$work/unpacked/Robdef.Runtime.nuspec" || fail "the package does not say $line"
+done
+! ldd "$robdef" | grep -q libfmt || fail "the compiler needs a shared libfmt"
 
 cp -r "$here/package_test" "$work/sample"
 cd "$work/sample"
@@ -30,7 +47,7 @@ times() { stat -c %y obj/Release/net10.0/robdef/generated.stamp bin/Release/net1
 
 dotnet restore
 for file in lib/net10.0/Robdef.Runtime.dll runtimes/linux-x64/native/librobdef_runtime.so tools/linux-x64/robdef \
-  build/Robdef.Runtime.targets README.md; do
+  build/Robdef.Runtime.targets README.md icon.png; do
   [ -f "$work/packages/robdef.runtime/0.1.0/$file" ] || fail "the package has no $file"
 done
 build first.log
@@ -56,6 +73,57 @@ build fifth.log
 sed -i 's/STEP 5/STEP 7/' imports/example.units.robdef
 build sixth.log
 [ "$(bin/Release/net10.0/sample)" = "counted to 21" ] || fail "an import in a folder was not compiled"
+
+# What dotnet watch and editors look at: definitions of the project, and those that they import.
+dotnet msbuild -t:RobdefCollectWatched -getItem:Watch -getItem:UpToDateCheckInput -p:Configuration=Release >items.json
+[ "$(grep -c '"Identity": "example.counter.robdef"' items.json)" = 2 ] || fail "a definition is not watched"
+[ "$(grep -c '"Identity": "imports/example.units.robdef"' items.json)" = 2 ] || fail "a second definition is not watched"
+sed -i.before '/units.robdef/d' sample.csproj
+dotnet msbuild -t:RobdefCollectWatched -getItem:Watch -p:Configuration=Release >items.json
+grep -q '"Identity": ".*imports/example.units.robdef"' items.json || fail "an import is not watched"
+mv sample.csproj.before sample.csproj
+
+# Another name in the code, and the same on the wire.
+sed -i 's#ImportPath="imports" />#ImportPath="imports" Rename="example.counter.Counter.add=put" />#' sample.csproj
+sed -i 's/AddAsync/PutAsync/g; s/Root.Add/Root.Put/' Program.cs
+build renamed.log
+[ "$(bin/Release/net10.0/sample)" = "counted to 21" ] || fail "a member with another name does not work"
+
+# The same by a project file, whose edits are noticed, and which is read only where it is named.
+cat >robdef.toml <<CONFIG
+[csharp.rename]
+"example.counter.Counter.add" = "put"
+CONFIG
+sed -i 's# Rename="[^"]*"##' sample.csproj
+! dotnet build -c Release --no-restore >unnamed.log 2>&1 || fail "a project file was read that nobody has named"
+sed -i 's#<Nullable>#<RobdefConfig>robdef.toml</RobdefConfig><Nullable>#' sample.csproj
+build config.log
+[ "$(bin/Release/net10.0/sample)" = "counted to 21" ] || fail "a project file does not work"
+sed -i 's/"put"/"give"/' robdef.toml
+sed -i 's/PutAsync/GiveAsync/g; s/Root.Put/Root.Give/' Program.cs
+build edited.log
+[ "$(bin/Release/net10.0/sample)" = "counted to 21" ] || fail "an edited project file was not read"
+
+# A platform without a native library is refused before the program is there.
+publish() { dotnet publish -c Release -m:2 -r "$1" --self-contained false -p:UseAppHost=false -o "published-$1" >"publish-$1.log" 2>&1; }
+publish linux-x64 || { cat publish-linux-x64.log >&2; fail "publishing has failed"; }
+[ -f published-linux-x64/librobdef_runtime.so ] || fail "the native library is not published"
+! publish win-x64 || fail "a program without its native library was published"
+grep -q 'error ROBDEF001: Robdef.Runtime has no native library for win-x64' publish-win-x64.log || { cat publish-win-x64.log >&2; fail "the error is not shown"; }
+
+# The same project for .NET 8, with the C# of its time, in the .NET that is there.
+if [ "$frameworks" != net10.0 ]; then
+  cp -r "$work/sample" "$work/sample8"
+  cd "$work/sample8"
+  rm -rf bin obj
+  sed -i 's#>net10.0<#>net8.0<#' sample.csproj
+  # Where the reference pack was restored to.
+  packs=$(cd "$here" && dotnet nuget locals global-packages --list --force-english-output | sed 's/^global-packages: //')
+  dotnet build -c Release -m:2 -p:UseAppHost=false -p:RestoreFallbackFolders="$packs" >net8.log 2>&1 ||
+    { cat net8.log >&2; fail "it does not compile for .NET 8"; }
+  [ "$(DOTNET_ROLL_FORWARD=Major dotnet bin/Release/net8.0/sample.dll)" = "counted to 21" ] || fail "it does not work for .NET 8"
+  cd "$work/sample"
+fi
 
 # Errors of a definition stop the build and say where they are.
 echo 'object' >>example.counter.robdef

@@ -26,7 +26,7 @@ public sealed class GeneratorEndTests
         Assert.True(aborted.TryNext(out _));
         aborted.Abort();
         Assert.Equal("broken off", NextEnd(pair));
-        Assert.Equal(ErrorCode.OperationAborted, Assert.Throws<RobdefException>(() => aborted.TryNext(out _)).Code);
+        Assert.Equal(ErrorCode.OperationAborted, Assert.ThrowsAny<RobdefException>(() => aborted.TryNext(out _)).Code);
     }
 
     [Fact]
@@ -82,7 +82,7 @@ public sealed class GeneratorEndTests
         using GeneratorSink<int> collect = pair.Stub.Collect();
         Assert.True(collect.TryNext(1));
         Assert.False(collect.TryNext(-1));
-        Assert.Equal(ErrorCode.InvalidOperation, Assert.Throws<RobdefException>(() => collect.TryNext(2)).Code);
+        Assert.Equal(ErrorCode.InvalidOperation, Assert.ThrowsAny<RobdefException>(() => collect.TryNext(2)).Code);
     }
 
     [Fact]
@@ -91,7 +91,7 @@ public sealed class GeneratorEndTests
         using var unhandled = new BlockingCollection<Exception>();
         Action<Exception> listener = exception =>
         {
-            if (exception is AggregateException { InnerException: Stuck })
+            if (exception is AggregateException { InnerException: ArmStuck })
             {
                 unhandled.Add(exception);
             }
@@ -100,7 +100,7 @@ public sealed class GeneratorEndTests
         try
         {
             using var pair = new Pair();
-            pair.Arm.CountBrokenOff = () => throw new Stuck("when cancelled");
+            pair.Arm.CountBrokenOff = () => throw new ArmStuck("when cancelled");
             using Generator<int> count = pair.Stub.Count(9);
             Assert.True(count.TryNext(out _));
             count.Abort();
@@ -119,7 +119,7 @@ public sealed class GeneratorEndTests
         using var unhandled = new BlockingCollection<Exception>();
         Action<Exception> listener = exception =>
         {
-            if (exception is Stuck)
+            if (exception is ArmStuck)
             {
                 unhandled.Add(exception);
             }
@@ -131,7 +131,7 @@ public sealed class GeneratorEndTests
             {
                 using GeneratorSink<int> collect = pair.Stub.Collect();
                 Assert.True(collect.TryNext(1));
-                Assert.Equal("-2 is not collected", Assert.Throws<Stuck>(() => collect.TryNext(-2)).Message);
+                Assert.Equal("-2 is not collected", Assert.Throws<ArmStuck>(() => collect.TryNext(-2)).Message);
             }
             // With the service ended nothing more is let go of.
             Assert.Empty(unhandled);

@@ -19,8 +19,8 @@ public sealed class LargeArrayTests
     {
         using var pair = new Pair(isOld, isCpp);
         double[] numbers = [.. Enumerable.Range(0, Count).Select(i => i / 3.0)];
-        Assert.Equal(numbers, pair.Stub.Numbers(numbers));
-        Assert.Equal(numbers, await pair.Stub.NumbersAsync(numbers));
+        Assert.Equal(numbers, pair.Stub.EchoedNumbers(numbers));
+        Assert.Equal(numbers, await pair.Stub.EchoedNumbersAsync(numbers));
         pair.Stub.SetTrace(numbers);
         Assert.Equal(numbers, pair.Stub.GetTrace());
         numbers[Count - 1] = -1;

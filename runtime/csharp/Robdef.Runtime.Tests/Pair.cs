@@ -39,7 +39,7 @@ internal sealed class Pair : IDisposable
     private readonly Process? _program;
     private readonly Node _calling;
 
-    public Pair(bool isOld = false, bool isCpp = false)
+    public Pair(bool isOld = false, bool isCpp = false, NodeOptions? serving = null, ServiceOptions? service = null)
     {
         _calling = new Node(new NodeOptions { ClientWithoutVersion4 = isOld });
         if (isCpp)
@@ -49,9 +49,9 @@ internal sealed class Pair : IDisposable
         }
         else
         {
-            _serving = new Node();
+            _serving = new Node(serving ?? new NodeOptions());
             Url = $"rr+tcp://127.0.0.1:{_serving.Listen("rr+tcp://127.0.0.1:0")}/?service=arm";
-            Service = _serving.Register("arm", Arm);
+            Service = _serving.Register("arm", Arm, service);
         }
         Client = _calling.Connect<ArmStub>(Url);
         Assert.Equal(isOld ? MessageVersion.V2 : MessageVersion.V4, Client.MessageVersion);

@@ -100,7 +100,7 @@ public sealed class SubscriptionTests
         joint.Get(s_limit).SetAngle(0.5);
         Assert.Equal(0.5, joint.Get().GetAngle());
         using ObjectSubscription<JointStub> none = subscription.SubscribeObject<JointStub>("*.joints[4]");
-        RobdefException error = Assert.Throws<RobdefException>(() => none.Get(TimeSpan.FromMilliseconds(50)));
+        RobdefException error = Assert.ThrowsAny<RobdefException>(() => none.Get(TimeSpan.FromMilliseconds(50)));
         Assert.Equal(ErrorCode.OperationTimeout, error.Code);
     }
 

@@ -26,13 +26,19 @@ internal sealed class TestArm : ArmDefault
 
     private readonly List<int> _collected = [];
 
+    /// <summary>Called when a generator that takes values is opened.</summary>
+    public Action? Opening { get; set; }
+
+    /// <summary>What `wait_long` does.</summary>
+    public Func<CancellationToken, ValueTask> Wait { get; set; } = cancel => new(Task.Delay(2000, cancel));
+
     /// <summary>Called when counting is broken off.</summary>
     public Action? CountBrokenOff { get; set; }
 
     /// <summary>How generators have ended: `closed`, `broken off`, or `failed`.</summary>
     public BlockingCollection<string> GeneratorEnds { get; } = [];
 
-    public override ValueTask<int[]> GetCollectedAsync()
+    public override ValueTask<int[]> GetCollectedAsync(CancellationToken cancellationToken)
     {
         lock (_collected)
         {
@@ -40,51 +46,52 @@ internal sealed class TestArm : ArmDefault
         }
     }
 
-    public override ValueTask BroadcastAsync(double packet)
+    public override ValueTask BroadcastAsync(double packet, CancellationToken cancellationToken)
     {
         Samples.Send(packet);
         return default;
     }
 
-    public override ValueTask<int> GetCallsAsync() => new(_calls);
+    public override ValueTask<int> GetCallsAsync(CancellationToken cancellationToken) => new(_calls);
 
-    public override ValueTask<double> AddAsync(double a, double b)
+    public override ValueTask<double> AddAsync(double a, double b, CancellationToken cancellationToken)
     {
         Interlocked.Increment(ref _calls);
         return new(a + b);
     }
 
-    public override async ValueTask FailAsync(string why)
+    public override async ValueTask FailAsync(string why, CancellationToken cancellationToken)
     {
         await Task.Yield();
-        throw new Stuck(why, "by.test", 5.5);
+        throw new ArmStuck(why, "by.test", 5.5);
     }
 
-    public override ValueTask<Pose?> MoveAsync(Pose? target)
+    public override ValueTask<Pose?> MoveAsync(Pose? target, CancellationToken cancellationToken)
     {
         FireMoved(target!.X, target.Label);
         return new(target with { X = target.X + 1 });
     }
 
-    public override async ValueTask WaitLongAsync() => await Task.Delay(2000);
+    public override async ValueTask WaitLongAsync(CancellationToken cancellationToken) => await Wait(cancellationToken);
 
-    public override ValueTask<VarValue?> EchoAsync(VarValue? value) => new(value);
+    public override ValueTask<VarValue?> EchoAsync(VarValue? value, CancellationToken cancellationToken) => new(value);
 
-    public override ValueTask<double[]> NumbersAsync(double[] values) => new(values);
+    public override ValueTask<double[]> EchoedNumbersAsync(double[] given, CancellationToken cancellationToken) => new(given);
 
-    public override ValueTask<Skeleton> GetJointsAsync(int index) => index == 3
+    public override ValueTask<Skeleton> GetJointsAsync(int index, CancellationToken cancellationToken) => index == 3
         ? new(_joint)
         : throw new RobdefException(ErrorCode.InvalidArgument, "there is no such joint");
 
-    public override ValueTask<Skeleton> GetAnythingAsync() => new(_joint);
+    public override ValueTask<Skeleton> GetAnythingAsync(CancellationToken cancellationToken) => new(_joint);
 
-    public override async ValueTask<int> AskBackAsync(int question) => await AskAsync(RrCurrentClient, question) + 1;
+    public override async ValueTask<int> AskBackAsync(int question, CancellationToken cancellationToken) => await AskAsync(RrCurrentClient, question, cancellationToken) + 1;
 
-    public override IAsyncEnumerable<int> CountAsync(int limit) => Count(limit);
+    public override IAsyncEnumerable<int> CountAsync(int limit, CancellationToken cancellationToken) => Count(limit, cancellationToken);
 
-    /// <summary>Takes values until a negative one; -2 is a fault.</summary>
-    public override async ValueTask CollectAsync(IAsyncEnumerable<int> values)
+    /// <summary>Takes values until a negative one; -2 is a fault, and -3 one of .NET.</summary>
+    public override async ValueTask CollectAsync(IAsyncEnumerable<int> values, CancellationToken cancellationToken)
     {
+        Opening?.Invoke();
         try
         {
             await foreach (int value in values)
@@ -93,7 +100,11 @@ internal sealed class TestArm : ArmDefault
                 {
                     if (value == -2)
                     {
-                        throw new Stuck("-2 is not collected");
+                        throw new ArmStuck("-2 is not collected");
+                    }
+                    if (value == -3)
+                    {
+                        throw new FormatException("a secret");
                     }
                     return;
                 }
@@ -102,16 +113,16 @@ internal sealed class TestArm : ArmDefault
                     _collected.Add(value);
                 }
             }
-            GeneratorEnds.Add("closed");
+            GeneratorEnds.Add("closed", CancellationToken.None);
         }
         catch (OperationCanceledException)
         {
-            GeneratorEnds.Add("broken off");
+            GeneratorEnds.Add("broken off", CancellationToken.None);
             throw;
         }
     }
 
-    public override async IAsyncEnumerable<int> TwiceAsync(IAsyncEnumerable<int> values)
+    public override async IAsyncEnumerable<int> TwiceAsync(IAsyncEnumerable<int> values, [EnumeratorCancellation] CancellationToken cancellationToken)
     {
         string end = "broken off";
         try
@@ -126,7 +137,7 @@ internal sealed class TestArm : ArmDefault
         }
         finally
         {
-            GeneratorEnds.Add(end);
+            GeneratorEnds.Add(end, CancellationToken.None);
         }
     }
 

@@ -5,8 +5,9 @@ namespace Robdef.Runtime;
 
 /// <summary>
 /// Any failure of the runtime or of a peer: a code, a name, a sub-name, a message and an optional
-/// parameter, the same on both sides of the wire. An exception of a definition is a class derived
-/// from it; one that the program has no class for arrives as this one, with everything kept.
+/// parameter, the same on both sides of the wire. Each error of the protocol has a class derived from it
+/// (<see cref="InvalidArgumentException"/>, ...), and so has each exception of a definition; one that the program has no
+/// class for arrives as <see cref="RemoteException"/>, with everything kept.
 /// </summary>
 public class RobdefException : Exception
 {
@@ -44,7 +45,13 @@ public class RobdefException : Exception
     /// <param name="subName">Empty for none.</param>
     /// <param name="parameter">Any value, or null.</param>
     public RobdefException(ErrorCode code, string name, string message, string subName = "", VarValue? parameter = null)
-        : base(message)
+        : this(code, name, message, subName, parameter, null)
+    {
+    }
+
+    /// <summary>The same with its cause, which stays on this side.</summary>
+    protected RobdefException(ErrorCode code, string name, string message, string subName, VarValue? parameter, Exception? innerException)
+        : base(message, innerException)
     {
         Code = code;
         Name = name;

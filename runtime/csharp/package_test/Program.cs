@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 using System;
+using System.Threading;
 using System.Threading.Tasks;
 using Example.Counter;
 using Example.Units;
@@ -16,7 +17,7 @@ internal sealed class Counter : CounterSkeleton
 {
     private int _number;
 
-    public override ValueTask<Count?> AddAsync(int steps)
+    public override ValueTask<Count?> AddAsync(int steps, CancellationToken cancellationToken)
     {
         _number += steps * Constants.Step;
         return new(new Count { Number = _number });

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 using System;
+using System.Collections.Generic;
 using System.Runtime.CompilerServices;
 using System.Runtime.InteropServices;
 using Robdef.Runtime.Native;
 
 namespace Robdef.Runtime;
 
+/// <summary>A value of a wire, when it was sent, and by which client's service.</summary>
+/// <param name="Value">The value.</param>
+/// <param name="Time">By the sender's clock.</param>
+/// <param name="Client">The client to whose service the wire belongs.</param>
+public readonly record struct ClientValue<T>(T Value, DateTimeOffset Time, SubscribedClientId Client);
+
 /// <summary>
-/// A member of whichever client a subscription has; until it is disposed of or the subscription is. Connected when a
-/// client comes, and again when the service comes back.
+/// A member of all clients of a subscription; until it is disposed of or the subscription is. Connected when a client
+/// comes, and again when the service comes back.
 /// </summary>
 /// <typeparam name="T">The value or packet.</typeparam>
 public abstract unsafe class MemberSubscription<T> : IDisposable
@@ -16,9 +23,11 @@ public abstract unsafe class MemberSubscription<T> : IDisposable
     private readonly delegate*<SafeHandle, void> _close;
     private readonly delegate*<SafeHandle, RrElements*, nuint*, nint*, int> _send;
     private readonly delegate*<SafeHandle, RrSubscriptionHandler*, nint*, int> _setHandler;
+    private readonly delegate*<SafeHandle, nint, delegate* unmanaged[Cdecl]<nint, RrSubscribedClient*, void>, nint*, int> _clients;
 
     private protected MemberSubscription(SafeHandle handle, ValueCodec<T> codec, KnownTypes types, delegate*<SafeHandle, void> close,
-        delegate*<SafeHandle, RrElements*, nuint*, nint*, int> send, delegate*<SafeHandle, RrSubscriptionHandler*, nint*, int> setHandler)
+        delegate*<SafeHandle, RrElements*, nuint*, nint*, int> send, delegate*<SafeHandle, RrSubscriptionHandler*, nint*, int> setHandler,
+        delegate*<SafeHandle, nint, delegate* unmanaged[Cdecl]<nint, RrSubscribedClient*, void>, nint*, int> clients)
     {
         Handle = handle;
         Codec = codec;
@@ -26,7 +35,11 @@ public abstract unsafe class MemberSubscription<T> : IDisposable
         _close = close;
         _send = send;
         _setHandler = setHandler;
+        _clients = clients;
     }
+
+    /// <summary>The clients at which it is connected.</summary>
+    public IReadOnlyList<SubscribedClientId> Clients => Each.Clients(Handle, _clients);
 
     private protected SafeHandle Handle { get; }
 
@@ -34,8 +47,8 @@ public abstract unsafe class MemberSubscription<T> : IDisposable
 
     private protected KnownTypes Types { get; }
 
-    /// <summary>Sends to the client that is connected now.</summary>
-    /// <returns>To how many: 0 or 1.</returns>
+    /// <summary>Sends to all clients that are connected now.</summary>
+    /// <returns>To how many.</returns>
     public int Send(T value)
     {
         ElementWriter writer = Writers.Rent(MessageVersion.V4);
@@ -85,23 +98,57 @@ public abstract unsafe class MemberSubscription<T> : IDisposable
     private protected T Read(RrElements elements) => Codec.Read(Elements.Reader(elements, Types.Registry).Read());
 }
 
-/// <summary>A wire of whichever client a subscription has.</summary>
+/// <summary>A wire of all clients of a subscription.</summary>
 /// <typeparam name="T">The value.</typeparam>
 public sealed unsafe class WireSubscription<T> : MemberSubscription<T>
 {
     internal WireSubscription(ServiceSubscriptionHandle subscription, string member, string path, ValueCodec<T> codec, KnownTypes types)
         : base(Subscribe(subscription, member, path, types), codec, types, &Functions.rr_wire_subscription_close,
-            &Functions.rr_wire_subscription_send, &Functions.rr_wire_subscription_set_handler)
+            &Functions.rr_wire_subscription_send, &Functions.rr_wire_subscription_set_handler, &Functions.rr_wire_subscription_clients)
     {
     }
 
-    /// <summary>The value that has come last; false for none.</summary>
+    /// <summary>The value that has come last, from whichever client; false for none.</summary>
     public bool TryGetReceived(out WireValue<T> value)
     {
         RrTime time;
         nint error;
         int status = Functions.rr_wire_subscription_received(Handle, out nint data, &time, &error);
         return WireValues.TryTake(status, error, data, time, Codec, Types, out value);
+    }
+
+    /// <summary>The same, and the client that it came from.</summary>
+    public bool TryGetReceived(out WireValue<T> value, out SubscribedClientId client)
+    {
+        ClientValue<T> newest = default;
+        int status = Each.Values(Handle, &Functions.rr_wire_subscription_newest, (from, elements, time) => newest = Value(from, elements, time),
+            out nint error);
+        value = new WireValue<T>(newest.Value, newest.Time);
+        client = newest.Client;
+        if (status == (int)ErrorCode.ValueNotSet)
+        {
+            Functions.rr_error_release(error);
+            return false;
+        }
+        Failure.Check(status, error, Types);
+        return true;
+    }
+
+    /// <summary>The newest value of each connected client that has one.</summary>
+    public IReadOnlyList<ClientValue<T>> GetAllReceived()
+    {
+        var values = new List<ClientValue<T>>();
+        int status = Each.Values(Handle, &Functions.rr_wire_subscription_values,
+            (client, elements, time) => values.Add(Value(client, elements, time)), out nint error);
+        Failure.Check(status, error, Types);
+        return values;
+    }
+
+    /// <summary>A value that came longer ago is as none; zero: values never expire, not even when their client goes.</summary>
+    public void SetLifespan(TimeSpan lifespan)
+    {
+        nint error;
+        Failure.Check(Functions.rr_wire_subscription_set_lifespan(Handle, Times.Milliseconds(lifespan), &error), error, Types);
     }
 
     /// <summary>Waits until a value has come; false when the time was over before.</summary>
@@ -111,11 +158,21 @@ public sealed unsafe class WireSubscription<T> : MemberSubscription<T>
     /// Calls this with each value and the time when it was sent, one at a time, on a thread of the node; null: nothing. A
     /// slow function misses values, never the newest.
     /// </summary>
-    public void SetHandler(Action<T, DateTimeOffset>? onValue)
+    public void SetHandler(Action<T, DateTimeOffset>? onValue) =>
+        SetReceiver(onValue is null ? null : (_, elements, time) => onValue(Read(elements), time));
+
+    /// <summary>The same, and the client that each value came from. The newest function of either kind counts.</summary>
+    public void SetClientHandler(Action<T, DateTimeOffset, SubscribedClientId>? onValue) =>
+        SetReceiver(onValue is null ? null : (client, elements, time) => onValue(Read(elements), time, SubscribedClientId.Of(client)));
+
+    private void SetReceiver(TakeElements? receive)
     {
-        delegate* unmanaged[Cdecl]<nint, void*, RrElements*, RrTime*, nint, void> received = &SubscriptionReceived.OnValue;
-        SetSink(onValue is null ? null : new ReceivedSink((elements, time) => onValue(Read(elements), time)), received);
+        delegate* unmanaged[Cdecl]<nint, RrSubscribedClient*, RrElements*, RrTime*, nint, void> received = &SubscriptionReceived.OnValue;
+        SetSink(receive, received);
     }
+
+    private ClientValue<T> Value(RrSubscribedClient* client, RrElements elements, DateTimeOffset time) =>
+        new(Read(elements), time, SubscribedClientId.Of(client));
 
     private static WireSubscriptionHandle Subscribe(ServiceSubscriptionHandle subscription, string member, string path, KnownTypes types)
     {
@@ -127,14 +184,14 @@ public sealed unsafe class WireSubscription<T> : MemberSubscription<T>
     }
 }
 
-/// <summary>A pipe of whichever client a subscription has.</summary>
+/// <summary>A pipe of all clients of a subscription: one endpoint at each, whose packets come together here.</summary>
 /// <typeparam name="T">The packet.</typeparam>
 public sealed unsafe class PipeSubscription<T> : MemberSubscription<T>
 {
     internal PipeSubscription(ServiceSubscriptionHandle subscription, string member, string path, ValueCodec<T> codec, int maxReceived,
         KnownTypes types)
         : base(Subscribe(subscription, member, path, maxReceived, types), codec, types, &Functions.rr_pipe_subscription_close,
-            &Functions.rr_pipe_subscription_send, &Functions.rr_pipe_subscription_set_handler)
+            &Functions.rr_pipe_subscription_send, &Functions.rr_pipe_subscription_set_handler, &Functions.rr_pipe_subscription_clients)
     {
     }
 
@@ -145,6 +202,21 @@ public sealed unsafe class PipeSubscription<T> : MemberSubscription<T>
         Failure.Check(Functions.rr_pipe_subscription_receive(Handle, out nint data, &error), error, Types);
         packet = data == 0 ? default! : Elements.Take(data, Codec, Types.Registry);
         return data != 0;
+    }
+
+    /// <summary>The same, and the client that it came from.</summary>
+    public bool TryReceive(out T packet, out SubscribedClientId client)
+    {
+        T received = default!;
+        SubscribedClientId? sender = null;
+        Each.Packet(Handle, (from, elements, _) =>
+        {
+            sender = SubscribedClientId.Of(from);
+            received = Read(elements);
+        }, Types);
+        packet = received;
+        client = sender ?? default;
+        return sender is not null;
     }
 
     /// <summary>Waits for a packet; false when the time was over before.</summary>
@@ -158,14 +230,32 @@ public sealed unsafe class PipeSubscription<T> : MemberSubscription<T>
         return TryReceive(out packet);
     }
 
+    /// <summary>The same, and the client that it came from.</summary>
+    public bool TryReceive(TimeSpan limit, out T packet, out SubscribedClientId client)
+    {
+        if (Functions.rr_pipe_subscription_wait(Handle, Times.Milliseconds(limit)) == 0)
+        {
+            packet = default!;
+            client = default;
+            return false;
+        }
+        return TryReceive(out packet, out client);
+    }
+
     /// <summary>
     /// Calls this with the packets that wait and those that come, in order, one at a time, on a thread of the node, instead
     /// of keeping them; null: they are kept.
     /// </summary>
-    public void SetHandler(Action<T>? onPacket)
+    public void SetHandler(Action<T>? onPacket) => SetReceiver(onPacket is null ? null : (_, elements, _) => onPacket(Read(elements)));
+
+    /// <summary>The same, and the client that each packet came from. The newest function of either kind counts.</summary>
+    public void SetClientHandler(Action<T, SubscribedClientId>? onPacket) =>
+        SetReceiver(onPacket is null ? null : (client, elements, _) => onPacket(Read(elements), SubscribedClientId.Of(client)));
+
+    private void SetReceiver(TakeElements? receive)
     {
-        delegate* unmanaged[Cdecl]<nint, void*, RrElements*, nint, void> received = &SubscriptionReceived.OnPacket;
-        SetSink(onPacket is null ? null : new ReceivedSink((elements, _) => onPacket(Read(elements))), received);
+        delegate* unmanaged[Cdecl]<nint, RrSubscribedClient*, RrElements*, nint, void> received = &SubscriptionReceived.OnPacket;
+        SetSink(receive, received);
     }
 
     private static PipeSubscriptionHandle Subscribe(ServiceSubscriptionHandle subscription, string member, string path, int maxReceived,
@@ -181,7 +271,7 @@ public sealed unsafe class PipeSubscription<T> : MemberSubscription<T>
     }
 }
 
-/// <summary>An object of whichever client a subscription has.</summary>
+/// <summary>An object of the client that has been connected longest.</summary>
 /// <typeparam name="TObject">The stub of the object.</typeparam>
 public sealed unsafe class ObjectSubscription<TObject> : IDisposable
     where TObject : Stub, IStub<TObject>
@@ -222,27 +312,22 @@ public sealed unsafe class ObjectSubscription<TObject> : IDisposable
     }
 }
 
-/// <summary>What comes through a member of a subscription.</summary>
-internal sealed class ReceivedSink(Action<RrElements, DateTimeOffset> receive)
-{
-    public void Receive(RrElements elements, DateTimeOffset time) => receive(elements, time);
-}
-
-/// <summary>Where the native runtime brings it.</summary>
+/// <summary>Where the native runtime brings what comes through a member of a subscription. The context is a TakeElements.</summary>
 internal static unsafe class SubscriptionReceived
 {
     [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
-    public static void OnValue(nint context, void* client, RrElements* value, RrTime* time, nint data) =>
-        Receive(context, *value, Times.ToDateTime(*time));
+    public static void OnValue(nint context, RrSubscribedClient* client, RrElements* value, RrTime* time, nint data) =>
+        Receive(context, client, *value, Times.ToDateTime(*time));
 
     [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
-    public static void OnPacket(nint context, void* client, RrElements* packet, nint data) => Receive(context, *packet, default);
+    public static void OnPacket(nint context, RrSubscribedClient* client, RrElements* packet, nint data) =>
+        Receive(context, client, *packet, default);
 
-    private static void Receive(nint context, RrElements elements, DateTimeOffset time)
+    private static void Receive(nint context, RrSubscribedClient* client, RrElements elements, DateTimeOffset time)
     {
         try
         {
-            Context.Get<ReceivedSink>(context).Receive(elements, time);
+            Context.Get<TakeElements>(context)(client, elements, time);
         }
         catch (Exception exception)
         {

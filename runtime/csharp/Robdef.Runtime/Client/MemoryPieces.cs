@@ -76,7 +76,7 @@ internal abstract unsafe class MemoryPieces
 
     private int Fail(Exception exception)
     {
-        Failed = exception as RobdefException ?? new RobdefException(exception.Message, exception);
+        Failed = exception as RobdefException ?? new UnknownException(exception.Message, innerException: exception);
         return (int)Failed.Code;
     }
 }

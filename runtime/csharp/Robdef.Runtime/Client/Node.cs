@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 using System;
 using System.Collections.Generic;
+using System.Linq;
+using System.Runtime.CompilerServices;
+using System.Runtime.InteropServices;
 using System.Threading;
 using System.Threading.Tasks;
 using Robdef.Runtime.Native;
@@ -11,6 +14,7 @@ namespace Robdef.Runtime;
 public sealed class Node : IDisposable
 {
     private readonly NodeHandle _handle;
+    private readonly CancellationTokenSource _ending = new();
 
     /// <summary>A node as the native runtime has it.</summary>
     public Node()
@@ -39,13 +43,34 @@ public sealed class Node : IDisposable
             MessageSize = (uint)options.MessageSize,
             MemoryTransferLimit = (uint)options.MemoryTransferLimit,
         };
+        Faults = new Faults(options.EnableDetailedErrors, options.Log);
+        Callbacks = new ServedSession("that a service has called", Faults);
+        if (options.Log is { } log)
+        {
+            native.Context = Context.Of(new LogSink(log));
+            native.Log = &LogSink.OnLog;
+            native.Drop = &Context.Drop;
+        }
         options.Id.TryWriteBytes(new Span<byte>(native.Id.Bytes, 16), bigEndian: true, out _);
         nint error;
         Failure.Check(Functions.rr_node_new(&native, out nint node, &error), error, KnownTypes.None);
         _handle = new NodeHandle(node);
+        Discovery = new Discovery(this);
     }
 
+    /// <summary>Finding other nodes and their services, and being found.</summary>
+    public Discovery Discovery { get; }
+
     internal NodeHandle Handle => _handle;
+
+    /// <summary>Cancelled when the node is shut down: ends what waits for its subscriptions.</summary>
+    internal CancellationToken Ending => _ending.Token;
+
+    /// <summary>What peers are told of exceptions.</summary>
+    internal Faults Faults { get; }
+
+    /// <summary>Of callbacks, which services call.</summary>
+    internal ServedSession Callbacks { get; }
 
     /// <summary>Accepts connections at `rr+tcp://host:port`, port 0 meaning any.</summary>
     /// <returns>The port.</returns>
@@ -101,7 +126,57 @@ public sealed class Node : IDisposable
 
     /// <summary>Keeps a connection to the service at a URL, and makes it again when it is lost. Does not wait.</summary>
     public ServiceSubscription<TStub> Subscribe<TStub>(string url, SubscribeOptions? options = null)
-        where TStub : Stub, IStub<TStub> => new(this, url, options ?? new SubscribeOptions());
+        where TStub : Stub, IStub<TStub> => Subscribe<TStub>([url], options);
+
+    /// <summary>The same with several URLs of one service, tried in this order.</summary>
+    public unsafe ServiceSubscription<TStub> Subscribe<TStub>(IEnumerable<string> urls, SubscribeOptions? options = null)
+        where TStub : Stub, IStub<TStub> =>
+        new(this, options, (NativeScope scope, RrSubscribeOptions* native, out nint subscription, nint* error) =>
+        {
+            RrStr* first = scope.Texts(urls, out nuint count);
+            return Functions.rr_service_subscribe(_handle, first, count, native, out subscription, error);
+        });
+
+    /// <summary>Keeps a connection to each of several services.</summary>
+    /// <param name="services">The URLs of each, tried in their order.</param>
+    /// <param name="options">The same for all.</param>
+    /// <typeparam name="TStub">The stub of all root objects: of their type, or of one that they implement.</typeparam>
+    public unsafe ServiceSubscription<TStub> SubscribeAll<TStub>(IEnumerable<IEnumerable<string>> services, SubscribeOptions? options = null)
+        where TStub : Stub, IStub<TStub> =>
+        new(this, options, (NativeScope scope, RrSubscribeOptions* native, out nint subscription, nint* error) =>
+        {
+            RrServiceUrls* first = scope.Services(services, out nuint count);
+            return Functions.rr_service_subscribe_all(_handle, first, count, native, out subscription, error);
+        });
+
+    /// <summary>The same with one URL for each service.</summary>
+    public ServiceSubscription<TStub> SubscribeAll<TStub>(IEnumerable<string> urls, SubscribeOptions? options = null)
+        where TStub : Stub, IStub<TStub> => SubscribeAll<TStub>(urls.Select(static url => (IEnumerable<string>)[url]), options);
+
+    /// <summary>
+    /// Keeps a connection to each service that discovery finds, whose root object is a <typeparamref name="TStub"/> or
+    /// implements it, and that passes the filter of the options. Services come and go with what is announced. Listens with
+    /// default options unless <see cref="Discovery.Listen"/> was called.
+    /// </summary>
+    /// <exception cref="RobdefException">InvalidArgument for a wrong expression in the filter, ConnectionError when discovery cannot be listened to.</exception>
+    public ServiceSubscription<TStub> SubscribeTypes<TStub>(SubscribeOptions? options = null)
+        where TStub : Stub, IStub<TStub> => SubscribeTypes<TStub>([TStub.RrTypeName], options);
+
+    /// <summary>The same for root objects of some of the types that are, or implement, a <typeparamref name="TStub"/>.</summary>
+    /// <param name="types">Qualified names.</param>
+    /// <param name="options">With the filter.</param>
+    public unsafe ServiceSubscription<TStub> SubscribeTypes<TStub>(IEnumerable<string> types, SubscribeOptions? options = null)
+        where TStub : Stub, IStub<TStub> =>
+        new(this, options, (NativeScope scope, RrSubscribeOptions* native, out nint subscription, nint* error) =>
+        {
+            RrStr* first = scope.Texts(types, out nuint count);
+            return Functions.rr_service_subscribe_types(_handle, first, count, native, out subscription, error);
+        });
+
+    /// <summary>Tells which services discovery finds, without connecting to them. Listens as <see cref="SubscribeTypes{TStub}(SubscribeOptions?)"/>.</summary>
+    /// <param name="types">Qualified names of what their root objects are or implement; none: all services.</param>
+    /// <param name="filter">What else must hold.</param>
+    public ServiceInfoSubscription SubscribeServices(IEnumerable<string> types, ServiceFilter? filter = null) => new(this, types, filter);
 
     /// <summary>Offers an object and what it refers to, until the service is closed or the node ends.</summary>
     /// <param name="name">The service's name.</param>
@@ -114,10 +189,19 @@ public sealed class Node : IDisposable
     }
 
     /// <summary>Ends all services and connections, and waits for handlers that run.</summary>
-    public void Shutdown() => Functions.rr_node_shutdown(_handle);
+    public void Shutdown()
+    {
+        _ending.Cancel();
+        Functions.rr_node_shutdown(_handle);
+    }
 
     /// <summary>As <see cref="Shutdown"/>, and lets go of the node.</summary>
-    public void Dispose() => _handle.Dispose();
+    public void Dispose()
+    {
+        // Not disposed of: subscriptions may still link to it, and it holds nothing but memory.
+        _ending.Cancel();
+        _handle.Dispose();
+    }
 
     private static async Task<Client<TStub>> UnlessCancelled<TStub>(Task<Client<TStub>> connecting, CancellationToken cancel)
         where TStub : Stub, IStub<TStub>
@@ -148,4 +232,23 @@ public sealed class Node : IDisposable
         Failure.Check(status, error, types);
         return new Client<TStub>(new Session(new ClientHandle(client), this, types), create);
     }
+}
+
+/// <summary>Where the native runtime brings what it logs.</summary>
+internal sealed unsafe class LogSink(Action<LogSeverity, string> log)
+{
+    [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
+    public static void OnLog(nint context, uint level, RrStr text)
+    {
+        try
+        {
+            Context.Get<LogSink>(context).Write((LogSeverity)level, Failure.Text(text));
+        }
+        catch (Exception exception)
+        {
+            Unhandled.Report(exception);
+        }
+    }
+
+    private void Write(LogSeverity severity, string text) => log(severity, text);
 }

@@ -89,7 +89,7 @@ internal readonly ref struct RemoteUse
 
     public RemoteHandle Native { get; }
 
-    public static RobdefException Gone() => new(ErrorCode.ConnectionError, "the client was disposed of");
+    public static RobdefException Gone() => new ConnectionException("the client was disposed of");
 
     public void Dispose() => Native.DangerousRelease();
 }

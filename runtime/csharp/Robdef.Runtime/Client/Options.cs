@@ -4,6 +4,22 @@ using System.Collections.Generic;
 
 namespace Robdef.Runtime;
 
+/// <summary>How grave an entry of a node's log is.</summary>
+public enum LogSeverity
+{
+    /// <summary>For who looks for a fault.</summary>
+    Debug = 0,
+
+    /// <summary>What usually happens.</summary>
+    Info = 1,
+
+    /// <summary>What should not happen, and did no harm.</summary>
+    Warning = 2,
+
+    /// <summary>What has failed.</summary>
+    Error = 3,
+}
+
 /// <summary>How a node is made. What is not set is as the native runtime has it.</summary>
 public sealed record NodeOptions
 {
@@ -48,6 +64,15 @@ public sealed record NodeOptions
 
     /// <summary>The largest part of a memory in one request, in bytes.</summary>
     public int MemoryTransferLimit { get; init; }
+
+    /// <summary>Gets each entry of the node's log: how grave it is, and the text. On any thread.</summary>
+    public Action<LogSeverity, string>? Log { get; init; }
+
+    /// <summary>
+    /// Peers get type and message of exceptions that handlers of services and callbacks throw. Without it they only
+    /// learn that there was one, unless it is a <see cref="RobdefException"/>; <see cref="Log"/> gets all, with the stack.
+    /// </summary>
+    public bool EnableDetailedErrors { get; init; }
 }
 
 /// <summary>How a client connects.</summary>

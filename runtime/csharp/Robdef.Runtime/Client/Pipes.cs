@@ -150,17 +150,23 @@ public sealed class PipeEndpoint<T> : IAsyncEnumerable<T>, IDisposable
     }
 
     /// <summary>The next packet.</summary>
-    /// <exception cref="RobdefException">InvalidOperation when the end is closed before one comes.</exception>
-    public unsafe Task<T> ReceiveAsync()
+    /// <param name="cancel">Ends the waiting; the packet that comes then is the next one's.</param>
+    /// <exception cref="RobdefInvalidOperationException">The end is closed before one comes.</exception>
+    public unsafe Task<T> ReceiveAsync(CancellationToken cancel = default)
     {
-        var completion = new AnswerCompletion<T>(_types, _codec, CancellationToken.None);
+        if (cancel.IsCancellationRequested)
+        {
+            return Task.FromCanceled<T>(cancel);
+        }
+        var completion = new AnswerCompletion<T>(_types, _codec, cancel);
         RrCompletion native = completion.Native;
+        var options = new RrCallOptions { Size = (nuint)sizeof(RrCallOptions), Cancellation = completion.Cancellation };
         nint error;
-        int status = Functions.rr_pipe_receive_async(_handle, &native, &error);
+        int status = Functions.rr_pipe_receive_within_async(_handle, &options, &native, &error);
         return status == 0 ? completion.Task : Task.FromException<T>(completion.Abandon(native, status, error));
     }
 
-    /// <summary>All packets until the end is closed. A packet that arrives while this is cancelled is given to nobody.</summary>
+    /// <summary>All packets until the end is closed. Cancelled it takes no more, and loses none.</summary>
     public async IAsyncEnumerator<T> GetAsyncEnumerator(CancellationToken cancellationToken = default)
     {
         while (true)
@@ -168,9 +174,9 @@ public sealed class PipeEndpoint<T> : IAsyncEnumerable<T>, IDisposable
             T packet;
             try
             {
-                packet = await ReceiveAsync().WaitAsync(cancellationToken).ConfigureAwait(false);
+                packet = await ReceiveAsync(cancellationToken).ConfigureAwait(false);
             }
-            catch (RobdefException error) when (error.Code == ErrorCode.InvalidOperation && !IsOpen)
+            catch (RobdefInvalidOperationException) when (!IsOpen)
             {
                 yield break;
             }

@@ -37,32 +37,33 @@ internal sealed class EventSink<THandler>(Stub stub, THandler handler, EventRead
 }
 
 /// <summary>Where the native runtime brings the calls of one callback.</summary>
-internal abstract unsafe class CallbackSink(KnownTypes types)
+internal abstract unsafe class CallbackSink(Session session, string member)
 {
     [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
     public static void OnCall(nint context, nint request)
     {
+        var info = new RrRequestInfo { Size = (nuint)sizeof(RrRequestInfo) };
+        Functions.rr_request_read(request, &info);
+        CallbackSink sink = Context.Get<CallbackSink>(context);
+        ServedRequest asked = sink.Request(request, info);
         try
         {
-            var info = new RrRequestInfo { Size = (nuint)sizeof(RrRequestInfo) };
-            Functions.rr_request_read(request, &info);
-            CallbackSink sink = Context.Get<CallbackSink>(context);
-            sink.Answer(new ServedRequest(request, info, sink.Types));
+            sink.Answer(asked);
         }
         catch (Exception exception)
         {
-            Failure.Send(request, exception);
-            Functions.rr_request_release(request);
+            asked.Fail(exception);
         }
     }
 
-    protected KnownTypes Types { get; } = types;
-
     protected abstract void Answer(ServedRequest request);
+
+    private ServedRequest Request(nint request, in RrRequestInfo info) =>
+        new(request, info, session.Types, session.Node.Callbacks, member);
 }
 
-internal sealed class CallbackSink<TFunction, TResult>(KnownTypes types, TFunction function,
-    CallbackReader<TFunction, Task<TResult>> read, ValueCodec<TResult> codec) : CallbackSink(types)
+internal sealed class CallbackSink<TFunction, TResult>(Session session, string member, TFunction function,
+    CallbackReader<TFunction, Task<TResult>> read, ValueCodec<TResult> codec) : CallbackSink(session, member)
 {
     protected override void Answer(ServedRequest request)
     {
@@ -71,8 +72,8 @@ internal sealed class CallbackSink<TFunction, TResult>(KnownTypes types, TFuncti
     }
 }
 
-internal sealed class VoidCallbackSink<TFunction>(KnownTypes types, TFunction function,
-    CallbackReader<TFunction, Task> read) : CallbackSink(types)
+internal sealed class VoidCallbackSink<TFunction>(Session session, string member, TFunction function,
+    CallbackReader<TFunction, Task> read) : CallbackSink(session, member)
 {
     protected override void Answer(ServedRequest request)
     {

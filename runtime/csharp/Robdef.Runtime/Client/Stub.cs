@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 using System;
 using System.Collections.Generic;
+using System.Text;
 using System.Threading;
 using System.Threading.Tasks;
 using Robdef.Runtime.Native;
@@ -151,14 +152,14 @@ public class Stub(ObjectHandle rrHandle)
         CallbackReader<TFunction, Task<TResult>> read, ValueCodec<TResult> codec)
         where TFunction : Delegate =>
         SetCallback(member, access, returnsValue: true,
-            function is null ? null : new CallbackSink<TFunction, TResult>(RrHandle.Types, function, read, codec));
+            function is null ? null : new CallbackSink<TFunction, TResult>(RrHandle.Session, Encoding.UTF8.GetString(member), function, read, codec));
 
     /// <summary>Gives the service a function without a result to call, or with null none.</summary>
     protected void RrSetCallback<TFunction>(ReadOnlySpan<byte> member, MemberAccess access, TFunction? function,
         CallbackReader<TFunction, Task> read)
         where TFunction : Delegate =>
         SetCallback(member, access, returnsValue: false,
-            function is null ? null : new VoidCallbackSink<TFunction>(RrHandle.Types, function, read));
+            function is null ? null : new VoidCallbackSink<TFunction>(RrHandle.Session, Encoding.UTF8.GetString(member), function, read));
 
     /// <summary>The object at an objref.</summary>
     protected TStub RrFind<TStub>(ReadOnlySpan<byte> member, ObjectIndex index, CancellationToken cancel)

@@ -100,6 +100,32 @@ public sealed class WireConnection<T> : IDisposable
     /// <summary>Waits until a value has come; false when the time was over, or the end closed, before.</summary>
     public bool WaitReceived(TimeSpan limit) => Functions.rr_wire_wait(_handle, Times.Milliseconds(limit)) != 0;
 
+    /// <summary>The next value that comes, and when it was sent.</summary>
+    /// <param name="cancel">Ends the waiting.</param>
+    /// <exception cref="RobdefInvalidOperationException">The end is closed before one comes.</exception>
+    public async Task<WireValue<T>> ReceiveAsync(CancellationToken cancel = default)
+    {
+        cancel.ThrowIfCancellationRequested();
+        var next = new TaskCompletionSource<WireValue<T>>(TaskCreationOptions.RunContinuationsAsynchronously);
+        void Take(T value, DateTimeOffset time) => next.TrySetResult(new WireValue<T>(value, time));
+        void End() => next.TrySetException(new RobdefInvalidOperationException("the wire connection is closed"));
+        ValueChanged += Take;
+        Closed += End;
+        try
+        {
+            if (!IsOpen)
+            {
+                End();
+            }
+            return await next.Task.WaitAsync(cancel).ConfigureAwait(false);
+        }
+        finally
+        {
+            ValueChanged -= Take;
+            Closed -= End;
+        }
+    }
+
     /// <summary>A received value older than this is as none; zero: never.</summary>
     public void SetLifespan(TimeSpan lifespan) => Functions.rr_wire_set_lifespan(_handle, Times.Milliseconds(lifespan));
 
@@ -124,7 +150,7 @@ public sealed class WireConnection<T> : IDisposable
 
     private WireValue<T> Sent() => TryRead(isReceived: false, out WireValue<T> value) ? value : throw NotSet();
 
-    private static RobdefException NotSet() => new(ErrorCode.ValueNotSet, "the wire has no value");
+    private static ValueNotSetException NotSet() => new ValueNotSetException("the wire has no value");
 
     private unsafe bool TryRead(bool isReceived, out WireValue<T> value)
     {

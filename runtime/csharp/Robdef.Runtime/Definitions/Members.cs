@@ -7,7 +7,7 @@ namespace Robdef.Runtime;
 public static class StubApi
 {
     /// <summary>The interface of this runtime.</summary>
-    public const int Version1 = 1;
+    public const int Version2 = 2;
 }
 
 /// <summary>The kinds of members, by the numbers of rr.h.</summary>

@@ -30,7 +30,7 @@ public sealed class ServiceDefinition
     /// <param name="text">Exactly as a service sends it.</param>
     public ServiceDefinition(int api, string name, string text)
     {
-        ArgumentOutOfRangeException.ThrowIfNotEqual(api, StubApi.Version1);
+        ArgumentOutOfRangeException.ThrowIfNotEqual(api, StubApi.Version2);
         Name = name;
         Text = text;
     }
@@ -133,7 +133,7 @@ internal sealed class KnownTypes
     public RobdefException MakeException(ErrorCode code, string name, string message, string subName, VarValue? parameter) =>
         code == ErrorCode.RemoteError && _exceptions.TryGetValue(name, out ExceptionType? type)
             ? type.Create(message, subName, parameter)
-            : new RobdefException(code, name, message, subName, parameter);
+            : Errors.Of(code, name, message, subName, parameter);
 
     /// <summary>A stub of the class that belongs to a type; a plain one when the program has none.</summary>
     public Stub MakeStub(ObjectHandle handle) =>

@@ -22,7 +22,7 @@ internal static unsafe class Failure
         if (error == 0)
         {
             var code = (ErrorCode)status;
-            return new RobdefException(code, code.ToString());
+            return Errors.Of(code, code.ToString());
         }
         try
         {
@@ -55,16 +55,9 @@ internal static unsafe class Failure
 
     public static string Text(RrStr text) => Encoding.UTF8.GetString(text.Data, (int)text.Size);
 
-    /// <summary>Hands an exception of a service's member to the client that asked.</summary>
-    public static void Send(nint request, Exception exception)
+    /// <summary>Fails a request.</summary>
+    public static void Send(nint request, RobdefException error)
     {
-        RobdefException error = exception switch
-        {
-            RobdefException own => own,
-            OperationCanceledException => new RobdefException(ErrorCode.OperationAborted, exception.Message),
-            NotImplementedException => new RobdefException(ErrorCode.NotImplementedError, exception.Message),
-            _ => new RobdefException(ErrorCode.RemoteError, exception.GetType().FullName ?? "", exception.Message),
-        };
         using var name = new NativeText(error.Name);
         using var message = new NativeText(error.Message);
         using var subName = new NativeText(error.SubName);
@@ -142,7 +135,7 @@ internal static unsafe class Elements
 
     private static ReadOnlySpan<byte> Bytes(RrElements elements) => elements.Size <= int.MaxValue
         ? new ReadOnlySpan<byte>(elements.Data, (int)elements.Size)
-        : throw new RobdefException(ErrorCode.BufferLimitViolation, "received elements are larger than 2 GiB");
+        : throw new BufferLimitViolationException("received elements are larger than 2 GiB");
 }
 
 /// <summary>Text in UTF-8 that does not move.</summary>

@@ -8,14 +8,14 @@ namespace Robdef.Runtime.Native;
 internal static unsafe partial class Functions
 {
     private const string Library = "robdef_runtime";
-    private const uint Version = 0x00010001;
+    private const uint Version = 0x00010003;
 
     static Functions()
     {
         uint version = rr_abi_version();
         if (version >> 16 != Version >> 16 || version < Version)
         {
-            throw new RobdefException(ErrorCode.InvalidConfiguration,
+            throw new InvalidConfigurationException(
                 $"the native library has version {version >> 16}.{version & 0xFFFF}, and {Version >> 16}.{Version & 0xFFFF} is needed");
         }
     }
@@ -186,7 +186,7 @@ internal static unsafe partial class Functions
     [LibraryImport(Library)]
     public static partial int rr_pipe_wait(SafeHandle pipe, int timeoutMs);
     [LibraryImport(Library)]
-    public static partial int rr_pipe_receive_async(SafeHandle pipe, RrCompletion* completion, nint* error);
+    public static partial int rr_pipe_receive_within_async(SafeHandle pipe, RrCallOptions* options, RrCompletion* completion, nint* error);
     [LibraryImport(Library)]
     public static partial nuint rr_pipe_available(SafeHandle pipe);
     [LibraryImport(Library)]
@@ -236,6 +236,22 @@ internal static unsafe partial class Functions
     [LibraryImport(Library)]
     public static partial int rr_service_subscribe(SafeHandle node, RrStr* urls, nuint count, RrSubscribeOptions* options, out nint subscription, nint* error);
     [LibraryImport(Library)]
+    public static partial int rr_service_subscribe_all(SafeHandle node, RrServiceUrls* services, nuint count, RrSubscribeOptions* options, out nint subscription, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_service_subscribe_types(SafeHandle node, RrStr* types, nuint count, RrSubscribeOptions* options, out nint subscription, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_service_subscription_update_services(SafeHandle subscription, RrServiceUrls* services, nuint count, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_service_subscription_update_types(SafeHandle subscription, RrStr* types, nuint count, RrServiceFilter* filter, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_service_subscription_watch(SafeHandle subscription, RrServiceSubscriptionHandler* handler, out nint watch, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_service_subscription_clients(SafeHandle subscription, nint context, delegate* unmanaged[Cdecl]<nint, RrSubscribedClient*, void> each, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_service_subscription_client_root(SafeHandle subscription, RrSubscribedClient* client, out nint root, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_service_subscription_services(SafeHandle subscription, nint context, delegate* unmanaged[Cdecl]<nint, RrSubscribedService*, void> each, nint* error);
+    [LibraryImport(Library)]
     public static partial void rr_service_subscription_release(nint subscription);
     [LibraryImport(Library)]
     public static partial void rr_service_subscription_close(SafeHandle subscription);
@@ -254,6 +270,14 @@ internal static unsafe partial class Functions
     [LibraryImport(Library)]
     public static partial int rr_wire_subscription_received(SafeHandle wire, out nint value, RrTime* time, nint* error);
     [LibraryImport(Library)]
+    public static partial int rr_wire_subscription_newest(SafeHandle wire, nint context, delegate* unmanaged[Cdecl]<nint, RrSubscribedClient*, RrElements*, RrTime*, nint, void> each, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_subscription_values(SafeHandle wire, nint context, delegate* unmanaged[Cdecl]<nint, RrSubscribedClient*, RrElements*, RrTime*, nint, void> each, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_subscription_clients(SafeHandle wire, nint context, delegate* unmanaged[Cdecl]<nint, RrSubscribedClient*, void> each, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_wire_subscription_set_lifespan(SafeHandle wire, int lifespanMs, nint* error);
+    [LibraryImport(Library)]
     public static partial int rr_wire_subscription_wait(SafeHandle wire, int timeoutMs);
     [LibraryImport(Library)]
     public static partial int rr_wire_subscription_set_handler(SafeHandle wire, RrSubscriptionHandler* handler, nint* error);
@@ -268,6 +292,10 @@ internal static unsafe partial class Functions
     [LibraryImport(Library)]
     public static partial int rr_pipe_subscription_receive(SafeHandle pipe, out nint packet, nint* error);
     [LibraryImport(Library)]
+    public static partial int rr_pipe_subscription_take(SafeHandle pipe, nint context, delegate* unmanaged[Cdecl]<nint, RrSubscribedClient*, RrElements*, nint, void> each, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_pipe_subscription_clients(SafeHandle pipe, nint context, delegate* unmanaged[Cdecl]<nint, RrSubscribedClient*, void> each, nint* error);
+    [LibraryImport(Library)]
     public static partial int rr_pipe_subscription_wait(SafeHandle pipe, int timeoutMs);
     [LibraryImport(Library)]
     public static partial int rr_pipe_subscription_set_handler(SafeHandle pipe, RrSubscriptionHandler* handler, nint* error);
@@ -279,6 +307,63 @@ internal static unsafe partial class Functions
     public static partial void rr_object_subscription_close(SafeHandle found);
     [LibraryImport(Library)]
     public static partial int rr_object_subscription_get(SafeHandle found, int waitMs, out nint remote, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_service_info_subscribe(SafeHandle node, RrStr* types, nuint count, RrServiceFilter* filter, RrServiceInfoHandler* handler, out nint subscription, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_service_info_subscription_release(nint subscription);
+    [LibraryImport(Library)]
+    public static partial void rr_service_info_subscription_close(SafeHandle subscription);
+    [LibraryImport(Library)]
+    public static partial int rr_service_info_subscription_is_open(SafeHandle subscription);
+    [LibraryImport(Library)]
+    public static partial int rr_service_info_subscription_services(SafeHandle subscription, out nint services, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_service_info_subscription_watch(SafeHandle subscription, RrServiceInfoHandler* handler, out nint watch, nint* error);
+
+    [LibraryImport(Library)]
+    public static partial int rr_discovery_announce(SafeHandle node, RrAnnounceOptions* options, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_discovery_stop_announcing(SafeHandle node);
+    [LibraryImport(Library)]
+    public static partial int rr_discovery_listen(SafeHandle node, RrListenOptions* options, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_discovery_stop_listening(SafeHandle node);
+    [LibraryImport(Library)]
+    public static partial int rr_discovery_is_listening(SafeHandle node);
+    [LibraryImport(Library)]
+    public static partial int rr_discovery_request(SafeHandle node, nint* error);
+    [LibraryImport(Library)]
+    public static partial nuint rr_detected_nodes_count(nint nodes);
+    [LibraryImport(Library)]
+    public static partial int rr_detected_nodes_read(nint nodes, nuint place, RrDetectedNode* info, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_detected_nodes_release(nint nodes);
+    [LibraryImport(Library)]
+    public static partial nuint rr_found_services_count(nint services);
+    [LibraryImport(Library)]
+    public static partial int rr_found_services_read(nint services, nuint place, RrFoundService* info, nint* error);
+    [LibraryImport(Library)]
+    public static partial void rr_found_services_release(nint services);
+    [LibraryImport(Library)]
+    public static partial int rr_discovery_nodes(SafeHandle node, out nint nodes, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_discovery_watch(SafeHandle node, RrDiscoveryHandler* handler, out nint watch, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_discovery_find_services(SafeHandle node, RrStr* types, nuint count, RrFindOptions* options, out nint services, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_discovery_find_node(SafeHandle node, RrNodeId id, RrFindOptions* options, out nint nodes, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_discovery_find_nodes(SafeHandle node, RrStr name, RrFindOptions* options, out nint nodes, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_discovery_update_nodes(SafeHandle node, RrFindOptions* options, out nint nodes, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_discovery_find_services_async(SafeHandle node, RrStr* types, nuint count, RrFindOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_discovery_find_node_async(SafeHandle node, RrNodeId id, RrFindOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_discovery_find_nodes_async(SafeHandle node, RrStr name, RrFindOptions* options, RrCompletion* completion, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_discovery_update_nodes_async(SafeHandle node, RrFindOptions* options, RrCompletion* completion, nint* error);
 
     [LibraryImport(Library)]
     public static partial int rr_definition_new(RrStr text, nint* imports, nuint count, out nint definition, nint* error);

@@ -76,6 +76,11 @@ internal sealed class ObjectSubscriptionHandle(nint value) : Handle(value)
     protected override void Release(nint value) => Functions.rr_object_subscription_release(value);
 }
 
+internal sealed class ServiceInfoSubscriptionHandle(nint value) : Handle(value)
+{
+    protected override void Release(nint value) => Functions.rr_service_info_subscription_release(value);
+}
+
 internal sealed class DefinitionHandle(nint value) : Handle(value)
 {
     protected override void Release(nint value) => Functions.rr_definition_release(value);

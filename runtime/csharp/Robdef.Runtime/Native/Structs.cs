@@ -76,6 +76,7 @@ internal struct RrRequestInfo
     public uint Reserved;
     public RrStr Name;
     public RrNodeId Node;
+    public ulong Session;
 }
 
 [StructLayout(LayoutKind.Sequential)]
@@ -135,10 +136,13 @@ internal unsafe struct RrSubscribeOptions
     public int MaxRetryDelayMs;
     public int ConnectTimeoutMs;
     public nint Context;
-    public delegate* unmanaged[Cdecl]<nint, void*, void> OnConnected;
-    public delegate* unmanaged[Cdecl]<nint, void*, RrErrorInfo*, void> OnDisconnected;
+    public delegate* unmanaged[Cdecl]<nint, RrSubscribedClient*, void> OnConnected;
+    public delegate* unmanaged[Cdecl]<nint, RrSubscribedClient*, RrErrorInfo*, void> OnDisconnected;
     public delegate* unmanaged[Cdecl]<nint, RrErrorInfo*, void> OnFailed;
     public delegate* unmanaged[Cdecl]<nint, void> Drop;
+    public RrServiceFilter* Filter;
+    public uint AllowClearCredentials;
+    public uint Reserved;
 }
 
 [StructLayout(LayoutKind.Sequential)]
@@ -308,6 +312,7 @@ internal struct RrClientInfo
     public RrNodeId Node;
     public RrStr NodeName;
     public RrStr User;
+    public ulong Session;
 }
 
 [StructLayout(LayoutKind.Sequential)]
@@ -324,4 +329,5 @@ internal unsafe struct RrServiceOptions
     public delegate* unmanaged[Cdecl]<nint, RrClientInfo*, void> OnClientConnected;
     public delegate* unmanaged[Cdecl]<nint, RrClientInfo*, void> OnClientDisconnected;
     public delegate* unmanaged[Cdecl]<nint, void> Drop;
+    public delegate* unmanaged[Cdecl]<nint, RrClientInfo*, void> OnClientLeaving;
 }

@@ -10,24 +10,34 @@ using Robdef.Runtime.Native;
 
 namespace Robdef.Runtime;
 
+/// <summary>The request that has opened a generator.</summary>
+internal readonly record struct GeneratorOrigin(KnownTypes Types, ServedSession Session, string Member);
+
 /// <summary>
 /// The steps of one generator that a service gives. One at a time, by the native runtime's promise, which brings the
-/// end behind the step that runs.
+/// end behind the step that runs. A session that ends cancels the step, too.
 /// </summary>
-internal abstract class GeneratorSteps(KnownTypes types)
+internal abstract class GeneratorSteps
 {
+    private readonly GeneratorOrigin _origin;
+    private readonly CancellationTokenRegistration _ended;
     private int _isReleased;
+
+    protected GeneratorSteps(GeneratorOrigin origin)
+    {
+        _origin = origin;
+        _ended = origin.Session.Token.UnsafeRegister(static steps => ((GeneratorSteps)steps!).CancelQuietly(), this);
+    }
 
     /// <summary>Cancelled when the client breaks off or has left, not when it closes the generator.</summary>
     protected CancellationTokenSource BrokenOff { get; } = new();
-
-    protected KnownTypes Types { get; } = types;
 
     [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
     public static unsafe void OnStep(nint context, nint native, RrRequestInfo* info)
     {
         GeneratorSteps steps = Context.Get<GeneratorSteps>(context);
-        var request = new ServedRequest(native, *info, steps.Types);
+        GeneratorOrigin origin = steps._origin;
+        var request = new ServedRequest(native, *info, origin.Types, origin.Session, origin.Member);
         try
         {
             _ = steps.StepAsync(request);
@@ -49,6 +59,12 @@ internal abstract class GeneratorSteps(KnownTypes types)
         steps.Stop(isBrokenOff: true);
     }
 
+    /// <summary>Begins the work, which may refuse at once: then the function of the service fails.</summary>
+    public abstract void Begin();
+
+    /// <summary>There is no generator after all.</summary>
+    public void Forget() => _ended.Unregister();
+
     /// <summary>Answers or fails the request, whatever happens.</summary>
     protected abstract Task StepAsync(ServedRequest request);
 
@@ -61,6 +77,7 @@ internal abstract class GeneratorSteps(KnownTypes types)
         {
             return;
         }
+        _ended.Unregister();
         if (isBrokenOff)
         {
             CancelQuietly();
@@ -100,17 +117,21 @@ internal abstract class GeneratorSteps(KnownTypes types)
 
 /// <summary>A generator that gives the values of a sequence.</summary>
 #pragma warning disable CA1001 // A semaphore without a wait handle has nothing to dispose.
-internal sealed class SourceSteps<T>(KnownTypes types, IAsyncEnumerable<T> values, ValueCodec<T> codec) : GeneratorSteps(types)
+internal sealed class SourceSteps<T>(GeneratorOrigin origin, Func<CancellationToken, IAsyncEnumerable<T>> work, ValueCodec<T> codec)
+    : GeneratorSteps(origin)
 {
     private readonly SemaphoreSlim _turn = new(1);
+    private IAsyncEnumerable<T>? _given;
     private IAsyncEnumerator<T>? _values;
+
+    public override void Begin() => _given = work(BrokenOff.Token);
 
     protected override async Task StepAsync(ServedRequest request)
     {
         await _turn.WaitAsync().ConfigureAwait(false);
         try
         {
-            _values ??= values.GetAsyncEnumerator(BrokenOff.Token);
+            _values ??= _given!.GetAsyncEnumerator(BrokenOff.Token);
             if (await _values.MoveNextAsync().ConfigureAwait(false))
             {
                 request.Answer(_values.Current, codec);
@@ -175,16 +196,16 @@ internal sealed class Parameters<T>
 }
 
 /// <summary>A generator whose values a piece of work takes.</summary>
-internal sealed class SinkSteps<T>(KnownTypes types, Func<IAsyncEnumerable<T>, ValueTask> work, ValueCodec<T> codec) : GeneratorSteps(types)
+internal sealed class SinkSteps<T>(GeneratorOrigin origin, Func<IAsyncEnumerable<T>, CancellationToken, ValueTask> work,
+    ValueCodec<T> codec) : GeneratorSteps(origin)
 {
     private readonly Parameters<T> _parameters = new();
     private Task? _work;
     private bool _isTold;
 
-    /// <summary>Begins the work, which may refuse at once: then the function of the service fails.</summary>
-    public void Begin()
+    public override void Begin()
     {
-        _work = work(_parameters.ReadAsync()).AsTask();
+        _work = work(_parameters.ReadAsync(), BrokenOff.Token).AsTask();
         if (_work.IsFaulted)
         {
             _work.GetAwaiter().GetResult();
@@ -230,16 +251,16 @@ internal sealed class SinkSteps<T>(KnownTypes types, Func<IAsyncEnumerable<T>, V
 
 /// <summary>A generator that makes a value of each that it takes.</summary>
 #pragma warning disable CA1001 // A semaphore without a wait handle has nothing to dispose.
-internal sealed class FilterSteps<TIn, TOut>(KnownTypes types, Func<IAsyncEnumerable<TIn>, IAsyncEnumerable<TOut>> work,
-    ValueCodec<TIn> taken, ValueCodec<TOut> given) : GeneratorSteps(types)
+internal sealed class FilterSteps<TIn, TOut>(GeneratorOrigin origin,
+    Func<IAsyncEnumerable<TIn>, CancellationToken, IAsyncEnumerable<TOut>> work, ValueCodec<TIn> taken, ValueCodec<TOut> given)
+    : GeneratorSteps(origin)
 {
     private readonly SemaphoreSlim _turn = new(1);
     private readonly Parameters<TIn> _parameters = new();
     private IAsyncEnumerable<TOut>? _made;
     private IAsyncEnumerator<TOut>? _values;
 
-    /// <summary>Asks for the sequence, which may be refused at once: then the function of the service fails.</summary>
-    public void Begin() => _made = work(_parameters.ReadAsync());
+    public override void Begin() => _made = work(_parameters.ReadAsync(), BrokenOff.Token);
 
     protected override Task StepAsync(ServedRequest request)
     {

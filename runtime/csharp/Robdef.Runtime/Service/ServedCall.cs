@@ -66,7 +66,7 @@ public unsafe ref struct ServedCall
     public Task CallAsync(uint client, CancellationToken cancel) => Begin<bool>(client, null, cancel);
 
     private readonly ServedHandle Served => _skeleton.RrServed
-        ?? throw new RobdefException(ErrorCode.InvalidOperation, "no service offers the object");
+        ?? throw new RobdefInvalidOperationException("no service offers the object");
 
     private nint Send(uint client, CancellationToken cancel)
     {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 using System;
 using System.Collections.Generic;
+using System.Threading;
 using System.Threading.Tasks;
 using Robdef.Runtime.Native;
 
@@ -20,12 +21,21 @@ public readonly struct ServedRequest
     private readonly nint _request;
     private readonly RrRequestInfo _info;
     private readonly KnownTypes _types;
+    private readonly ServedSession _session;
+    private readonly string _name;
 
-    internal ServedRequest(nint request, in RrRequestInfo info, KnownTypes types)
+    /// <param name="request">The native request, which belongs to this.</param>
+    /// <param name="info">What it says.</param>
+    /// <param name="types">That may be in its values.</param>
+    /// <param name="session">Of the client that asks.</param>
+    /// <param name="name">Of the member.</param>
+    internal ServedRequest(nint request, in RrRequestInfo info, KnownTypes types, ServedSession session, string name)
     {
         _request = request;
         _info = info;
         _types = types;
+        _session = session;
+        _name = name;
     }
 
     /// <summary>The member's place in the table of its object.</summary>
@@ -39,6 +49,9 @@ public readonly struct ServedRequest
 
     /// <summary>The client that asks.</summary>
     public uint Client => _info.Client;
+
+    /// <summary>Cancelled when the client has left, its session has ended or the service was closed.</summary>
+    public CancellationToken Cancelled => _session.Token;
 
     /// <summary>The index of an objref of int32.</summary>
     public int IndexNumber => _info.IndexNumber;
@@ -106,30 +119,26 @@ public readonly struct ServedRequest
         return default;
     }
 
-    /// <summary>Answers with a generator that gives these values.</summary>
-    public ValueTask AnswerSource<T>(IAsyncEnumerable<T> values, ValueCodec<T> codec)
+    /// <summary>Answers with a generator that gives these values, asked for with the token of the generator.</summary>
+    public ValueTask AnswerSource<T>(Func<CancellationToken, IAsyncEnumerable<T>> work, ValueCodec<T> codec)
     {
-        ArgumentNullException.ThrowIfNull(values);
-        return AnswerGenerator(new SourceSteps<T>(_types, values, codec));
+        ArgumentNullException.ThrowIfNull(work);
+        return Answer(new SourceSteps<T>(Origin, work, codec));
     }
 
     /// <summary>Answers with a generator whose values this work takes.</summary>
-    public ValueTask AnswerSink<T>(Func<IAsyncEnumerable<T>, ValueTask> work, ValueCodec<T> codec)
+    public ValueTask AnswerSink<T>(Func<IAsyncEnumerable<T>, CancellationToken, ValueTask> work, ValueCodec<T> codec)
     {
         ArgumentNullException.ThrowIfNull(work);
-        var steps = new SinkSteps<T>(_types, work, codec);
-        steps.Begin();
-        return AnswerGenerator(steps);
+        return Answer(new SinkSteps<T>(Origin, work, codec));
     }
 
     /// <summary>Answers with a generator that takes and gives values.</summary>
-    public ValueTask AnswerFilter<TIn, TOut>(Func<IAsyncEnumerable<TIn>, IAsyncEnumerable<TOut>> work, ValueCodec<TIn> taken,
-        ValueCodec<TOut> given)
+    public ValueTask AnswerFilter<TIn, TOut>(Func<IAsyncEnumerable<TIn>, CancellationToken, IAsyncEnumerable<TOut>> work,
+        ValueCodec<TIn> taken, ValueCodec<TOut> given)
     {
         ArgumentNullException.ThrowIfNull(work);
-        var steps = new FilterSteps<TIn, TOut>(_types, work, taken, given);
-        steps.Begin();
-        return AnswerGenerator(steps);
+        return Answer(new FilterSteps<TIn, TOut>(Origin, work, taken, given));
     }
 
     internal unsafe void Answer<T>(T value, ValueCodec<T> codec)
@@ -150,15 +159,32 @@ public readonly struct ServedRequest
 
     internal void Fail(Exception exception)
     {
-        Failure.Send(_request, exception);
+        Failure.Send(_request, _session.Tell(exception, _name));
         Functions.rr_request_release(_request);
+    }
+
+    private GeneratorOrigin Origin => new(_types, _session, _name);
+
+    /// <summary>Opens a generator, whose work may refuse at once.</summary>
+    private ValueTask Answer(GeneratorSteps steps)
+    {
+        try
+        {
+            steps.Begin();
+            return AnswerGenerator(steps);
+        }
+        catch (Exception)
+        {
+            steps.Forget();
+            throw;
+        }
     }
 
     private unsafe void AnswerObject(Skeleton skeleton)
     {
         if (skeleton is null)
         {
-            throw new RobdefException(ErrorCode.ServiceError, "there is no such object");
+            throw new ServiceException("there is no such object");
         }
         nint error;
         int status = Functions.rr_request_answer_object(_request, skeleton.RrServe(), skeleton.RrIsPerClient ? 1 : 0, &error);

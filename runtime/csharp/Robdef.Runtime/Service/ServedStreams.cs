@@ -193,7 +193,7 @@ internal sealed class WirePeeks<T>(ValueCodec<T> codec, Func<T>? peekIn, Func<T>
 {
     public override ValueTask Answer(ServedRequest request)
     {
-        Func<T> peek = (request.IsPeekIn ? peekIn : peekOut) ?? throw new RobdefException(ErrorCode.ValueNotSet, "the wire has no value");
+        Func<T> peek = (request.IsPeekIn ? peekIn : peekOut) ?? throw new ValueNotSetException("the wire has no value");
         return request.AnswerAsync(new ValueTask<T>(peek()), codec);
     }
 }

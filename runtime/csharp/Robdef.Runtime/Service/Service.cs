@@ -28,6 +28,9 @@ public sealed record ServiceOptions
     /// <summary>Told of each client whose session has ended. On a thread of the node.</summary>
     public Action<ServedClient>? ClientDisconnected { get; init; }
 
+    /// <summary><see cref="NodeOptions.EnableDetailedErrors"/> for this service.</summary>
+    public bool EnableDetailedErrors { get; init; }
+
     /// <summary>Definitions whose types may be in varvalues and varobjects, beside that of the root.</summary>
     public IReadOnlyList<ServiceDefinition> ExtraDefinitions { get; init; } = [];
 }
@@ -81,7 +84,7 @@ public sealed class Service : IDisposable
     public unsafe IReadOnlyList<ServedClient> GetClients()
     {
         var clients = new List<ServedClient>();
-        var sink = new ClientSink(clients.Add, null);
+        var sink = new ClientSink(clients.Add);
         nint context = Context.Of(sink);
         try
         {
@@ -129,14 +132,12 @@ public sealed class Service : IDisposable
                 Users = users,
                 UserIsOptional = options.UserIsOptional ? 1u : 0,
                 MonitorPatienceMs = options.MonitorPatience is { } patience ? Times.Milliseconds(patience) : 0,
+                Context = Context.Of(new SessionsSink(name, node.Faults.With(options.EnableDetailedErrors), options)),
+                OnClientConnected = &ClientSink.OnConnected,
+                OnClientDisconnected = &ClientSink.OnDisconnected,
+                OnClientLeaving = &ClientSink.OnLeaving,
+                Drop = &Context.Drop,
             };
-            if (options.ClientConnected is not null || options.ClientDisconnected is not null)
-            {
-                native.Context = Context.Of(new ClientSink(options.ClientConnected, options.ClientDisconnected));
-                native.OnClientConnected = &ClientSink.OnConnected;
-                native.OnClientDisconnected = &ClientSink.OnDisconnected;
-                native.Drop = &Context.Drop;
-            }
             int status = Functions.rr_service_register(node.Handle, text.Value, root.RrServe(), &native, out nint service, &error);
             if (users != 0)
             {
@@ -149,22 +150,31 @@ public sealed class Service : IDisposable
 }
 
 /// <summary>Where the native runtime tells of a service's clients.</summary>
-internal sealed unsafe class ClientSink(Action<ServedClient>? connected, Action<ServedClient>? disconnected)
+internal unsafe class ClientSink(Action<ServedClient>? connected)
 {
     [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
     public static void OnConnected(nint context, RrClientInfo* client) =>
-        Tell(context, *client, static (sink, one) => sink.Connect(one));
+        Tell(context, *client, static (sink, session, one) => sink.Connect(session, one));
 
     [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
     public static void OnDisconnected(nint context, RrClientInfo* client) =>
-        Tell(context, *client, static (sink, one) => sink.Disconnect(one));
+        Tell(context, *client, static (sink, session, one) => sink.Disconnect(session, one));
 
-    private static void Tell(nint context, RrClientInfo client, Action<ClientSink, ServedClient> tell)
+    [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
+    public static void OnLeaving(nint context, RrClientInfo* client) => ServedSession.Leave(client->Session);
+
+    protected virtual void Connect(ulong session, ServedClient client) => connected?.Invoke(client);
+
+    protected virtual void Disconnect(ulong session, ServedClient client)
+    {
+    }
+
+    private static void Tell(nint context, RrClientInfo client, Action<ClientSink, ulong, ServedClient> tell)
     {
         try
         {
             var node = new Guid(new ReadOnlySpan<byte>(client.Node.Bytes, 16), bigEndian: true);
-            tell(Context.Get<ClientSink>(context),
+            tell(Context.Get<ClientSink>(context), client.Session,
                 new ServedClient(client.Client, node, Failure.Text(client.NodeName), Failure.Text(client.User)));
         }
         catch (Exception exception)
@@ -172,8 +182,20 @@ internal sealed unsafe class ClientSink(Action<ServedClient>? connected, Action<
             Unhandled.Report(exception);
         }
     }
+}
 
-    private void Connect(ServedClient client) => connected?.Invoke(client);
+/// <summary>Keeps what handlers know of the sessions of one service.</summary>
+internal sealed class SessionsSink(string service, Faults faults, ServiceOptions options) : ClientSink(options.ClientConnected)
+{
+    protected override void Connect(ulong session, ServedClient client)
+    {
+        ServedSession.Begin(session, $"of the service `{service}`", faults);
+        base.Connect(session, client);
+    }
 
-    private void Disconnect(ServedClient client) => disconnected?.Invoke(client);
+    protected override void Disconnect(ulong session, ServedClient client)
+    {
+        ServedSession.End(session);
+        options.ClientDisconnected?.Invoke(client);
+    }
 }

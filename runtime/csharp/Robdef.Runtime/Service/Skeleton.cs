@@ -71,7 +71,7 @@ public abstract unsafe class Skeleton
 
     /// <summary>Brings a request to its member.</summary>
     protected virtual ValueTask RrRequestAsync(ServedRequest rrRequest) =>
-        throw new RobdefException(ErrorCode.MemberNotFound, "the object has no such member");
+        throw new MemberNotFoundException("the object has no such member");
 
     /// <summary>The memory at a place of the table.</summary>
     protected virtual ServedMemory? RrMemory(uint rrMember) => null;
@@ -159,10 +159,11 @@ public abstract unsafe class Skeleton
     [UnmanagedCallersOnly(CallConvs = [typeof(CallConvCdecl)])]
     private static void OnRequest(nint context, nint request, RrRequestInfo* info)
     {
+        Skeleton skeleton = Context.Get<Skeleton>(context);
+        string name = skeleton.RrType.Members[(int)info->Member].Name;
+        var served = new ServedRequest(request, *info, skeleton.RrTypes, ServedSession.Find(info->Session), name);
         try
         {
-            Skeleton skeleton = Context.Get<Skeleton>(context);
-            var served = new ServedRequest(request, *info, skeleton.RrTypes);
             ValueTask work = served.IsPeek ? skeleton.Peek(served) : skeleton.RrRequestAsync(served);
             if (!work.IsCompletedSuccessfully)
             {
@@ -171,8 +172,7 @@ public abstract unsafe class Skeleton
         }
         catch (Exception exception)
         {
-            Failure.Send(request, exception);
-            Functions.rr_request_release(request);
+            served.Fail(exception);
         }
     }
 
@@ -264,5 +264,5 @@ public static class NotServed
 {
     /// <summary>A NotImplementedError that names the member.</summary>
     public static RobdefException Member(string name) =>
-        new(ErrorCode.NotImplementedError, $"the member `{name}` is not implemented");
+        new RobdefNotImplementedException($"the member `{name}` is not implemented");
 }

@@ -14,7 +14,7 @@ internal sealed class ArrayCodec<T>(ItemCodec<T> item, int fewest, int most) : V
         }
         if (value.Length < fewest || value.Length > most)
         {
-            throw new RobdefException(ErrorCode.DataTypeError, $"an array of {value.Length} items is to be sent, and {Allowed}");
+            throw new DataTypeException($"an array of {value.Length} items is to be sent, and {Allowed}");
         }
         item.WriteArray(writer, key, value);
     }
@@ -57,7 +57,7 @@ internal sealed class MultiDimCodec<T>(ItemCodec<T> item, int[]? shape) : ValueC
         }
         if (shape is not null && !shape.AsSpan().SequenceEqual(value.Dims))
         {
-            throw new RobdefException(ErrorCode.DataTypeError, Shapes.Wrong(value.Dims, shape));
+            throw new DataTypeException(Shapes.Wrong(value.Dims, shape));
         }
         int begin = writer.BeginElement();
         item.WriteArray(writer, "array"u8, value.Items);
@@ -123,7 +123,7 @@ internal sealed class FlatMultiDimCodec<T>(ItemCodec<T> item, int[] shape) : Val
         }
         if (!shape.AsSpan().SequenceEqual(value.Dims))
         {
-            throw new RobdefException(ErrorCode.DataTypeError, Shapes.Wrong(value.Dims, shape));
+            throw new DataTypeException(Shapes.Wrong(value.Dims, shape));
         }
         item.WriteArray(writer, key, value.Items);
     }

@@ -106,7 +106,7 @@ public readonly ref struct Element
     public RobdefException Error(ErrorCode code, string what)
     {
         string name = Name.IsEmpty && HasNumber ? $"#{Number}" : Encoding.UTF8.GetString(Name);
-        return new RobdefException(code, $"the element `{name}` {what}");
+        return Errors.Of(code, $"the element `{name}` {what}");
     }
 
     internal RobdefException Mismatch(string wanted) => Type == ElementType.Void

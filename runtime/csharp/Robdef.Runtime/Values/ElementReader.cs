@@ -29,7 +29,7 @@ public ref struct ElementReader
         _depth = depth;
         if (depth > ElementTypes.MaximumDepth)
         {
-            throw new RobdefException(ErrorCode.DataSerializationError, "a received value is nested too deeply");
+            throw new DataSerializationException("a received value is nested too deeply");
         }
     }
 
@@ -48,7 +48,7 @@ public ref struct ElementReader
     /// <summary>The next element. Throws MessageElementNotFound behind the last.</summary>
     public Element Read() => TryRead(out Element element)
         ? element
-        : throw new RobdefException(ErrorCode.MessageElementNotFound, "an element is missing");
+        : throw new MessageElementNotFoundException("an element is missing");
 
     private Element Read2()
     {
@@ -140,8 +140,8 @@ public ref struct ElementReader
             : throw Broken($"has {payload.Length} bytes for {count} elements");
     }
 
-    private static RobdefException Broken(string what) =>
-        new(ErrorCode.DataSerializationError, "a received element " + what);
+    private static DataSerializationException Broken(string what) =>
+        new DataSerializationException("a received element " + what);
 
     /// <summary>Takes fields from the front.</summary>
     private ref struct Cursor(ReadOnlySpan<byte> bytes)

@@ -74,7 +74,7 @@ public sealed partial class ElementWriter : IDisposable
     {
         if (++_depth > ElementTypes.MaximumDepth)
         {
-            throw new RobdefException(ErrorCode.DataSerializationError, "a value is nested too deeply to be sent");
+            throw new DataSerializationException("a value is nested too deeply to be sent");
         }
         return Length;
     }
@@ -89,7 +89,7 @@ public sealed partial class ElementWriter : IDisposable
     {
         if (Version == MessageVersion.V2 && (key.Name.Length > LongestName || key.Metadata.Length > LongestName))
         {
-            throw new RobdefException(ErrorCode.ProtocolError, "the name of an element is longer than 65535 bytes");
+            throw new ProtocolException("the name of an element is longer than 65535 bytes");
         }
         if (Version == MessageVersion.V4)
         {
@@ -240,7 +240,7 @@ public sealed partial class ElementWriter : IDisposable
         long wanted = Math.Max(2L * _buffer.Length, (long)length + size);
         if (wanted > Array.MaxLength)
         {
-            throw new RobdefException(ErrorCode.BufferLimitViolation, "a value is too large to be sent");
+            throw new BufferLimitViolationException("a value is too large to be sent");
         }
         byte[] larger = ArrayPool<byte>.Shared.Rent((int)wanted);
         Written.CopyTo(larger.AsSpan(larger.Length - length));

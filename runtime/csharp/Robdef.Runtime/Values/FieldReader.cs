@@ -41,6 +41,6 @@ public ref struct FieldReader
                 return codec.Read(element);
             }
         }
-        throw new RobdefException(ErrorCode.MessageElementNotFound, $"there is no element `{Encoding.UTF8.GetString(name)}`");
+        throw new MessageElementNotFoundException($"there is no element `{Encoding.UTF8.GetString(name)}`");
     }
 }

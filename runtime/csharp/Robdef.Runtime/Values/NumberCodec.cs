@@ -58,7 +58,7 @@ internal static class Packed
     {
         if ((long)items.Length * Unsafe.SizeOf<T>() > Array.MaxLength)
         {
-            throw new RobdefException(ErrorCode.BufferLimitViolation, "an array is too large to be sent");
+            throw new BufferLimitViolationException("an array is too large to be sent");
         }
         writer.Prepend(MemoryMarshal.AsBytes(items));
     }

@@ -54,6 +54,6 @@ internal static class NullValue
     public static RobdefException Error(scoped in ElementKey key)
     {
         string name = key.IsNumber ? $"#{key.Number}" : Encoding.UTF8.GetString(key.Name);
-        return new RobdefException(ErrorCode.NullValue, $"the value `{name}` is null");
+        return new NullValueException($"the value `{name}` is null");
     }
 }

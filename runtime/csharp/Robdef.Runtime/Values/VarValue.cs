@@ -34,7 +34,7 @@ public sealed class VarValue
     /// <exception cref="RobdefException">DataTypeMismatch when it is none.</exception>
     public T Get<T>() => Value is T value
         ? value
-        : throw new RobdefException(ErrorCode.DataTypeMismatch, $"a varvalue holds a {Value.GetType().Name}");
+        : throw new DataTypeMismatchException($"a varvalue holds a {Value.GetType().Name}");
 
     /// <summary>One number: of a scalar, or of an array of one, which is what a received scalar is.</summary>
     /// <exception cref="RobdefException">DataTypeMismatch when it is neither.</exception>
@@ -43,7 +43,7 @@ public sealed class VarValue
         {
             T number => number,
             T[] { Length: 1 } array => array[0],
-            _ => throw new RobdefException(ErrorCode.DataTypeMismatch, $"a varvalue holds a {Value.GetType().Name}"),
+            _ => throw new DataTypeMismatchException($"a varvalue holds a {Value.GetType().Name}"),
         };
 
 #pragma warning disable CA2225 // The constructor of these values is VarValue.Of.
