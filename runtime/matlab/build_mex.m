@@ -1,11 +1,16 @@
-function build_mex(build, output, from_sources)
+function build_mex(build, output, from_sources, with_mex)
 %BUILD_MEX Build the MEX file and put the toolbox beside it, with MATLAB's mex or Octave's mkoctfile.
 %   build_mex(build, output) takes the libraries from a build of the tree (build/release after
 %   `cmake --build --preset release`) and writes the toolbox to the folder `output`, which is then
 %   added to the path. MATLAB compiles the runtime's sources; Octave does with
 %   build_mex(build, output, true), and takes them from the build without.
+%   build_mex(build, output, true, true) uses the function mex and what else MATLAB's file is made with, in
+%   Octave too: for tests, with a function of this name.
 if nargin < 3
   from_sources = false;
+end
+if nargin < 4
+  with_mex = ~exist('OCTAVE_VERSION', 'builtin');
 end
 here = fileparts(mfilename('fullpath'));
 top = fileparts(fileparts(here));
@@ -19,6 +24,8 @@ end
 runtime = fullfile(build, 'runtime', 'cpp');
 place.includes = {top, fullfile(here, 'include'), fullfile(top, 'runtime', 'cpp', 'include')};
 place.own = fullfile(here, 'src');
+place.static = fullfile(here, 'static');
+place.with_mex = with_mex;
 place.library = fullfile(build, 'runtime', 'matlab', 'librobdef_matlab_mex.a');
 if from_sources
   place.library = '';

@@ -52,6 +52,51 @@ void constants(Runtime& runtime, Call& call) {
   call.give(made);
 }
 
+// The name of an enum's value; empty for a number that it does not have.
+std::string name_of_value(const dynamic::ValueType& type, std::int32_t number) {
+  for (const auto& [name, value] : type.enum_values()) {
+    if (value == number) return name;
+  }
+  return {};
+}
+
+// `idle (0), running (3)`
+std::string values_of(const dynamic::ValueType& type) {
+  std::string text;
+  for (const auto& [name, value] : type.enum_values()) {
+    text += (text.empty() ? "" : ", ") + name + " (" + std::to_string(value) + ")";
+  }
+  return text;
+}
+
+// enum_name(object, type, number): text
+void enum_name(Runtime& runtime, Call& call) {
+  const auto object = object_of(runtime, call);
+  const dynamic::ValueType type = object->object().types().type(call.text(1));
+  if (type.kind() != Kind::enumeration) {
+    throw Error(ErrorCode::invalid_argument, "`" + type.text() + "` is not an enum");
+  }
+  const auto number = read_number<std::int32_t>(call[2]);
+  const std::string name = name_of_value(type, number);
+  if (name.empty()) {
+    throw Error(ErrorCode::out_of_range, "`" + type.text() + "` has no value " +
+                                             std::to_string(number) + ": " + values_of(type));
+  }
+  call.give(make_text(name));
+}
+
+// shown_enum(object, member, value): `running (3)`; '' for a member that is of no enum
+void shown_enum(Runtime& runtime, Call& call) {
+  const auto object = object_of(runtime, call);
+  const dynamic::ValueType type = object->resolve(call.text(1)).member.type;
+  if (type.kind() != Kind::enumeration) return call.give(make_text(""));
+  const auto number = read_number<std::int32_t>(call[2]);
+  const std::string name = name_of_value(type, number);
+  const std::string shown = std::to_string(number);
+  call.give(make_text(name.empty() ? shown + " (no value of " + plain_name(type.name()) + ")"
+                                   : name + " (" + shown + ")"));
+}
+
 mxArray* make_empty(const TypePlan& plan, int depth);
 
 template <class Make>
@@ -154,10 +199,8 @@ void definition(Runtime& runtime, Call& call) {
 mxArray* make_empty(const TypePlan& plan) { return make_empty(plan, 0); }
 
 std::vector<Command> definition_commands() {
-  return {{"constants", constants},
-          {"create", create},
-          {"definitions", definitions},
-          {"definition", definition}};
+  return {{"constants", constants},   {"create", create},           {"enum_name", enum_name},
+          {"shown_enum", shown_enum}, {"definitions", definitions}, {"definition", definition}};
 }
 
 }  // namespace rr::matlab

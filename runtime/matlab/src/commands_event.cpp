@@ -78,6 +78,11 @@ void poll(Runtime& runtime, Call& call) {
   call.give(mxCreateDoubleScalar(static_cast<double>(count)));
 }
 
+// poll_prompt(): the same without waiting; mex.cpp does not make a node for it
+void poll_prompt(Runtime& runtime, Call& call) {
+  call.give(mxCreateDoubleScalar(static_cast<double>(runtime.run_queue())));
+}
+
 // lost(): events that were lost because too many waited
 void lost(Runtime& runtime, Call& call) {
   call.give(mxCreateDoubleScalar(static_cast<double>(runtime.queue()->lost_count())));
@@ -129,11 +134,8 @@ void set_callback(Runtime& runtime, const ObjectHandle& object, const Resolved& 
 }
 
 std::vector<Command> event_commands() {
-  return {{"listen", listen},
-          {"unlisten", unlisten},
-          {"events", events},
-          {"poll", poll},
-          {"lost", lost}};
+  return {{"listen", listen}, {"unlisten", unlisten},       {"events", events},
+          {"poll", poll},     {"poll_prompt", poll_prompt}, {"lost", lost}};
 }
 
 }  // namespace rr::matlab

@@ -41,6 +41,53 @@ void next(Runtime& runtime, Call& call) {
   call.give(value ? handle->write(*value) : make_null());
 }
 
+// What an array takes in memory, with what is in it: bytes.
+std::size_t memory_of(const mxArray* array) {
+  constexpr std::size_t header = 96;  // of each array, about
+  std::size_t total = header;
+  const std::size_t count = count_of(array);
+  if (mxIsCell(array)) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const mxArray* const cell = mxGetCell(array, static_cast<mwIndex>(i));
+      total += sizeof(void*) + (cell != nullptr ? memory_of(cell) : 0);
+    }
+  } else if (mxIsStruct(array)) {
+    for (std::size_t i = 0; i < count; ++i) {
+      for (int k = 0; k < mxGetNumberOfFields(array); ++k) {
+        const mxArray* const field = mxGetFieldByNumber(array, static_cast<mwIndex>(i), k);
+        total += sizeof(void*) + (field != nullptr ? memory_of(field) : 0);
+      }
+    }
+  } else if (mxIsNumeric(array) || mxIsLogical(array) || mxIsChar(array)) {
+    total += count * mxGetElementSize(array);
+  }
+  return total;
+}
+
+// generator_all(generator, bytes): all values that are left, in cells. `[]` for bytes: the limit of
+// the node's sessions.
+void all(Runtime& runtime, Call& call) {
+  const auto handle = generator_of(runtime, call);
+  double limit = static_cast<double>(runtime.generator_limit);
+  if (call.has(1) && !is_null(call[1])) limit = read_number<double>(call[1]);
+  std::vector<mxArray*> values;
+  double received = 0;
+  while (true) {
+    const auto value = runtime.call<std::optional<Value>>(
+        [&] { return handle->generator.next(); },
+        [&](auto done) { handle->generator.async_next({}, done); });
+    if (!value) return call.give(make_cells(values));
+    values.push_back(handle->write(*value));
+    received += static_cast<double>(memory_of(values.back()));
+    if (!(received <= limit)) break;
+  }
+  for (mxArray* const value : values) mxDestroyArray(value);
+  throw Error(ErrorCode::out_of_system_resource,
+              "all values of `" + handle->member.name + "` are more than " +
+                  std::to_string(static_cast<std::uint64_t>(limit)) +
+                  " bytes; NextAll takes a limit, and Next has none");
+}
+
 // generator_async_next(generator, function, function's parameter, seconds [, parameter])
 void async_next(Runtime& runtime, Call& call) {
   const auto handle = generator_of(runtime, call);
@@ -78,7 +125,10 @@ mxArray* give_generator(Runtime& runtime, const ObjectHandle& object, const Reso
 }
 
 std::vector<Command> generator_commands() {
-  return {{"generator_next", next}, {"generator_async_next", async_next}, {"generator_end", end}};
+  return {{"generator_next", next},
+          {"generator_all", all},
+          {"generator_async_next", async_next},
+          {"generator_end", end}};
 }
 
 }  // namespace rr::matlab

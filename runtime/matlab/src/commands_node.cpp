@@ -87,6 +87,11 @@ void last_error(Runtime& runtime, Call& call) {
                          {"varvalue", varvalue}}));
 }
 
+// error_name(identifier): the full name of the error; '' for none of ours
+void error_name_of(Runtime& runtime, Call& call) {
+  call.give(make_text(runtime.name_of_failure({call.text(0), ""})));
+}
+
 }  // namespace
 
 std::vector<Command> node_commands() {
@@ -98,6 +103,7 @@ std::vector<Command> node_commands() {
           {"sleep", sleep},
           {"node", node},
           {"last_error", last_error},
+          {"error_name", error_name_of},
           {"throw", throw_error}};
 }
 

@@ -168,8 +168,16 @@ void assign_member(Runtime& runtime, ObjectHandle& object, const std::string& na
   const Resolved& member = object.resolve(name);
   if (member.use == Use::get || member.use == Use::set) return set(runtime, object, member, value);
   if (member.use == Use::callback) return set_callback(runtime, object, member, value);
-  throw Error(ErrorCode::member_format_mismatch,
-              member.subject + ": only properties and callbacks can be assigned");
+  const std::string& of = member.member.name;
+  const std::string remedy =
+      member.use == Use::wire
+          ? ": it is a wire; w = object." + of + ".Connect(); w.OutValue = value, or object." + of +
+                ".PokeOutValue(value)"
+      : member.use == Use::pipe
+          ? ": it is a pipe; p = object." + of + ".Connect(-1); p.SendPacket(packet)"
+      : member.use == Use::memory ? ": it is a memory; object." + of + "(:) = items"
+                                  : ": only properties and callbacks can be assigned";
+  throw Error(ErrorCode::member_format_mismatch, member.subject + remedy);
 }
 
 Value read_index(const Resolved& member, const mxArray* given) {

@@ -78,7 +78,9 @@ void served_members(Runtime& runtime, Call& call) {
 void register_service(Runtime& runtime, Call& call) {
   const auto served = runtime.handles().get<ServedHandle>(call.handle(1));
   ServiceOptions options;
-  if (call.has(2)) options.attributes = read_credentials(call[2]);
+  if (call.has(2)) {
+    options.attributes = read_varvalues(call[2], "attributes", "a containers.Map or a struct");
+  }
   if (call.has(3) && !call.text(3).empty()) {
     options.users = std::make_shared<PasswordUsers>(call.text(3));
   }
@@ -121,7 +123,7 @@ void release_path(Runtime& runtime, Call& call) {
   runtime.handles().get<ServiceHandle>(call.handle(0))->service->release_path(call.text(1));
 }
 
-// listen_tcp(port, address): the port
+// listen_tcp(port, address): the port; without an address that of this machine
 void listen_tcp(Runtime& runtime, Call& call) {
   const auto port = read_number<std::uint16_t>(call[0]);
   const std::string address = call.has(1) ? call.text(1) : std::string();

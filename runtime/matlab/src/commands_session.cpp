@@ -199,18 +199,27 @@ void service(Runtime& runtime, Call& call) {
 
 }  // namespace
 
-std::map<std::string, VarValue> read_credentials(const mxArray* given) {
-  std::map<std::string, VarValue> credentials;
-  if (is_null(given)) return credentials;
-  const dynamic::Value value = as_subject("credentials", [&] { return plain_from_mex(given); });
+std::map<std::string, VarValue> read_varvalues(const mxArray* given, const std::string& subject,
+                                               const std::string& expected) {
+  std::map<std::string, VarValue> values;
+  if (is_null(given)) return values;
+  const dynamic::Value value = as_subject(subject, [&] { return plain_from_mex(given); });
   if (value.kind() != dynamic::Kind::string_map) {
     throw Error(ErrorCode::data_type_mismatch,
-                "credentials: expected a containers.Map or a struct, got " + described(given));
+                subject + ": expected " + expected + ", got " + described(given));
   }
   for (const auto& [name, item] : value.string_map()) {
-    credentials.emplace(name, dynamic::to_varvalue(item));
+    values.emplace(name, dynamic::to_varvalue(item));
   }
-  return credentials;
+  return values;
+}
+
+std::map<std::string, VarValue> read_credentials(const mxArray* given) {
+  if (!is_null(given) && (is_text(given) || mxIsClass(given, "string"))) {
+    return {{"password", dynamic::to_varvalue(dynamic::Value(
+                             as_subject("credentials", [&] { return read_text(given); })))}};
+  }
+  return read_varvalues(given, "credentials", "a password, a containers.Map or a struct");
 }
 
 std::vector<std::string> read_texts(const mxArray* given) {

@@ -10,9 +10,10 @@ namespace {
 mxArray* error_to_mex(const std::exception_ptr& error, Runtime& runtime,
                       const std::shared_ptr<Connection>& connection) {
   const auto failure = run([&] { std::rethrow_exception(error); },
-                           [&](const Error& one) { runtime.last_error.emplace(one, connection); });
-  return make_struct(
-      {{"identifier", make_text(failure->identifier)}, {"message", make_text(failure->message)}});
+                           [&](const Error& one) { runtime.note_error(one, connection); });
+  return make_struct({{"identifier", make_text(failure->identifier)},
+                      {"message", make_text(failure->message)},
+                      {"name", make_text(runtime.name_of_failure(*failure))}});
 }
 
 }  // namespace
@@ -49,8 +50,8 @@ void start_call(Runtime& runtime, const std::shared_ptr<Connection>& connection,
                        .subscription = nullptr});
   if (limit == std::chrono::milliseconds::max()) limit = runtime.request_timeout;
   try {
-    std::optional<CallScope> scope;
-    if (limit.count() != 0) scope.emplace(limit);
+    const CallOptions options = within(limit);
+    const CallOptionsScope scope(options);
     start(Completions(runtime, number));
   } catch (...) {
     connection->remove(number);

@@ -92,6 +92,7 @@ void run_named(int result_count, mxArray** results, int argument_count, const mx
   if (name == "node_options" && argument_count == 2) return set_options(arguments[1]);
   // An object that goes when there is no node any more must not make another one.
   if (name == "close" && runtime == nullptr) return;
+  if (name == "poll_prompt" && runtime == nullptr) return;
   rr::matlab::Call call(result_count, results, argument_count - 1, arguments + 1);
   rr::matlab::run_command(need_runtime(), name, call);
 }
@@ -101,8 +102,7 @@ std::optional<rr::matlab::Failure> run_guarded(int result_count, mxArray** resul
   const Entered entered;
   return rr::matlab::run([&] { run_named(result_count, results, argument_count, arguments); },
                          [](const rr::Error& error) {
-                           if (runtime != nullptr)
-                             runtime->last_error.emplace(error, runtime->current);
+                           if (runtime != nullptr) runtime->note_error(error, runtime->current);
                          });
 }
 

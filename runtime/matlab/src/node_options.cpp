@@ -79,6 +79,10 @@ NodeOptions read_node_options(const mxArray* given) {
                 [&](const mxArray* bytes) {
                   options.memory_transfer_limit = read_number<std::uint32_t>(bytes);
                 }},
+               {"ClientSessionLimit",
+                [&](const mxArray* bytes) {
+                  options.budget.client_session = read_number<std::uint32_t>(bytes);
+                }},
                {"CertificateFile", read_into(options.tls.certificate_file)},
                {"KeyFile", read_into(options.tls.key_file)},
                {"AuthorityFiles",

@@ -13,7 +13,8 @@ namespace rr::matlab {
 using Clock = std::chrono::steady_clock;
 
 Runtime::Runtime(std::uint32_t generation, NodeOptions options)
-    : queue_(std::make_shared<Queue>()),
+    : generator_limit(options.budget.client_session),
+      queue_(std::make_shared<Queue>()),
       log_(std::make_shared<Log>()),
       handles_(generation),
       interrupts_(std::make_unique<Interrupts>([this] { interrupted(); })) {
@@ -47,11 +48,26 @@ Runtime::Waiting::~Waiting() {
   if (runtime_.waiting_.empty()) runtime_.interrupts_->end();
 }
 
-std::unique_ptr<CallScope> Runtime::make_scope(
-    const Waiting& waiting, std::optional<std::chrono::milliseconds> limit) const {
-  const std::chrono::milliseconds timeout = limit.value_or(request_timeout);
-  if (timeout.count() == 0) return std::make_unique<CallScope>(waiting.cancellation);
-  return std::make_unique<CallScope>(timeout, waiting.cancellation);
+CallOptions Runtime::options_of(const Waiting& waiting,
+                                std::optional<std::chrono::milliseconds> limit) const {
+  return {limit.value_or(request_timeout), waiting.cancellation.get_token()};
+}
+
+void Runtime::note_error(const Error& error, std::shared_ptr<Connection> connection) {
+  last_error.emplace(LastError{error, std::move(connection)});
+  const std::string identifier = identifier_of(error.name());
+  if (name_of_identifier(identifier) == error.name()) {
+    foreign_names_.erase(identifier);
+    return;
+  }
+  constexpr std::size_t most_names = 256;  // a service must not fill the memory with them
+  if (foreign_names_.size() >= most_names) foreign_names_.clear();
+  foreign_names_[identifier] = error.name();
+}
+
+std::string Runtime::name_of_failure(const Failure& failure) const {
+  const auto foreign = foreign_names_.find(failure.identifier);
+  return foreign != foreign_names_.end() ? foreign->second : name_of_identifier(failure.identifier);
 }
 
 // The parameter of a service's error is of that service's types, which another one need not know.
@@ -67,12 +83,12 @@ Error Runtime::error_of_failure(const Failure& failure) const {
 }
 
 void Runtime::interrupted() {
-  std::vector<Cancellation> waiting;
+  std::vector<std::stop_source> waiting;
   {
     const std::lock_guard lock(waiting_mutex_);
     waiting = waiting_;
   }
-  for (Cancellation& one : waiting) one.cancel();
+  for (std::stop_source& one : waiting) one.request_stop();
   queue_->wake();
 }
 
@@ -88,7 +104,7 @@ bool Runtime::wait_until(const std::function<bool()>& is_true, std::chrono::mill
     run_calls();
     EndingSignals::prepare();
     if (is_true()) return true;
-    if (waiting.cancellation.is_cancelled() || Interrupts::is_pending()) {
+    if (waiting.cancellation.stop_requested() || Interrupts::is_pending()) {
       throw Error(ErrorCode::operation_cancelled, "interrupted");
     }
     const auto now = Clock::now();

@@ -102,11 +102,17 @@ class Runtime {
     std::shared_ptr<Connection> connection;
   };
   std::optional<LastError> last_error;
+  /// Notes an error that is about to be raised, and of which connection it is, if of one.
+  void note_error(const Error& error, std::shared_ptr<Connection> connection);
+  /// The full name of the error with this identifier and message; empty if it is none of ours.
+  [[nodiscard]] std::string name_of_failure(const Failure& failure) const;
   /// What a failure of a function of the user's is told to a service as: an error that came from
   /// elsewhere, or that RobotRaconteur.ThrowError has made, as it is.
   [[nodiscard]] Error error_of_failure(const Failure& failure) const;
   /// Whose command runs, so that a parameter of its error can be read.
   std::shared_ptr<Connection> current;
+  /// What all values of a generator may take in memory, unless the call says otherwise: bytes.
+  const std::size_t generator_limit;
 
  private:
   /// A blocking call, for who is told of interrupts on another thread.
@@ -122,25 +128,27 @@ class Runtime {
       try {
         return direct();
       } catch (const Error& error) {
-        if (error.code() != ErrorCode::operation_cancelled || !cancellation.is_cancelled()) throw;
+        if (error.code() != ErrorCode::operation_cancelled || !cancellation.stop_requested()) throw;
         throw Error(error.code(), "interrupted; the service may still be busy with the call");
       }
     }
-    Cancellation cancellation;
+    std::stop_source cancellation;
 
    private:
     Runtime& runtime_;
   };
-  std::unique_ptr<CallScope> make_scope(const Waiting& waiting,
-                                        std::optional<std::chrono::milliseconds> limit) const;
+  CallOptions options_of(const Waiting& waiting,
+                         std::optional<std::chrono::milliseconds> limit) const;
   void interrupted();
 
   std::shared_ptr<Queue> queue_;
   std::shared_ptr<Log> log_;
+  // Of errors whose identifiers do not tell their names: names that other languages have given.
+  std::map<std::string, std::string> foreign_names_;
   UserFunctions functions_;
   Handles handles_;
   std::mutex waiting_mutex_;
-  std::vector<Cancellation> waiting_;
+  std::vector<std::stop_source> waiting_;
   std::unique_ptr<Interrupts> interrupts_;
   std::unique_ptr<Node> node_;
 };
@@ -148,14 +156,16 @@ class Runtime {
 template <class Direct>
 auto Runtime::call_directly(Direct&& direct, std::optional<std::chrono::milliseconds> limit) {
   Waiting waiting(*this);
-  const auto scope = make_scope(waiting, limit);
+  const CallOptions options = options_of(waiting, limit);
+  const CallOptionsScope scope(options);
   return waiting.run(direct);
 }
 
 template <class... Result, class Direct, class Start>
 auto Runtime::call(Direct&& direct, Start&& start, std::optional<std::chrono::milliseconds> limit) {
   Waiting waiting(*this);
-  const auto scope = make_scope(waiting, limit);
+  const CallOptions options = options_of(waiting, limit);
+  const CallOptionsScope scope(options);
   if (may_block()) return waiting.run(direct);
   struct Answer {
     std::atomic<bool> has_come{false};

@@ -48,6 +48,23 @@
 %!   assert(err.message, '100% lost');
 %! end
 
+%!test % names of enums, without a connection
+%! assert(experimental.bench.Mode.get_name(3), 'running');
+%! assert(experimental.bench.Mode.get_name(experimental.bench.Mode.failed), 'failed');
+
+%!error id=RobotRaconteur:OutOfRange experimental.bench.Mode.get_name(12)
+%!error <`experimental.bench.Mode` has no value 12: idle \(0\), running \(3\), failed \(-1\)> ...
+%!  experimental.bench.Mode.get_name(12)
+
+%!test % the identifier of an exception's class is the one that the runtime gives
+%! c = bench();
+%! try
+%!   c.lose_tool('attic');
+%! catch err
+%! end
+%! assert(experimental.bench.ToolLost.identifier, 'experimental:bench:ToolLost');
+%! assert(err.identifier, experimental.bench.ToolLost.identifier);
+
 %!test % structs
 %! r = experimental.bench.Report();
 %! assert(fieldnames(r), {'count'; 'text'; 'numbers'; 'mode'; 'next'; 'extra'});

@@ -96,7 +96,7 @@
 %!   c.lose_tool('attic');
 %!   error('not thrown');
 %! catch err
-%!   assert(err.identifier, 'experimental.bench:ToolLost');
+%!   assert(err.identifier, 'experimental:bench:ToolLost');
 %!   assert(err.message, 'the tool is lost (where)');
 %! end
 %! e = RobotRaconteur.GetLastError();
@@ -105,7 +105,7 @@
 %! assert(e.code, 100);
 
 %!error <as asked for> bench().fail('some.other.Fault')
-%!error id=some.other:Fault bench().fail('some.other.Fault')
+%!error id=some:other:Fault bench().fail('some.other.Fault')
 %!error id=RobotRaconteur:ValueError bench().fail('ValueError')
 %!error id=RobotRaconteur:MemberNotFound bench().not_there % by name
 %!error id=RobotRaconteur:MemberNotFound bench().not_there() % by name
@@ -234,7 +234,7 @@
 %! assert(rr_eventually(@() numel(rr_log_call()) == 2));
 %! assert(rr_log_call(){1}, {'mine', int32(42), []});
 %! err = rr_log_call(){2}{3};
-%! assert(err.identifier, 'experimental.bench:ToolLost');
+%! assert(err.identifier, 'experimental:bench:ToolLost');
 %! rr_log_call('clear');
 %! c.v_double = 1.5;
 %! c.async_get_v_double(@(varargin) rr_log_call(varargin{:}));

@@ -21,7 +21,7 @@ classdef rr_rig < handle
       obj.stopped = obj.stopped + 1;
     end
     function jam(obj, text)
-      error('experimental.rig:Jam', '%s', text);
+      error('experimental:rig:Jam', '%s', text);
     end
     function value = echo(obj, value)
     end

@@ -79,7 +79,7 @@
 %! assert(c.add(1, 2), 3);
 %! c.stop();
 %! assert(rig.stopped, 1);
-%! fails(@() c.jam('stuck'), 'experimental.rig:Jam', 'stuck');
+%! fails(@() c.jam('stuck'), 'experimental:rig:Jam', 'stuck');
 %! value = c.echo(RobotRaconteurVarValue(struct('id', int16(1), 'at', [1; 2; 3]), ...
 %!   'experimental.rig.Sample[]'));
 %! assert(value.datatype, 'experimental.rig.Sample[]');
@@ -213,7 +213,7 @@
 %!                                                     'message', '100% over'));
 %! service = RobotRaconteur.RegisterService('errors', 'experimental.rig.Rig', served);
 %! c = RobotRaconteur.ConnectService([url, 'errors']);
-%! fails(@() c.add(1, 2), 'experimental.rig:Jam', 'stuck (joint)');
+%! fails(@() c.add(1, 2), 'experimental:rig:Jam', 'stuck (joint)');
 %! last = RobotRaconteur.GetLastError();
 %! assert(last.code, 100);
 %! assert(last.name, 'experimental.rig.Jam');
@@ -223,7 +223,7 @@
 %! assert(isequal(last.varvalue, RobotRaconteurVarValue(int16([1; 2]), 'int16[]')));
 %! fails(@() c.stop(), 'some:Name', 'some.Name');
 %! assert(RobotRaconteur.GetLastError().code, 999);
-%! fails(@() c.jam('far away'), 'experimental.rig:Jam', 'far away');
+%! fails(@() c.jam('far away'), 'experimental:rig:Jam', 'far away');
 %! fails(@() c.title, 'RobotRaconteur:OutOfRange', '100% over');
 %! assert(RobotRaconteur.GetLastError().code, 29);
 %! fails(@() RobotRaconteur.ThrowError(5), 'RobotRaconteur:DataTypeMismatch', ...

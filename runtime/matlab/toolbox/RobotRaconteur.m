@@ -10,8 +10,8 @@ classdef RobotRaconteur
     end
     function obj = ConnectService(url, username, credentials, object_type)
       %CONNECTSERVICE c = RobotRaconteur.ConnectService(url, username, credentials, object_type)
-      %   url may be a cell array of several ways to one service. credentials is a containers.Map
-      %   or a struct, as struct('password', 'secret').
+      %   url may be a cell array of several ways to one service. credentials is the password, or
+      %   for other ways of logging in a containers.Map or a struct, as struct('password', 'secret').
       if nargin < 2
         username = '';
       end
@@ -32,7 +32,7 @@ classdef RobotRaconteur
       end
     end
     function Authenticate(obj, username, credentials)
-      %AUTHENTICATE Log in at the service of an object.
+      %AUTHENTICATE Log in at the service of an object, with credentials as of ConnectService.
       rrmex('authenticate', obj, username, credentials);
     end
     function Logout(obj)
@@ -69,13 +69,11 @@ classdef RobotRaconteur
       count = rrmex('poll', 0);
     end
     function EnableEvents(obj)
-      %ENABLEEVENTS Events are delivered, which they are anyway, and at Octave's prompt without Poll.
-      persistent is_hooked
+      %ENABLEEVENTS Events are delivered, which they are anyway, and at the prompt without Poll.
+      %   Octave calls the handlers while it waits for input. MATLAB calls them from a timer, every
+      %   0.05 s while it is idle, and in pause and drawnow. Shutdown() ends both.
       rrmex('events', obj, true);
-      if isempty(is_hooked) && exist('OCTAVE_VERSION', 'builtin') && isguirunning_or_prompt()
-        add_input_event_hook(@() RobotRaconteur.Poll(0));
-        is_hooked = true;
-      end
+      rr_prompt(true);
     end
     function DisableEvents(obj)
       %DISABLEEVENTS Events of the object's session are dropped until EnableEvents.
@@ -115,6 +113,12 @@ classdef RobotRaconteur
         service = name(1:find(name == '.', 1, 'last') - 1);
       end
       found = rrmex('constants', obj, service);
+    end
+    function name = EnumName(obj, type, value)
+      %ENUMNAME The name of an enum's value: RobotRaconteur.EnumName(c, 'example.arm.Mode', c.mode).
+      %   RobotRaconteur:OutOfRange for a number that the enum does not have. The service may send
+      %   such a number, and take one, as in all languages.
+      name = rrmex('enum_name', obj, type, value);
     end
     function names = GetPulledServiceTypes(obj)
       %GETPULLEDSERVICETYPES Names of the definitions that the service has sent.
@@ -198,10 +202,7 @@ classdef RobotRaconteur
     function RegisterServiceType(definition)
       %REGISTERSERVICETYPE Make a definition known that services are offered by: its text, or the
       %   name of a file. Those that it imports, too, before the first object is served.
-      if numel(definition) < 4096 && exist(definition, 'file') == 2
-        definition = fileread(definition);
-      end
-      rrmex('service_type', definition);
+      rrmex('service_type', rr_definition_text(definition));
     end
     function service = RegisterService(name, type, obj, options)
       %REGISTERSERVICE service = RobotRaconteur.RegisterService(name, type, obj, options)
@@ -237,7 +238,8 @@ classdef RobotRaconteur
                                       extra_imports);
     end
     function port = StartServer(port, address)
-      %STARTSERVER Listen at a TCP port, 0 for a free one; returns it. address may be '127.0.0.1'.
+      %STARTSERVER Listen at a TCP port, 0 for a free one; returns it. Clients of this machine can
+      %   connect; with '*' as address those of others, too.
       if nargin < 1
         port = 0;
       end
@@ -272,7 +274,7 @@ classdef RobotRaconteur
     function SetNodeOptions(options)
       %SETNODEOPTIONS How the node is made: before it is used first, or after Shutdown. A struct
       %   with any of NodeName, NodeID; RequestTimeout, ConnectTimeout, HeartbeatPeriod in seconds;
-      %   MemoryTransferLimit in bytes; CertificateFile, KeyFile, AuthorityFiles (cells), RequireTls;
+      %   MemoryTransferLimit, ClientSessionLimit in bytes; CertificateFile, KeyFile, AuthorityFiles (cells), RequireTls;
       %   ClientOffer and ServerOffer: structs with any of MessageV4, StringTable, CombinedConnect.
       rrmex('node_options', options);
     end
@@ -304,14 +306,16 @@ classdef RobotRaconteur
       %   with its type, as a RobotRaconteurVarValue, in `varvalue`; [] for none.
       found = rrmex('last_error');
     end
+    function name = ErrorName(err)
+      %ERRORNAME The full name of a caught error: 'experimental.arm.Jam' of experimental:arm:Jam.
+      %   '' for an error that is not one of Robot Raconteur's. An identifier has other characters
+      %   than a name: see docs/matlab.md, Errors.
+      name = rrmex('error_name', err.identifier);
+    end
     function Shutdown()
       %SHUTDOWN End all connections and the node. What is used next starts another one.
+      rr_prompt(false);
       rrmex('shutdown');
     end
   end
-end
-
-function answer = isguirunning_or_prompt()
-% The hook exists where there is a prompt only.
-answer = exist('add_input_event_hook', 'builtin') ~= 0;
 end

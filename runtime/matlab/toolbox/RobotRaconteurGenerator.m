@@ -20,14 +20,16 @@ classdef RobotRaconteurGenerator < RobotRaconteurHandle
         is_there = {is_there, value};
       end
     end
-    function values = NextAll(obj)
+    function values = NextAll(obj, most_bytes)
       %NEXTALL All values that are left, in a column of cells.
-      values = cell(0, 1);
-      [is_there, value] = rrmex('generator_next', obj);
-      while is_there
-        values{end + 1, 1} = value;
-        [is_there, value] = rrmex('generator_next', obj);
+      %   values = g.NextAll(most_bytes) ends with RobotRaconteur:OutOfSystemResource when they take
+      %   more memory than this, Inf for no limit. Without it the limit is that of the node's
+      %   sessions: 64 MiB, or ClientSessionLimit of RobotRaconteur.SetNodeOptions. The generator
+      %   can be used further; the values that were read are lost.
+      if nargin < 2
+        most_bytes = [];
       end
+      values = rrmex('generator_all', obj, most_bytes);
     end
     function async_Next(obj, varargin)
       %ASYNC_NEXT async_Next([value,] handler, parameter, seconds): handler(parameter, value, err).

@@ -74,12 +74,16 @@ classdef RobotRaconteurMap < handle
     function answer = isempty(obj)
       answer = obj.rr_items.Count == 0;
     end
-    function answer = numArgumentsFromSubscript(obj, s, context)
-      answer = 1;
+    function count = numArgumentsFromSubscript(obj, s, context)
+      % MATLAB asks for so many results of subsref; Octave does not call this.
+      count = 1;
+      if ~strcmp(char(context), 'Assignment')
+        count = rr_result_count([], s);
+      end
     end
     function varargout = subsref(obj, s)
       if strcmp(s(1).type, '.')
-        [varargout{1:max(nargout, 1)}] = builtin('subsref', obj, s);
+        [varargout{1:max(nargout, rr_result_count([], s))}] = builtin('subsref', obj, s);
         return
       end
       value = obj.rr_items(rr_key_of(s(1)));

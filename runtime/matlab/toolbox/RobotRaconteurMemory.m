@@ -52,8 +52,12 @@ classdef RobotRaconteurMemory < handle
     function count = length(obj)
       count = max(size(obj));
     end
-    function answer = numArgumentsFromSubscript(obj, s, context)
-      answer = 1;
+    function count = numArgumentsFromSubscript(obj, s, context)
+      % MATLAB asks for so many results of subsref; Octave does not call this.
+      count = 1;
+      if ~strcmp(char(context), 'Assignment')
+        count = rr_result_count([], s);
+      end
     end
     function last = end(obj, k, n)
       dims = rrmex('memory_dims', obj.rr_object, obj.rr_name);

@@ -74,8 +74,12 @@ classdef RobotRaconteurMultiDimArray
     function answer = isempty(obj)
       answer = isempty(obj.array);
     end
-    function answer = numArgumentsFromSubscript(obj, s, context)
-      answer = 1;
+    function count = numArgumentsFromSubscript(obj, s, context)
+      % MATLAB asks for so many results of subsref; Octave does not call this.
+      count = 1;
+      if ~strcmp(char(context), 'Assignment')
+        count = rr_result_count([], s);
+      end
     end
     function last = end(obj, k, n)
       sizes = rr_all_sizes(obj);
@@ -88,7 +92,7 @@ classdef RobotRaconteurMultiDimArray
 
     function varargout = subsref(obj, s)
       if strcmp(s(1).type, '.')
-        [varargout{1:max(nargout, 1)}] = builtin('subsref', obj, s);
+        [varargout{1:max(nargout, rr_result_count([], s))}] = builtin('subsref', obj, s);
       else
         [varargout{1:max(nargout, 1)}] = subsref(to_array(obj), s);
       end

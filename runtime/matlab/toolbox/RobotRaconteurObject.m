@@ -14,7 +14,7 @@ classdef RobotRaconteurObject < RobotRaconteurStub
 
     function varargout = subsref(obj, s)
       % Each line here takes the interpreter longer than the MEX file needs for all of it.
-      [value, left] = rrmex('subsref', obj, s);
+      [value, left] = rrmex('subsref', obj, s.subs);
       if left
         varargout = rr_go_on(obj, s, nargout, value, left);
       else
@@ -23,7 +23,7 @@ classdef RobotRaconteurObject < RobotRaconteurStub
     end
 
     function obj = subsasgn(obj, s, value)
-      left = rrmex('subsasgn', obj, s, value);
+      left = rrmex('subsasgn', obj, value, s.subs);
       if left
         obj = rr_assign_rest(obj, s, value, left);
       end
@@ -33,8 +33,16 @@ classdef RobotRaconteurObject < RobotRaconteurStub
       answer = 1;
     end
 
-    function answer = numArgumentsFromSubscript(obj, s, context)
-      answer = 1;
+    function count = numArgumentsFromSubscript(obj, s, context)
+      % MATLAB asks for so many results of subsref; Octave does not call this.
+      count = 1;
+      if strcmp(char(context), 'Assignment')
+        return
+      end
+      count = rrmex('result_count', obj, s.subs);
+      if count < 0
+        count = double(~strcmp(char(context), 'Statement'));
+      end
     end
 
     function names = properties(obj)
@@ -100,8 +108,8 @@ classdef RobotRaconteurObject < RobotRaconteurStub
         results = {value};
         return
       end
-      if count == 0 && ~rr_is_void(rest)
-        count = 1;
+      if count == 0
+        count = rr_result_count(value, rest);
       end
       [results{1:count}] = subsref(value, rest);
     end
@@ -118,10 +126,4 @@ classdef RobotRaconteurObject < RobotRaconteurStub
       end
     end
   end
-end
-
-function answer = rr_is_void(s)
-% Methods that give nothing, so that nothing is asked of them.
-answer = strcmp(s(1).type, '.') && any(strcmp(s(1).subs, ...
-  {'PokeOutValue', 'Close', 'Abort', 'async_Next', 'SetQueueLimit', 'delete', 'disp'}));
 end

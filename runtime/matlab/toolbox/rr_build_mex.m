@@ -15,6 +15,8 @@ place.own = fullfile(root, 'runtime', 'matlab', 'src');
 place.library = fullfile(libraries, 'librobdef_matlab_mex.a');
 place.archives = in_folder(libraries, {'librobdef_serial.a', 'librobdef_dynamic.a', ...
                                        'librobdef_runtime.a'});
+place.static = fullfile(root, 'runtime', 'matlab', 'static');
+place.with_mex = ~exist('OCTAVE_VERSION', 'builtin');
 place.exports = fullfile(support, 'exports.map');
 rr_compile_mex(folder, in_folder(folder, sources(:)'), place, varargin{:});
 end

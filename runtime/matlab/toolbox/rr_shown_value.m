@@ -13,6 +13,13 @@ try
 catch
   return
 end
+if isa(value, 'int32') && isscalar(value)
+  shown = rrmex('shown_enum', obj, name, value);
+  if ~isempty(shown)
+    text = [' = ', shown];
+    return
+  end
+end
 if isa(value, 'RobotRaconteurMultiDimArray')
   value = to_array(value);
 end

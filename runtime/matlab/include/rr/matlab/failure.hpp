@@ -3,8 +3,6 @@
 
 #include <mex.h>
 
-#include <algorithm>
-#include <cctype>
 #include <exception>
 #include <new>
 #include <optional>
@@ -13,6 +11,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/matlab/identifier.hpp"
 #include "rr/matlab/misfit.hpp"
 #include "rr/matlab/text.hpp"
 
@@ -28,20 +27,6 @@ struct Failure {
   std::string identifier;
   std::string message;
 };
-
-/// `RobotRaconteur:ConnectionError`, `example.probe:ProbeFault`; names that other languages have
-/// given, as `ValueError`, are `RobotRaconteur:ValueError`.
-inline std::string identifier_of(std::string_view error_name) {
-  std::string identifier;
-  for (const char c : error_name) {
-    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
-    identifier += is_plain ? c : '_';
-  }
-  const std::size_t dot = identifier.rfind('.');
-  if (dot == std::string::npos) return "RobotRaconteur:" + identifier;
-  identifier[dot] = ':';
-  return identifier;
-}
 
 inline Failure failure_of(const Error& error) {
   std::string message = error.message();
@@ -63,18 +48,10 @@ inline ErrorCode code_of_name(std::string_view name) {
 /// with an identifier of ours, or of a service's exception, is that; all others are
 /// RobotRaconteur.RemoteError with the identifier as sub-name.
 inline Error error_of(const Failure& failure) {
-  const std::string& identifier = failure.identifier;
-  const std::size_t colon = identifier.rfind(':');
-  const std::string first = identifier.substr(0, colon);
-  const std::string last = colon == std::string::npos ? "" : identifier.substr(colon + 1);
-  const bool is_name = !last.empty() && std::all_of(last.begin(), last.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_';
-  });
-  if (is_name && first != "Octave" && first != "MATLAB" && first.find(':') == std::string::npos) {
-    const std::string name = first + "." + last;
-    return {code_of_name(name), name, failure.message};
-  }
-  return {ErrorCode::remote_error, "RobotRaconteur.RemoteError", failure.message, identifier};
+  const std::string name = name_of_identifier(failure.identifier);
+  if (!name.empty()) return {code_of_name(name), name, failure.message};
+  return {ErrorCode::remote_error, "RobotRaconteur.RemoteError", failure.message,
+          failure.identifier};
 }
 
 /// Ends the MEX function with an error: the last thing it does, when no object of C++ is left that

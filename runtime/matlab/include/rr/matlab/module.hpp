@@ -74,13 +74,22 @@ void block(TypedCall& call, Body&& body) {
              &body);
 }
 
-/// Result and parameters of a stub's method.
+/// Result and parameters of a stub's method, without the options of the call, which are its last
+/// parameter.
 template <class Method>
 struct MethodOf;
 template <class R, class S, class... Parameters>
 struct MethodOf<R (S::*)(Parameters...)> {
+ private:
+  using All = std::tuple<std::remove_cvref_t<Parameters>...>;
+  static constexpr std::size_t last = sizeof...(Parameters) - 1;
+  static_assert(std::is_same_v<std::tuple_element_t<last, All>, CallOptions>);
+  template <std::size_t... I>
+  static std::tuple<std::tuple_element_t<I, All>...> without_last(std::index_sequence<I...>);
+
+ public:
   using Result = R;
-  using Arguments = std::tuple<std::remove_cvref_t<Parameters>...>;
+  using Arguments = decltype(without_last(std::make_index_sequence<last>()));
 };
 
 /// Calls one method of a stub.
@@ -95,7 +104,8 @@ mxArray* run_method(Stub& stub, std::span<const mxArray* const> given, TypedCall
   (std::make_index_sequence<std::tuple_size_v<typename Of::Arguments>>());
   S& target = dynamic_cast<S&>(stub);
   const auto invoke = [&]() -> decltype(auto) {
-    return std::apply([&](auto&... argument) { return (target.*Method)(argument...); }, arguments);
+    return std::apply(
+        [&](auto&... argument) { return (target.*Method)(argument..., CallOptions()); }, arguments);
   };
   if constexpr (std::is_void_v<typename Of::Result>) {
     block(call, [&] { invoke(); });
