@@ -155,7 +155,7 @@ TEST_F(Bridged, EverythingThatABoardServesArrives) {
   all->set("text", "sixteen letters!");
   EXPECT_EQ(all->get("text").text(), "sixteen letters!");
   EXPECT_EQ(error_of([&] { all->set("text", "seventeen letters"); }).code(),
-            ErrorCode::data_type_mismatch);
+            ErrorCode::buffer_limit_violation);
   all->set("mode", "broken");
   EXPECT_EQ(all->get("mode").text(), "broken");
   all->set("numbers", List{1, -2, 3});
@@ -194,14 +194,112 @@ TEST_F(Bridged, EverythingThatABoardServesArrives) {
       eventually([&] { return all->wire("both").peek_in().value.as<std::int16_t>() == -5; }));
 }
 
+TEST_F(Bridged, ARefusalSaysWhy) {
+  plug("light.elf");
+  const dynamic::Client light = connect("Light");
+  const Error range = error_of([&] { light->set("color", color(2, 0, 0)); });
+  EXPECT_EQ(range.code(), ErrorCode::out_of_range);
+  EXPECT_EQ(range.message(),
+            "color: the board refuses it: a value is out of range: the parts of a colour are from "
+            "0 to 1");
+  const Error length = error_of([&] { light->call("fade", {color(1, 0, 0), 61.0}); });
+  EXPECT_EQ(length.message(),
+            "fade: the board refuses it: a value is out of range: a fade takes 0 to 60 seconds");
+  light->call("fade", {color(1, 0, 0), 0.1});
+
+  board->unplug();
+  board->plug(elf_dir + "stepper.elf");
+  ASSERT_TRUE(eventually([&] { return times("Stepper: connected") == 1; }));
+  const dynamic::Client stepper = connect("Stepper");
+  const Error thrown = error_of([&] { stepper->call("move_to", {5}); });
+  EXPECT_EQ(thrown.name(), "example.stepper.NotHomed");
+  EXPECT_EQ(thrown.message(),
+            "move_to: the board reports example.stepper.NotHomed: call home, and wait until it has "
+            "ended");
+}
+
+TEST_F(Bridged, WhatTheLibraryRefusesSaysWhyToo) {
+  plug("everything.elf");
+  const dynamic::Client all = connect("Board");
+  const Error longer = error_of([&] { all->set("text", "seventeen letters"); });
+  EXPECT_EQ(longer.code(), ErrorCode::buffer_limit_violation);
+  EXPECT_EQ(longer.message(),
+            "text: the board refuses it: a string or array is longer than its limit in the "
+            "definition");
+  const Error missing = error_of([&] { all->call("add", {1.0, 2.0}); });
+  EXPECT_EQ(missing.code(), ErrorCode::not_implemented_error);
+  EXPECT_EQ(missing.message(), "add: the board refuses it: its program does not implement this");
+  const Error lamp = error_of([&] { (void)all->object("lamp", 3); });
+  EXPECT_EQ(lamp.code(), ErrorCode::object_not_found);
+  EXPECT_EQ(lamp.message(), "lamp: the board refuses it: there is no such object");
+}
+
+TEST_F(Bridged, WhatIsTooLongForTheBoardIsRefusedAtOnce) {
+  plug("everything.elf");
+  const dynamic::Client all = connect("Board");
+  const auto begun = std::chrono::steady_clock::now();
+  const Error error = error_of([&] { all->set("text", std::string(100, 'x')); });
+  EXPECT_EQ(error.code(), ErrorCode::buffer_limit_violation);
+  EXPECT_EQ(error.message(),
+            "text: the request has 103 bytes, and the board takes 80 at most: a string or array is "
+            "longer than its limit in the definition");
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, 3s);
+  all->set("text", "short");
+  EXPECT_EQ(times("Board: connected"), 1U) << "the session goes on";
+}
+
+TEST_F(Bridged, RefusedPacketsAreLoggedOnce) {
+  plug("everything.elf");
+  const dynamic::Client all = connect("Board");
+  dynamic::PipeEndpoint pipe = all->pipe("commands").connect();
+  pipe.send(std::uint8_t{1});
+  pipe.send(std::uint8_t{2});
+  const std::string line =
+      "Board: a packet was lost: commands: the board refuses it: its program does not implement "
+      "this";
+  EXPECT_TRUE(eventually([&] { return times(line) == 1; }));
+  all->set("secret", std::uint8_t{1});
+  EXPECT_EQ(times(line), 1U);
+}
+
+TEST_F(Bridged, RefusedValuesOfWiresAreLogged) {
+  plug("conformance.elf");
+  const dynamic::Client panel = connect("Panel");
+  dynamic::WireConnection wire = panel->wire("target").connect();
+  wire.set_out(1e7);
+  EXPECT_TRUE(eventually([&] {
+    return times(
+               "Panel: a value of a wire was lost: target: the board refuses it: a value is out "
+               "of range: at most a million") == 1;
+  }));
+  wire.set_out(5.0);
+  EXPECT_TRUE(eventually([&] { return panel->call("last_target", {}).as<double>() == 5; }));
+}
+
+TEST_F(Bridged, ACallbackComesToTheClientThatCalledLongAgo) {
+  plug("echo115200.elf");
+  const dynamic::Client echo = connect("Echo");
+  echo->callback("doubled").set(
+      [](const List& values) { return Value(2 * values.at(0).as<double>()); });
+  // Asked two seconds later: meanwhile the bridge has looked whether the board is there.
+  echo->call("ask", {-21.0});
+  std::this_thread::sleep_for(3s);
+  EXPECT_TRUE(eventually([&] { return echo->get("value").as<double>() != 0; }));
+  EXPECT_EQ(echo->get("value").as<double>(), -42);
+}
+
 TEST(BoardPlaces, AreReadFromUrls) {
   const BoardPlace place = BoardPlace::parse("rr+serial:///dev/ttyUSB0?baud=9600&name=lamp");
   EXPECT_EQ(place.path, "/dev/ttyUSB0");
   EXPECT_EQ(place.baud, 9600U);
   EXPECT_EQ(place.name, "lamp");
   EXPECT_EQ(BoardPlace::parse("/dev/ttyACM0").baud, 115200U);
+  EXPECT_EQ(BoardPlace::parse("tcp://lamp.local:4000?name=lamp").path, "tcp://lamp.local:4000");
+  EXPECT_EQ(BoardPlace::parse("rr+serial://[::1]:4000/?service=Echo").path, "tcp://[::1]:4000");
   for (const char* const bad :
-       {"", "?baud=9600", "/dev/x?baud=9601", "/dev/x?baud=fast", "/dev/x?b=1"}) {
+       {"", "?baud=9600", "/dev/x?baud=9601", "/dev/x?baud=fast", "/dev/x?b=1", "tcp://",
+        "tcp://lamp", "tcp://lamp:0", "tcp://lamp:65536", "tcp://lamp:40x", "tcp://:4000",
+        "tcp://::1:4000", "tcp://lamp:4000?baud=9600", "rr+serial://lamp"}) {
     EXPECT_EQ(error_of([&] { (void)BoardPlace::parse(bad); }).code(), ErrorCode::invalid_argument)
         << bad;
   }

@@ -11,5 +11,5 @@
 
 namespace rr {
 /// Generated headers check that they were made for this library.
-constexpr int arduinoApi = 1;
+constexpr int arduinoApi = 2;
 }  // namespace rr

@@ -107,14 +107,41 @@ TEST(Requests, FailWithACode) {
   WiredBoard board;
   board.hello();
   EXPECT_THAT(board.say({Kind::Call, 1, bytes_of({0, 0})}),
-              ElementsAre(Frame{Kind::Error, 1, bytes_of({0, 9})}));
+              ElementsAre(Frame{Kind::Error, 1, bytes_of({0, 9, 0})}));
   EXPECT_THAT(board.say({Kind::Get, 2, bytes_of({5, 0})}),
-              ElementsAre(Frame{Kind::Error, 2, bytes_of({0, 4})}));
+              ElementsAre(Frame{Kind::Error, 2, bytes_of({0, 4, 0})}));
   EXPECT_THAT(board.say({Kind::Call, 3, bytes_of({0, 1, 1})}),
-              ElementsAre(Frame{Kind::Error, 3, bytes_of({1, 11})}));
+              ElementsAre(Frame{Kind::Error, 3, bytes_of({1, 11, 0})}));
   EXPECT_THAT(board.say({Kind::Call, 4, bytes_of({0, 1, 1, 2, 3})}),
-              ElementsAre(Frame{Kind::Error, 4, bytes_of({1, 11})}));
-  EXPECT_THAT(board.say({Kind::Get, 5, {}}), ElementsAre(Frame{Kind::Error, 5, bytes_of({0, 13})}));
+              ElementsAre(Frame{Kind::Error, 4, bytes_of({1, 11, 0})}));
+  EXPECT_THAT(board.say({Kind::Get, 5, {}}),
+              ElementsAre(Frame{Kind::Error, 5, bytes_of({0, 13, 0})}));
+}
+
+TEST(Requests, SayWhyTheyAreRefused) {
+  WiredBoard board;
+  board.hello();
+  EXPECT_THAT(board.say({Kind::Call, 1, bytes_of({0, 1, 200, 100})}),
+              ElementsAre(Frame{Kind::Error, 1, bytes_of({1, 29, 1})}));
+  std::string text;
+  uint8_t sequence = 1;
+  for (;;) {
+    const auto size = static_cast<int>(text.size());
+    const auto frames =
+        board.say({Kind::Text, ++sequence, bytes_of({serial::reasonText, size & 0xFF, size >> 8})});
+    ASSERT_EQ(frames.size(), 1U);
+    ASSERT_EQ(frames[0].kind, Kind::Reply);
+    if (frames[0].body.size() == 3) break;
+    text.append(frames[0].body.begin() + 3, frames[0].body.end());
+  }
+  EXPECT_EQ(text, "the sum is more than 255, which is the most that a uint8 holds");
+  ++sequence;
+  EXPECT_THAT(board.say({Kind::Call, sequence, bytes_of({0, 1, 1})}),
+              ElementsAre(Frame{Kind::Error, sequence, bytes_of({1, 11, 0})}))
+      << "a reason is for one refusal";
+  ++sequence;
+  EXPECT_THAT(board.say({Kind::Text, sequence, bytes_of({serial::reasonText, 0, 0})}),
+              ElementsAre(Frame{Kind::Error, sequence, bytes_of({0, 29, 0})}));
 }
 
 TEST(Requests, OfADoubleTakeTheSameBytesForEachValue) {
@@ -127,6 +154,22 @@ TEST(Requests, OfADoubleTakeTheSameBytesForEachValue) {
     ASSERT_EQ(board.say(request).size(), 1U);
     EXPECT_EQ(request.size() + board.line.from_board.size(), 27U);
   }
+}
+
+TEST(Streams, ThatFollowAnotherFindNothingThatWasBegunThere) {
+  WiredBoard board;
+  board.hello();
+  const std::vector<uint8_t> call = stuffed({Kind::Call, 1, bytes_of({0, 1, 1, 2})});
+  (void)board.say(std::vector<uint8_t>(call.begin(), call.end() - 1));
+  ASSERT_TRUE(board.link.start(Kind::Event, 0, 2));
+  ASSERT_TRUE(board.link.finish());
+  testing::Line next;
+  board.link.begin(next);
+  EXPECT_FALSE(board.link.isConnected());
+  next.to_board = {0};
+  for (int count = 0; count < 40; ++count) board.link.poll();
+  EXPECT_EQ(board.calls, 0);
+  EXPECT_THAT(testing::frames_in(next.from_board), ElementsAre(Frame{Kind::Started, 0, {}}));
 }
 
 TEST(Texts, ComeInPieces) {
@@ -147,10 +190,10 @@ TEST(Texts, ComeInPieces) {
   EXPECT_GT(sequence, 2);
   ++sequence;
   EXPECT_THAT(board.say({Kind::Text, sequence, bytes_of({2, 0, 0})}),
-              ElementsAre(Frame{Kind::Error, sequence, bytes_of({0, 29})}));
+              ElementsAre(Frame{Kind::Error, sequence, bytes_of({0, 29, 0})}));
   ++sequence;
   EXPECT_THAT(board.say({Kind::Text, sequence, bytes_of({0, 0xFF, 0xFF})}),
-              ElementsAre(Frame{Kind::Error, sequence, bytes_of({0, 29})}));
+              ElementsAre(Frame{Kind::Error, sequence, bytes_of({0, 29, 0})}));
 }
 
 TEST(Events, AreSentUntilTheyAreAcknowledged) {

@@ -60,6 +60,7 @@ TEST(Values, StringsHaveALimit) {
   Reader is_long(bytes, 4);
   Text<2> shorter;
   EXPECT_FALSE(read(is_long, shorter));
+  EXPECT_EQ(is_long.refusal(), Status::BufferLimitViolation);
   text = "abcdef";
   EXPECT_EQ(text.length(), 3);
 }
@@ -69,6 +70,7 @@ TEST(Values, AStringWithAZeroIsRefused) {
   Reader reader(bytes, 3);
   Text<4> text;
   EXPECT_FALSE(read(reader, text));
+  EXPECT_EQ(reader.refusal(), Status::DataTypeMismatch);
 }
 
 TEST(Values, BoundedArraysSayHowManyThereAre) {
@@ -86,11 +88,16 @@ TEST(Values, BoundedArraysSayHowManyThereAre) {
 }
 
 uint32_t narrow_bits(uint64_t bits) {
-  return narrow({static_cast<uint32_t>(bits), static_cast<uint32_t>(bits >> 32)});
+  uint8_t wide[8];
+  for (int at = 0; at < 8; ++at) wide[at] = static_cast<uint8_t>(bits >> (8 * at));
+  return narrow(wide);
 }
 uint64_t widen_bits(uint32_t single) {
-  const WideBits wide = widen(single);
-  return static_cast<uint64_t>(wide.high) << 32 | wide.low;
+  uint8_t wide[8];
+  widen(single, wide);
+  uint64_t bits = 0;
+  for (int at = 0; at < 8; ++at) bits |= static_cast<uint64_t>(wide[at]) << (8 * at);
+  return bits;
 }
 
 /// What the processor makes of a double.
@@ -132,7 +139,7 @@ TEST(Doubles, OfFloatsAreExact) {
     const float value = std::bit_cast<float>(bits);
     if (std::isnan(value)) continue;
     ASSERT_EQ(widen_bits(bits), std::bit_cast<uint64_t>(static_cast<double>(value)));
-    ASSERT_EQ(narrow(widen(bits)), bits);
+    ASSERT_EQ(narrow_bits(widen_bits(bits)), bits);
   }
 }
 

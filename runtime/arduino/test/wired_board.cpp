@@ -98,8 +98,7 @@ std::vector<uint8_t> bytes_of(std::initializer_list<int> numbers) {
 WiredBoard::WiredBoard()
     : texts_{{first_text, sizeof first_text - 1}, {second_text, sizeof second_text - 1}},
       served_{texts_, 2, hash, &WiredBoard::handle, &WiredBoard::write_wire},
-      memory_{request_,        reply_,        out_,        queue_, flags_,
-              sizeof request_, sizeof reply_, sizeof out_, 2,      sizeof queue_},
+      memory_{request_, reply_, out_, queue_, flags_, 64, 64, 37, 2, sizeof queue_},
       link(served_, memory_, this) {
   link.begin(line);
   (void)listen();
@@ -148,6 +147,10 @@ Status WiredBoard::handle(void* self, Request& request, Writer& reply) {
     uint8_t b = 0;
     if (!read(request.values, a) || !read(request.values, b) || !request.values.isComplete()) {
       return Status::DataTypeMismatch;
+    }
+    if (a + b > 255) {
+      return refuse(Status::OutOfRange,
+                    F("the sum is more than 255, which is the most that a uint8 holds"));
     }
     write(reply, static_cast<uint8_t>(a + b));
     return Status::Ok;

@@ -65,8 +65,8 @@ class WiredBoard {
   static bool write_wire(void* self, uint8_t slot, Writer& body);
 
   std::uint8_t request_[64]{};
-  std::uint8_t reply_[64]{};
-  std::uint8_t out_[37]{};
+  std::uint8_t reply_[64 + stuffing]{};
+  std::uint8_t out_[37 + stuffing]{};
   std::uint8_t queue_[40]{};
   std::uint8_t flags_[2]{};
   FlashText texts_[2];

@@ -28,7 +28,7 @@ class Lamp {
     return rr::Status::Ok;
   }
   rr::Status setColor(const Color& value) {
-    if (!isColor(value)) return rr::Status::OutOfRange;
+    if (!isColor(value)) return refuseColor();
     aim(value);
     rest();
     return rr::Status::Ok;
@@ -41,7 +41,10 @@ class Lamp {
     return getBrightness(value);
   }
   rr::Status fade(const Color& target, double duration) {
-    if (!isColor(target) || !(duration >= 0) || duration > 60) return rr::Status::OutOfRange;
+    if (!isColor(target)) return refuseColor();
+    if (!(duration >= 0) || duration > 60) {
+      return rr::refuse(rr::Status::OutOfRange, F("a fade takes 0 to 60 seconds"));
+    }
     aim(target);
     begun_ = static_cast<uint16_t>(millis());
     duration_ = static_cast<uint16_t>(duration * 1000);
@@ -71,6 +74,9 @@ class Lamp {
   }
   static bool isColor(const Color& value) {
     return isPart(value.red) && isPart(value.green) && isPart(value.blue);
+  }
+  static rr::Status refuseColor() {
+    return rr::refuse(rr::Status::OutOfRange, F("the parts of a colour are from 0 to 1"));
   }
   static uint8_t levelOf(float part) {
     return static_cast<uint16_t>(part * 255);

@@ -3,7 +3,7 @@
 
 #include <Robdef.h>
 
-static_assert(rr::arduinoApi == 1, "made for another version of the library; run robdef again");
+static_assert(rr::arduinoApi == 2, "made for another version of the library; run robdef again");
 
 namespace example {
 namespace light {
@@ -14,14 +14,10 @@ struct Color {
   float blue;
 };
 inline bool read(rr::Reader& from, Color& value) {
-  (void)from;
-  (void)value;
-  return true && read(from, value.red) && read(from, value.green) && read(from, value.blue);
+  return read(from, value.red) && read(from, value.green) && read(from, value.blue);
 }
 inline bool write(rr::Writer& to, const Color& value) {
-  (void)to;
-  (void)value;
-  return true && write(to, value.red) && write(to, value.green) && write(to, value.blue);
+  return write(to, value.red) && write(to, value.green) && write(to, value.blue);
 }
 
 // What hosts may read: the names of service and root, and the definitions.
@@ -62,13 +58,13 @@ class RootSender {
  public:
   RootSender(rr::Link& link, uint8_t index) : link_(link), index_(index) {}
   bool fireFaded(const ::example::light::Color& color) {
-    if (!link_.start(rr::serial::Kind::Event, 0 + index_, 3)) return false;
+    if (!link_.start(rr::serial::Kind::Event, index_, 3)) return false;
     write(link_.values(), color);
     return link_.finish();
   }
   /// Ten times a second.
   /// Its value is asked for with getSensor when it can be sent.
-  void sensorChanged() { link_.markChanged(0 + index_); }
+  void sensorChanged() { link_.markChanged(index_); }
 
  private:
   rr::Link& link_;
@@ -105,21 +101,18 @@ class LightService {
   static Status handle(void* self, rr::Request& request, rr::Writer& reply) {
     LightService& service = *static_cast<LightService*>(self);
     if (request.object < 1) {
-      return service.handleRoot(request.object - 0, request, reply);
+      return service.handleRoot(request.object, request, reply);
     }
     return Status::ObjectNotFound;
   }
 
   static bool writeWire(void* self, uint8_t slot, rr::Writer& body) {
     LightService& service = *static_cast<LightService*>(self);
-    (void)service;
-    (void)slot;
-    (void)body;
-    if (slot >= 0 && slot < 1) {  // sensor
-      LightDevice* const device = service.findRoot(slot - 0);
+    if (slot < 1) {  // sensor
+      LightDevice* const device = service.findRoot(slot);
       double value;
       if (device == nullptr || device->getSensor(value) != Status::Ok) return false;
-      body.putByte(0 + slot - 0);
+      body.putByte(slot);
       body.putByte(4);
       return write(body, value);
     }
@@ -135,7 +128,7 @@ class LightService {
         ::example::light::Color value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getColor(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setColor(value);
       }
       case 1: {  // property brightness
@@ -147,7 +140,7 @@ class LightService {
         if (request.kind != Kind::Call) break;
         ::example::light::Color target;
         double duration;
-        if (!rr::readAll(request, target, duration)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, target, duration)) return request.values.refusal();
         return device->fade(target, duration);
       }
       case 3: {  // event faded
@@ -155,7 +148,7 @@ class LightService {
       }
       case 4: {  // wire sensor
         if (request.kind == Kind::Open || request.kind == Kind::Close) {
-          return link_.setOpen(0 + index, request.kind == Kind::Open);
+          return link_.setOpen(index, request.kind == Kind::Open);
         }
         double value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getSensor(value), value);
@@ -172,8 +165,8 @@ class LightService {
 
   // There is one service of a kind in a sketch, so its memory has a fixed place.
   static uint8_t request_[37];
-  static uint8_t reply_[37];
-  static uint8_t out_[20];
+  static uint8_t reply_[37 + rr::stuffing];
+  static uint8_t out_[20 + rr::stuffing];
   static uint8_t queue_[34];
   static uint8_t flags_[1];
   static const rr::Served served_;
@@ -183,9 +176,9 @@ class LightService {
 template <class LightDevice>
 uint8_t LightService<LightDevice>::request_[37];
 template <class LightDevice>
-uint8_t LightService<LightDevice>::reply_[37];
+uint8_t LightService<LightDevice>::reply_[37 + rr::stuffing];
 template <class LightDevice>
-uint8_t LightService<LightDevice>::out_[20];
+uint8_t LightService<LightDevice>::out_[20 + rr::stuffing];
 template <class LightDevice>
 uint8_t LightService<LightDevice>::queue_[34];
 template <class LightDevice>
@@ -195,8 +188,7 @@ const rr::Served LightService<LightDevice>::served_ = {
     rrTexts, 2, rrHash, &LightService::handle, &LightService::writeWire};
 template <class LightDevice>
 const rr::Memory LightService<LightDevice>::memory_ = {
-    request_,       reply_,        out_,        queue_,    flags_,
-    sizeof request_, sizeof reply_, sizeof out_, 1, sizeof queue_};
+    request_, reply_, out_, queue_, flags_, 37, 37, 20, 1, 34};
 
 }  // namespace light
 }  // namespace example

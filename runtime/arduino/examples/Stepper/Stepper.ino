@@ -37,7 +37,9 @@ class Motor {
     return rr::Status::Ok;
   }
   rr::Status setSpeed(uint16_t value) {
-    if (value < 1 || value > 2000) return rr::Status::OutOfRange;
+    if (value < 1 || value > 2000) {
+      return rr::refuse(rr::Status::OutOfRange, F("1 to 2000 steps a second"));
+    }
     speed_ = value;
     return rr::Status::Ok;
   }
@@ -52,7 +54,9 @@ class Motor {
     return rr::Status::Ok;
   }
   rr::Status moveTo(int32_t target) {
-    if (!isHomed_) return example::stepper::NotHomed;
+    if (!isHomed_) {
+      return rr::refuse(example::stepper::NotHomed, F("call home, and wait until it has ended"));
+    }
     target_ = target;
     isMoving_ = true;
     return rr::Status::Ok;

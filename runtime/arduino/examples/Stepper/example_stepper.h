@@ -3,7 +3,7 @@
 
 #include <Robdef.h>
 
-static_assert(rr::arduinoApi == 1, "made for another version of the library; run robdef again");
+static_assert(rr::arduinoApi == 2, "made for another version of the library; run robdef again");
 
 namespace example {
 namespace stepper {
@@ -71,14 +71,14 @@ class RootSender {
   RootSender(rr::Link& link, uint8_t index) : link_(link), index_(index) {}
   /// The motor has come to rest, by itself or at a switch.
   bool fireArrived(int32_t position, ::example::stepper::Limit limit) {
-    if (!link_.start(rr::serial::Kind::Event, 0 + index_, 6)) return false;
+    if (!link_.start(rr::serial::Kind::Event, index_, 6)) return false;
     write(link_.values(), position);
     write(link_.values(), limit);
     return link_.finish();
   }
   /// Where it is, twenty times a second while it moves.
   /// Its value is asked for with getTravel when it can be sent.
-  void travelChanged() { link_.markChanged(0 + index_); }
+  void travelChanged() { link_.markChanged(index_); }
 
  private:
   rr::Link& link_;
@@ -118,21 +118,18 @@ class StepperService {
   static Status handle(void* self, rr::Request& request, rr::Writer& reply) {
     StepperService& service = *static_cast<StepperService*>(self);
     if (request.object < 1) {
-      return service.handleRoot(request.object - 0, request, reply);
+      return service.handleRoot(request.object, request, reply);
     }
     return Status::ObjectNotFound;
   }
 
   static bool writeWire(void* self, uint8_t slot, rr::Writer& body) {
     StepperService& service = *static_cast<StepperService*>(self);
-    (void)service;
-    (void)slot;
-    (void)body;
-    if (slot >= 0 && slot < 1) {  // travel
-      StepperDevice* const device = service.findRoot(slot - 0);
+    if (slot < 1) {  // travel
+      StepperDevice* const device = service.findRoot(slot);
       int32_t value;
       if (device == nullptr || device->getTravel(value) != Status::Ok) return false;
-      body.putByte(0 + slot - 0);
+      body.putByte(slot);
       body.putByte(7);
       return write(body, value);
     }
@@ -153,7 +150,7 @@ class StepperService {
         uint16_t value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getSpeed(value), value);
         if (request.kind != Kind::Set) break;
-        if (!rr::readAll(request, value)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, value)) return request.values.refusal();
         return device->setSpeed(value);
       }
       case 2: {  // property limit
@@ -163,18 +160,18 @@ class StepperService {
       }
       case 3: {  // function home
         if (request.kind != Kind::Call) break;
-        if (!rr::readAll(request)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request)) return request.values.refusal();
         return device->home();
       }
       case 4: {  // function move_to
         if (request.kind != Kind::Call) break;
         int32_t target;
-        if (!rr::readAll(request, target)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request, target)) return request.values.refusal();
         return device->moveTo(target);
       }
       case 5: {  // function stop
         if (request.kind != Kind::Call) break;
-        if (!rr::readAll(request)) return Status::DataTypeMismatch;
+        if (!rr::readAll(request)) return request.values.refusal();
         return device->stop();
       }
       case 6: {  // event arrived
@@ -182,7 +179,7 @@ class StepperService {
       }
       case 7: {  // wire travel
         if (request.kind == Kind::Open || request.kind == Kind::Close) {
-          return link_.setOpen(0 + index, request.kind == Kind::Open);
+          return link_.setOpen(index, request.kind == Kind::Open);
         }
         int32_t value;
         if (request.kind == Kind::Get) return rr::answer(reply, device->getTravel(value), value);
@@ -199,8 +196,8 @@ class StepperService {
 
   // There is one service of a kind in a sketch, so its memory has a fixed place.
   static uint8_t request_[37];
-  static uint8_t reply_[37];
-  static uint8_t out_[16];
+  static uint8_t reply_[37 + rr::stuffing];
+  static uint8_t out_[16 + rr::stuffing];
   static uint8_t queue_[26];
   static uint8_t flags_[1];
   static const rr::Served served_;
@@ -210,9 +207,9 @@ class StepperService {
 template <class StepperDevice>
 uint8_t StepperService<StepperDevice>::request_[37];
 template <class StepperDevice>
-uint8_t StepperService<StepperDevice>::reply_[37];
+uint8_t StepperService<StepperDevice>::reply_[37 + rr::stuffing];
 template <class StepperDevice>
-uint8_t StepperService<StepperDevice>::out_[16];
+uint8_t StepperService<StepperDevice>::out_[16 + rr::stuffing];
 template <class StepperDevice>
 uint8_t StepperService<StepperDevice>::queue_[26];
 template <class StepperDevice>
@@ -222,8 +219,7 @@ const rr::Served StepperService<StepperDevice>::served_ = {
     rrTexts, 2, rrHash, &StepperService::handle, &StepperService::writeWire};
 template <class StepperDevice>
 const rr::Memory StepperService<StepperDevice>::memory_ = {
-    request_,       reply_,        out_,        queue_,    flags_,
-    sizeof request_, sizeof reply_, sizeof out_, 1, sizeof queue_};
+    request_, reply_, out_, queue_, flags_, 37, 37, 16, 1, 26};
 
 }  // namespace stepper
 }  // namespace example

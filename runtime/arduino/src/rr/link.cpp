@@ -2,13 +2,15 @@
 // What comes in: frames, sessions, requests.
 #include "link.h"
 
+#include "frame.h"
+
 namespace rr {
 
 using serial::Kind;
 
 namespace {
 
-// Places in a frame.
+// Places in a frame that has come.
 constexpr uint8_t kindAt = 0;
 constexpr uint8_t sequenceAt = 1;
 constexpr uint8_t lengthAt = 2;
@@ -30,17 +32,25 @@ constexpr uint8_t textLength = 3;
 
 }  // namespace
 
+const char* refusalReason = nullptr;
+
 Link::Link(const Served& served, const Memory& memory, void* service)
-    : served_(served), memory_(memory), service_(service), stream_(nullptr), pending_(nullptr, 0) {
-  memset(&state_, 0, sizeof state_);
-}
+    : served_(served),
+      memory_(memory),
+      service_(service),
+      stream_(nullptr),
+      pending_(nullptr, 0),
+      state_() {}
 
 void Link::begin(Stream& stream) {
   stream_ = &stream;
+  // What another stream has begun is over.
+  memset(&state_, 0, sizeof state_);
   // Nothing waits to be sent yet, so a stream that says 0 does not say how much it takes at all.
   state_.isPaced = stream.availableForWrite() > 0;
-  finishFrame(memory_.out, Kind::Started, 0, 0);
-  startSending(memory_.out);
+  // The zero in front of the first frame. What is behind it waits until the stream takes it.
+  stream.write(static_cast<uint8_t>(0));
+  sendOut(Kind::Started, 0, 0);
 }
 
 void Link::poll() {
@@ -54,18 +64,22 @@ void Link::receive(uint8_t byte) {
   if (byte == 0) {
     // A block that is cut off has lost bytes, or the zero is a damaged byte.
     if (state_.isStarted && state_.block == 0 && !state_.isBroken) handleFrame();
-    forgetReceived();
-  } else if (state_.block != 0) {
-    append(byte);
+    state_.received = 0;
+    state_.block = 0;
+    state_.isBroken = false;
+    state_.isStarted = false;
+    return;
+  }
+  if (state_.block != 0) {
     --state_.block;
   } else {
-    if (state_.isStarted) append(0);
-    state_.isStarted = true;
     state_.block = static_cast<uint8_t>(byte - 1);
+    byte = 0;
+    if (!state_.isStarted) {
+      state_.isStarted = true;
+      return;
+    }
   }
-}
-
-void Link::append(uint8_t byte) {
   if (state_.received == memory_.requestSize) {
     state_.isBroken = true;
   } else {
@@ -73,20 +87,11 @@ void Link::append(uint8_t byte) {
   }
 }
 
-void Link::forgetReceived() {
-  state_.received = 0;
-  state_.block = 0;
-  state_.isBroken = false;
-  state_.isStarted = false;
-}
-
 void Link::handleFrame() {
   const uint8_t* const frame = memory_.request;
   if (state_.received < serial::frameOverhead) return;
   if (frame[lengthAt] != state_.received - serial::frameOverhead) return;
-  uint16_t crc = serial::crcStart;
-  for (uint8_t index = 0; index < state_.received; ++index) crc = serial::crcOf(crc, frame[index]);
-  if (crc != 0) return;
+  if (crcOver(frame, state_.received) != 0) return;
 
   const Kind kind = static_cast<Kind>(frame[kindAt]);
   const uint8_t sequence = frame[sequenceAt];
@@ -119,7 +124,7 @@ void Link::beginSession(const uint8_t* body) {
     memset(memory_.flags, 0, memory_.slots);
   }
   state_.sequence = 0;
-  uint8_t* const reply = memory_.reply + bodyAt;
+  uint8_t* const reply = memory_.reply + sentBodyAt;
   reply[0] = serial::protocolVersion;
   putWord(reply + 1, session);
   reply[3] = static_cast<uint8_t>(memory_.requestSize - serial::frameOverhead);
@@ -132,19 +137,22 @@ void Link::beginSession(const uint8_t* body) {
 }
 
 void Link::handleRequest(Kind kind) {
-  Reader body(memory_.request + bodyAt, memory_.request[lengthAt]);
-  Writer reply(memory_.reply + bodyAt,
+  const uint8_t* const body = memory_.request + bodyAt;
+  const uint8_t length = memory_.request[lengthAt];
+  Writer reply(memory_.reply + sentBodyAt,
                static_cast<uint8_t>(memory_.replySize - serial::frameOverhead));
-  uint8_t object = 0;
   uint8_t member = 0;
   Status status = Status::Ok;
   if (kind == Kind::Text) {
-    status = body.left() == textLength ? writeText(body.at(), reply) : Status::DataTypeMismatch;
+    status = length == textLength ? writeText(body, reply) : Status::DataTypeMismatch;
   } else if (kind != Kind::Ping) {
-    if (read(body, object) && read(body, member)) {
+    if (length >= 2) {
+      member = body[1];
       reply.putByte(member);
-      Request request = {kind, object, member, body};
+      Request request = {kind, body[0], member, Reader(body + 2, static_cast<uint8_t>(length - 2))};
+      refusalReason = nullptr;
       status = served_.handle(service_, request, reply);
+      state_.reason = refusalReason;
     } else {
       status = Status::DataSerializationError;
     }
@@ -154,26 +162,30 @@ void Link::handleRequest(Kind kind) {
     answer(Kind::Reply, reply.count());
     return;
   }
-  reply.clear();
-  reply.putByte(member);
-  reply.putByte(static_cast<uint8_t>(status));
-  answer(Kind::Error, reply.count());
+  memory_.reply[sentBodyAt] = member;
+  memory_.reply[sentBodyAt + 1] = static_cast<uint8_t>(status);
+  memory_.reply[sentBodyAt + 2] = state_.reason == nullptr ? 0 : 1;
+  answer(Kind::Error, 3);
 }
 
 Status Link::writeText(const uint8_t* body, Writer& reply) {
   const uint8_t number = body[0];
   uint16_t offset = wordAt(body + 1);
-  if (number >= served_.textCount) return Status::OutOfRange;
-  const FlashText& text = served_.texts[number];
-  if (offset > text.count) return Status::OutOfRange;
-  uint8_t* const bytes = reply.at();
-  bytes[0] = number;
-  putWord(bytes + 1, offset);
-  uint8_t count = textLength;
-  while (count < reply.room() && offset < text.count) {
-    bytes[count++] = pgm_read_byte(text.bytes + offset++);
+  FlashText text = {state_.reason, 0};
+  if (number < served_.textCount) {
+    text = served_.texts[number];
+  } else if (number == serial::reasonText && text.bytes != nullptr) {
+    text.count = static_cast<uint16_t>(strlen_P(text.bytes));
+  } else {
+    return Status::OutOfRange;
   }
-  reply.skip(count);
+  if (offset > text.count) return Status::OutOfRange;
+  const uint16_t left = static_cast<uint16_t>(text.count - offset);
+  uint8_t count = static_cast<uint8_t>(reply.room() - textLength);
+  if (left < count) count = static_cast<uint8_t>(left);
+  uint8_t* bytes = reply.skip(static_cast<uint8_t>(textLength + count));
+  for (uint8_t index = 0; index < textLength; ++index) *bytes++ = body[index];
+  for (; count != 0; --count) *bytes++ = pgm_read_byte(text.bytes + offset++);
   return Status::Ok;
 }
 
@@ -183,11 +195,10 @@ void Link::sendWire() {
     uint8_t& flags = memory_.flags[state_.nextSlot];
     if (flags != (openFlag | changedFlag)) continue;
     flags = openFlag;
-    Writer body(memory_.out + bodyAt,
+    Writer body(memory_.out + sentBodyAt,
                 static_cast<uint8_t>(memory_.outSize - serial::frameOverhead));
     if (!served_.writeWire(service_, state_.nextSlot, body) || !body.isGood()) continue;
-    finishFrame(memory_.out, Kind::WireValue, 0, body.count());
-    startSending(memory_.out);
+    sendOut(Kind::WireValue, 0, body.count());
     return;
   }
 }

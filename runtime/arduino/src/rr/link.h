@@ -35,13 +35,17 @@ struct Served {
   bool (*writeWire)(void* service, uint8_t slot, Writer& body);
 };
 
+/// Bytes that stuffing adds to a frame in the memory of a link.
+constexpr uint8_t stuffing = 2;
+
 /// The memory of a link. The generator makes it, large enough for all members of the definition.
 struct Memory {
   uint8_t* request;  ///< a whole frame from the host
-  uint8_t* reply;    ///< a whole frame to the host
-  uint8_t* out;      ///< a whole frame that the host did not ask for
+  uint8_t* reply;    ///< a whole frame to the host, and `stuffing`
+  uint8_t* out;      ///< one that the host did not ask for, and `stuffing`
   uint8_t* queue;    ///< events, packets and callbacks that wait
   uint8_t* flags;    ///< of each wire and pipe
+  // Without the stuffing.
   uint8_t requestSize;
   uint8_t replySize;
   uint8_t outSize;
@@ -105,25 +109,18 @@ class Link {
   static constexpr uint8_t openFlag = 1;
   static constexpr uint8_t changedFlag = 2;
 
-  enum class Phase : uint8_t { Idle, Lead, Code, Data, Trail };
-
   void receive(uint8_t byte);
-  void append(uint8_t byte);
-  void forgetReceived();
   void handleFrame();
   void beginSession(const uint8_t* body);
   void handleRequest(serial::Kind kind);
   Status writeText(const uint8_t* body, Writer& reply);
   void answer(serial::Kind kind, uint8_t length);
-  void finishFrame(uint8_t* frame, serial::Kind kind, uint8_t sequence, uint8_t length);
-  void startSending(const uint8_t* frame);
+  void sendOut(serial::Kind kind, uint8_t sequence, uint8_t length);
+  void send();
   void chooseNext();
   void sendQueued();
   void sendWire();
   void removeQueued();
-  void send();
-  uint8_t nextByte();
-  void afterBlock();
 
   const Served& served_;
   const Memory& memory_;
@@ -134,26 +131,24 @@ class Link {
   /// All zero at first, which costs less than to name each.
   struct State {
     serial::Kind pendingKind;
-    uint16_t session;  ///< 0: none
-    uint8_t sequence;  ///< of the last request
+    uint16_t session;    ///< 0: none
+    uint8_t sequence;    ///< of the last request
+    const char* reason;  ///< in flash: why it was refused; may be null
     // Receiving.
     uint8_t received;  ///< bytes of the frame
     uint8_t block;     ///< bytes to come before the next zero
     bool isBroken;     ///< the frame is too long
     bool isStarted;    ///< something has come since the last zero
     // Sending.
-    Phase phase;
     bool isPaced;  ///< the stream says how much it takes
     bool hasReply;
     bool isAnswering;  ///< what is being sent is the reply
     bool isQueuedSent;
     uint8_t outSequence;
-    uint8_t run;
-    uint8_t sendLeft;
-    const uint8_t* sendAt;
-    uint16_t queueCount;  ///< bytes
-    uint16_t queuedAt;    ///< when the first of the queue was last sent, in milliseconds
-    uint16_t patience;    ///< until it is sent again
+    const uint8_t* sendAt;  ///< null: nothing is being sent
+    uint16_t queueCount;    ///< bytes
+    uint16_t queuedAt;      ///< when the first of the queue was last sent, in milliseconds
+    uint16_t patience;      ///< until it is sent again
     uint8_t nextSlot;
   };
   State state_;

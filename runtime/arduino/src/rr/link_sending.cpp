@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What goes out: replies, what waits in the queue, values of wires; stuffed while it is sent.
+// What goes out: replies, what waits in the queue, values of wires.
+#include "frame.h"
 #include "link.h"
 
 namespace rr {
@@ -15,21 +16,15 @@ constexpr uint8_t blindBytes = 8;
 
 }  // namespace
 
-void Link::finishFrame(uint8_t* frame, Kind kind, uint8_t sequence, uint8_t length) {
-  frame[0] = static_cast<uint8_t>(kind);
-  frame[1] = sequence;
-  frame[2] = length;
-  uint16_t crc = serial::crcStart;
-  const uint8_t end = static_cast<uint8_t>(length + 3);
-  for (uint8_t index = 0; index < end; ++index) crc = serial::crcOf(crc, frame[index]);
-  frame[end] = static_cast<uint8_t>(crc >> 8);
-  frame[end + 1] = static_cast<uint8_t>(crc & 0xFF);
+void Link::sendOut(Kind kind, uint8_t sequence, uint8_t length) {
+  finishFrame(memory_.out, kind, sequence, length);
+  state_.sendAt = memory_.out;
 }
 
 void Link::answer(Kind kind, uint8_t length) {
   finishFrame(memory_.reply, kind, state_.sequence, length);
   // An older answer that is on its way is cut off by the zero in front of this one.
-  if (state_.isAnswering) state_.phase = Phase::Idle;
+  if (state_.isAnswering) state_.sendAt = nullptr;
   state_.isAnswering = false;
   state_.hasReply = true;
 }
@@ -66,20 +61,18 @@ void Link::removeQueued() {
 
 void Link::sendQueued() {
   const uint8_t length = memory_.queue[0];
-  memcpy(memory_.out + 3, memory_.queue + entryOverhead, length);
+  memcpy(memory_.out + sentBodyAt, memory_.queue + entryOverhead, length);
   if (!state_.isQueuedSent) ++state_.outSequence;
   state_.isQueuedSent = true;
   state_.queuedAt = static_cast<uint16_t>(millis());
-  finishFrame(memory_.out, static_cast<Kind>(memory_.queue[1]), state_.outSequence, length);
-  startSending(memory_.out);
+  sendOut(static_cast<Kind>(memory_.queue[1]), state_.outSequence, length);
 }
 
 void Link::chooseNext() {
-  state_.isAnswering = false;
+  state_.isAnswering = state_.hasReply;
   if (state_.hasReply) {
     state_.hasReply = false;
-    state_.isAnswering = true;
-    startSending(memory_.reply);
+    state_.sendAt = memory_.reply;
     return;
   }
   if (state_.queueCount != 0) {
@@ -92,56 +85,19 @@ void Link::chooseNext() {
   sendWire();
 }
 
-void Link::startSending(const uint8_t* frame) {
-  state_.sendAt = frame;
-  state_.sendLeft = static_cast<uint8_t>(frame[2] + serial::frameOverhead);
-  state_.phase = Phase::Lead;
-}
-
 void Link::send() {
   int room = state_.isPaced ? stream_->availableForWrite() : blindBytes;
   while (room-- > 0) {
-    if (state_.phase == Phase::Idle) chooseNext();
-    if (state_.phase == Phase::Idle) return;
-    stream_->write(nextByte());
-  }
-}
-
-uint8_t Link::nextByte() {
-  switch (state_.phase) {
-    case Phase::Code:
-      state_.run = 0;
-      while (state_.run < state_.sendLeft && state_.sendAt[state_.run] != 0) ++state_.run;
-      state_.phase = Phase::Data;
-      {
-        const uint8_t code = static_cast<uint8_t>(state_.run + 1);
-        if (state_.run == 0) afterBlock();
-        return code;
-      }
-    case Phase::Data: {
-      const uint8_t byte = *state_.sendAt++;
-      --state_.sendLeft;
-      if (--state_.run == 0) afterBlock();
-      return byte;
+    uint8_t byte = 0;  // the one in front of a frame
+    if (state_.sendAt == nullptr) {
+      chooseNext();
+      if (state_.sendAt == nullptr) return;
+    } else {
+      byte = *state_.sendAt++;
+      if (byte == 0) state_.sendAt = nullptr;
     }
-    case Phase::Trail:
-      state_.phase = Phase::Idle;
-      return 0;
-    default:
-      state_.phase = Phase::Code;
-      return 0;
+    stream_->write(byte);
   }
-}
-
-void Link::afterBlock() {
-  if (state_.sendLeft == 0) {
-    state_.phase = Phase::Trail;
-    return;
-  }
-  // The zero itself is not sent.
-  ++state_.sendAt;
-  --state_.sendLeft;
-  state_.phase = Phase::Code;
 }
 
 }  // namespace rr

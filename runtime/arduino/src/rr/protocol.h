@@ -40,6 +40,8 @@ constexpr uint8_t frameOverhead = 5;
 constexpr uint8_t bodyLimit = 248;
 /// Each board takes and gives bodies of this length at least.
 constexpr uint8_t bodyMinimum = 32;
+/// The text that says why the last request was refused.
+constexpr uint8_t reasonText = 255;
 /// Codes from here on are the exceptions of the definition, in its order.
 constexpr uint8_t firstException = 192;
 
@@ -48,8 +50,11 @@ constexpr uint16_t crcStart = 0xFFFF;
 inline uint16_t crcOf(uint16_t crc, uint8_t byte) {
   uint8_t x = static_cast<uint8_t>((crc >> 8) ^ byte);
   x = static_cast<uint8_t>(x ^ (x >> 4));
-  return static_cast<uint16_t>((crc << 8) ^ (static_cast<uint16_t>(x) << 12) ^
-                               (static_cast<uint16_t>(x) << 5) ^ x);
+  // By bytes: a small processor shifts words bit by bit.
+  const uint8_t high =
+      static_cast<uint8_t>(static_cast<uint8_t>(crc) ^ static_cast<uint8_t>(x << 4) ^ (x >> 3));
+  const uint8_t low = static_cast<uint8_t>(x ^ static_cast<uint8_t>(x << 5));
+  return static_cast<uint16_t>(static_cast<uint16_t>(high) << 8 | low);
 }
 
 }  // namespace serial

@@ -3,6 +3,8 @@
 
 #include <stdint.h>
 
+class __FlashStringHelper;
+
 namespace rr {
 
 /// How a member ended. The numbers are those of the errors that clients get (07, section 14). An
@@ -31,5 +33,18 @@ enum class Status : uint8_t {
   ValueNotSet = 106,
   OperationAborted = 108,
 };
+
+/// Why the member that is being called refuses; null: it does not say. In flash.
+extern const char* refusalReason;
+
+/// What a member gives that refuses a request and says why, for people:
+///
+///   return rr::refuse(rr::Status::OutOfRange, F("a fade takes at most 60 seconds"));
+///
+/// Clients get the text, UTF-8, with the error. Outside of members it does nothing.
+inline Status refuse(Status status, const __FlashStringHelper* reason) {
+  refusalReason = reinterpret_cast<const char*>(reason);
+  return status;
+}
 
 }  // namespace rr

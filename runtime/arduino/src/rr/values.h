@@ -5,6 +5,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "status.h"
+
 /// Values as they lie in a frame: packed, lowest byte first, each of a bounded size.
 namespace rr {
 
@@ -65,21 +67,26 @@ struct Complex {
 /// all that follow are false.
 class Reader {
  public:
-  Reader(const uint8_t* bytes, uint8_t count) : at_(bytes), left_(count), isGood_(true) {}
+  Reader(const uint8_t* bytes, uint8_t count)
+      : at_(bytes), left_(count), isGood_(true), refusal_(Status::DataTypeMismatch) {}
 
   /// Whether everything was read, and no more is there.
   bool isComplete() const { return isGood_ && left_ == 0; }
-  uint8_t left() const { return left_; }
-  const uint8_t* at() const { return at_; }
+  /// What a request that is not complete is refused with.
+  Status refusal() const { return refusal_; }
   /// `size` bytes, lowest first, into a number of this machine.
   bool take(void* number, uint8_t size);
-  /// The length before a string or bounded array; false when it is more than `limit`.
+  /// The next `size` bytes, which are passed over. Null where there are fewer.
+  const uint8_t* skip(uint8_t size);
+  /// The length before a string or bounded array; false when it is more than `limit`, which is
+  /// refused with BufferLimitViolation.
   bool takeCount(uint8_t& count, uint8_t limit);
 
  private:
   const uint8_t* at_;
   uint8_t left_;
   bool isGood_;
+  Status refusal_;
 };
 
 /// Puts values into the body of a frame. Once one has not fitted, none does.
@@ -92,12 +99,8 @@ class Writer {
   uint8_t room() const { return static_cast<uint8_t>(room_ - count_); }
   bool put(const void* number, uint8_t size);
   bool putByte(uint8_t byte) { return put(&byte, 1); }
-  /// Where the next byte goes.
-  uint8_t* at() { return start_ + count_; }
-  /// That so many bytes were put at at(), for which there was room.
-  void skip(uint8_t count) { count_ = static_cast<uint8_t>(count_ + count); }
-  /// Takes back everything.
-  void clear();
+  /// Room for the next `size` bytes, to be filled in. Null where there is less.
+  uint8_t* skip(uint8_t size);
 
  private:
   uint8_t* start_;
@@ -132,15 +135,10 @@ inline bool write(Writer& writer, const float& value) { return writer.put(&value
 inline bool write(Writer& writer, bool value) { return writer.putByte(value ? 1 : 0); }
 bool write(Writer& writer, const double& value);
 
-/// The bits of a double of eight bytes. In halves: an AVR shifts 64 bits one by one.
-struct WideBits {
-  uint32_t low;
-  uint32_t high;
-};
-/// Those of a float, exactly, and back, rounded to the nearest, of two equally near ones to the
-/// even one.
-WideBits widen(uint32_t single);
-uint32_t narrow(WideBits wide);
+/// The eight bytes of a double, lowest first, of the four of a float: exactly, and back, rounded to
+/// the nearest, of two equally near ones to the even one.
+void widen(uint32_t single, uint8_t* wide);
+uint32_t narrow(const uint8_t* wide);
 
 template <class T>
 bool read(Reader& reader, Complex<T>& value) {
