@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// Errors as they travel (07, section 14): one class for each code, all of them RRError.
+
+/** Codes of errors. */
+export const ErrorCode = {
+  ConnectionError: 1,
+  ProtocolError: 2,
+  ServiceNotFound: 3,
+  ObjectNotFound: 4,
+  InvalidEndpoint: 5,
+  EndpointCommunicationFatalError: 6,
+  NodeNotFound: 7,
+  ServiceError: 8,
+  MemberNotFound: 9,
+  MemberFormatMismatch: 10,
+  DataTypeMismatch: 11,
+  DataTypeError: 12,
+  DataSerializationError: 13,
+  MessageEntryNotFound: 14,
+  MessageElementNotFound: 15,
+  UnknownError: 16,
+  InvalidOperation: 17,
+  InvalidArgument: 18,
+  OperationFailed: 19,
+  NullValue: 20,
+  InternalError: 21,
+  SystemResourcePermissionDenied: 22,
+  OutOfSystemResource: 23,
+  SystemResourceError: 24,
+  ResourceNotFound: 25,
+  IOError: 26,
+  BufferLimitViolation: 27,
+  ServiceDefinitionError: 28,
+  OutOfRange: 29,
+  KeyNotFound: 30,
+  InvalidConfiguration: 31,
+  InvalidState: 32,
+  RemoteError: 100,
+  RequestTimeout: 101,
+  ReadOnlyMember: 102,
+  WriteOnlyMember: 103,
+  NotImplementedError: 104,
+  MemberBusy: 105,
+  ValueNotSet: 106,
+  AbortOperation: 107,
+  OperationAborted: 108,
+  StopIteration: 109,
+  OperationTimeout: 110,
+  OperationCancelled: 111,
+  AuthenticationError: 150,
+  ObjectLockedError: 151,
+  PermissionDenied: 152,
+} as const;
+
+/** One of the codes of {@link ErrorCode}; a peer may send others. */
+export type ErrorCode = number;
+
+const nameByCode = new Map<number, string>(Object.entries(ErrorCode).map(([name, code]) => [code, name]));
+
+/** `RobotRaconteur.` and the name of a code; empty for 16, 100 and unknown codes, whose names are free. */
+export function errorName(code: ErrorCode): string {
+  if (code === ErrorCode.UnknownError || code === ErrorCode.RemoteError) return "";
+  const name = nameByCode.get(code);
+  return name === undefined ? "" : `RobotRaconteur.${name}`;
+}
+
+/** What an error may carry besides its code and message. */
+export interface ErrorDetails {
+  /** The name on the wire; needed only for codes 16, 100 and unknown ones. */
+  errorName?: string;
+  /** A code of the application, within the error. */
+  subname?: string;
+  /** A value of the application; a VarValue, or what one can be made of. */
+  parameter?: unknown;
+  cause?: unknown;
+}
+
+/** An error of the protocol, of a peer or of this node. */
+export class RRError extends Error {
+  readonly code: ErrorCode;
+  /** The name on the wire: `RobotRaconteur.` and the code's, or a qualified name of a definition. */
+  readonly errorName: string;
+  readonly subname: string;
+  readonly parameter: unknown;
+
+  constructor(code: ErrorCode, message: string, details: ErrorDetails = {}) {
+    super(message, details.cause === undefined ? undefined : { cause: details.cause });
+    this.code = code;
+    this.errorName = details.errorName ?? (errorName(code) || (code === ErrorCode.UnknownError ? "RobotRaconteur.UnknownError" : "RobotRaconteur.RemoteError"));
+    this.subname = details.subname ?? "";
+    this.parameter = details.parameter ?? null;
+    this.name = nameByCode.get(code) ?? "RRError";
+  }
+}
+
+/** A class of errors with one code or name. */
+export type ErrorClass = new (message: string, details?: ErrorDetails) => RRError;
+
+const classes = new Map<number, ErrorClass>();
+
+function classOf(code: ErrorCode): ErrorClass {
+  const made = class extends RRError {
+    constructor(message: string, details: ErrorDetails = {}) {
+      super(code, message, details);
+    }
+  };
+  Object.defineProperty(made, "name", { value: nameByCode.get(code) });
+  classes.set(code, made);
+  return made;
+}
+
+/** The connection was lost or could not be made. */
+export const ConnectionError = classOf(ErrorCode.ConnectionError);
+/** A message does not follow the protocol. */
+export const ProtocolError = classOf(ErrorCode.ProtocolError);
+/** The node has no such service. */
+export const ServiceNotFound = classOf(ErrorCode.ServiceNotFound);
+/** The service has no such object. */
+export const ObjectNotFound = classOf(ErrorCode.ObjectNotFound);
+/** The session is unknown to the other node. */
+export const InvalidEndpoint = classOf(ErrorCode.InvalidEndpoint);
+/** Another node than the wanted one answers. */
+export const NodeNotFound = classOf(ErrorCode.NodeNotFound);
+/** A service, or a type of one, is not known. */
+export const ServiceError = classOf(ErrorCode.ServiceError);
+/** The object has no such member. */
+export const MemberNotFound = classOf(ErrorCode.MemberNotFound);
+/** A value is of another type than the member. */
+export const DataTypeMismatch = classOf(ErrorCode.DataTypeMismatch);
+/** A value does not fit its type. */
+export const DataTypeError = classOf(ErrorCode.DataTypeError);
+/** A field, parameter or part of a value is missing. */
+export const MessageElementNotFound = classOf(ErrorCode.MessageElementNotFound);
+/** The operation is not possible now, or not at all. */
+export const InvalidOperation = classOf(ErrorCode.InvalidOperation);
+/** An argument has no meaning. */
+export const InvalidArgument = classOf(ErrorCode.InvalidArgument);
+/** The operation failed. */
+export const OperationFailed = classOf(ErrorCode.OperationFailed);
+/** A null where none may be. */
+export const NullValue = classOf(ErrorCode.NullValue);
+/** The other side has no room for it. */
+export const OutOfSystemResource = classOf(ErrorCode.OutOfSystemResource);
+/** A resource of the other side is not there. */
+export const ResourceNotFound = classOf(ErrorCode.ResourceNotFound);
+/** Input or output failed. */
+export const IOError = classOf(ErrorCode.IOError);
+/** A queue is full. */
+export const BufferLimitViolation = classOf(ErrorCode.BufferLimitViolation);
+/** A service definition cannot be read. */
+export const ServiceDefinitionError = classOf(ErrorCode.ServiceDefinitionError);
+/** An index or number is out of its range. */
+export const OutOfRange = classOf(ErrorCode.OutOfRange);
+/** A key is not there. */
+export const KeyNotFound = classOf(ErrorCode.KeyNotFound);
+/** No answer came in time. */
+export const RequestTimeout = classOf(ErrorCode.RequestTimeout);
+/** The member can only be read. */
+export const ReadOnlyMember = classOf(ErrorCode.ReadOnlyMember);
+/** The member can only be written. */
+export const WriteOnlyMember = classOf(ErrorCode.WriteOnlyMember);
+/** The service does not implement the member. */
+export const NotImplementedError = classOf(ErrorCode.NotImplementedError);
+/** The member is in use. */
+export const MemberBusy = classOf(ErrorCode.MemberBusy);
+/** A wire has no value, or an old one only. */
+export const ValueNotSet = classOf(ErrorCode.ValueNotSet);
+/** Asks a generator to abort. */
+export const AbortOperation = classOf(ErrorCode.AbortOperation);
+/** A generator was aborted. */
+export const OperationAborted = classOf(ErrorCode.OperationAborted);
+/** A generator has no more values. */
+export const StopIteration = classOf(ErrorCode.StopIteration);
+/** An operation took too long. */
+export const OperationTimeout = classOf(ErrorCode.OperationTimeout);
+/** An operation was cancelled. */
+export const OperationCancelled = classOf(ErrorCode.OperationCancelled);
+/** The user is not known, or has to log in. */
+export const AuthenticationError = classOf(ErrorCode.AuthenticationError);
+/** Somebody else has locked the object. */
+export const ObjectLockedError = classOf(ErrorCode.ObjectLockedError);
+/** The user has not the right to do this. */
+export const PermissionDenied = classOf(ErrorCode.PermissionDenied);
+
+/** An error of this code, of the code's class where it has one. */
+export function makeError(code: ErrorCode, message: string, details: ErrorDetails = {}): RRError {
+  const known = classes.get(code);
+  return known ? new known(message, details) : new RRError(code, message, details);
+}
