@@ -122,7 +122,7 @@ Stream Channel::connect(const Scenario& scenario, const std::string& host, int p
     stream.put(recorded_web_socket_client(scenario.web_socket), handshake_limit);
   }
   if (name_ == "wss") {
-    stream.put(tls_of(scenario.client.id).make_web_client(host), handshake_limit);
+    stream.put(tls_of(scenario.client.id).make_web_client(host, {}), handshake_limit);
   }
   if (has_web_socket()) {
     const std::string url = "rr+ws://" + host + ":" + std::to_string(port) + "/?service=any";

@@ -254,7 +254,35 @@ class Panel {
     return ::conformance::board::Cold;
   }
   rr::Status refuse() {
-    return rr::Status::OutOfRange;
+    return rr::refuse(rr::Status::OutOfRange, F("never"));
+  }
+  rr::Status callDoubledLater() {
+    isDoubledWanted_ = true;
+    return rr::Status::Ok;
+  }
+  void answeredDoubled(rr::Status status, double result) {
+    doubled_ = status == rr::Status::Ok ? result : -static_cast<double>(status);
+    hasDoubled_ = true;
+  }
+  rr::Status callSpellLater() {
+    isSpellWanted_ = true;
+    return rr::Status::Ok;
+  }
+  void answeredSpell(rr::Status status, const rr::Text<8>& result) {
+    if (status == rr::Status::Ok) {
+      spelled_ = result;
+    } else {
+      spelled_ = "refused";
+    }
+    hasSpelled_ = true;
+  }
+  rr::Status callCheckLater() {
+    isCheckWanted_ = true;
+    return rr::Status::Ok;
+  }
+  void answeredCheck(rr::Status status) {
+    checked_ = status == ::conformance::board::Jammed ? Mode::broken : Mode::idle;
+    hasChecked_ = true;
   }
   rr::Status fireMovedLater() {
     moves_ = 2;
@@ -283,6 +311,7 @@ class Panel {
     return rr::Status::Ok;
   }
   rr::Status setTarget(double value) {
+    if (value > 1e6) return rr::refuse(rr::Status::OutOfRange, F("at most a million"));
     target_ = value;
     return rr::Status::Ok;
   }
@@ -302,6 +331,12 @@ class Panel {
     if (packets_ == 1 && sender.sendSamples(65535)) packets_ = 0;
     if (isForceWanted_) sender.forceChanged();
     isForceWanted_ = false;
+    if (isDoubledWanted_ && sender.askDoubled(21.25)) isDoubledWanted_ = false;
+    if (hasDoubled_ && sender.fireAnsweredDoubled(doubled_)) hasDoubled_ = false;
+    if (isSpellWanted_ && sender.askSpell("a b c")) isSpellWanted_ = false;
+    if (hasSpelled_ && sender.fireAnsweredSpell(spelled_)) hasSpelled_ = false;
+    if (isCheckWanted_ && sender.askCheck(Mode::moving)) isCheckWanted_ = false;
+    if (hasChecked_ && sender.fireAnsweredCheck(checked_)) hasChecked_ = false;
   }
 
  private:
@@ -332,6 +367,15 @@ class Panel {
   double target_ = double();
   /// What loop() has to say.
   bool isForceWanted_ = false;
+  bool isDoubledWanted_ = false;
+  bool isSpellWanted_ = false;
+  bool isCheckWanted_ = false;
+  bool hasDoubled_ = false;
+  bool hasSpelled_ = false;
+  bool hasChecked_ = false;
+  double doubled_ = 0;
+  rr::Text<8> spelled_;
+  Mode checked_ = Mode::idle;
   uint8_t moves_ = 0;
   uint8_t packets_ = 0;
   uint32_t received_ = 0;

@@ -11,12 +11,14 @@
 #include <rr/wires.hpp>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <typeinfo>
 #include <utility>
 
 #include "conformance/runners/cpp/scripted_generator.hpp"
 #include "conformance/runners/shared/adapters.hpp"
+#include "conformance/runners/shared/arguments.hpp"
 #include "conformance/runners/shared/object_script.hpp"
 #include "conformance/runners/shared/outcomes.hpp"
 
@@ -101,13 +103,16 @@ class Script final : public ObjectScript {
              std::index_sequence<Places...>) const {
     (skeleton.*event)(made_from_json<std::decay_t<Parameters>>(adapters_, arguments.at(Places))...);
   }
-  template <class S, class Base, class R, class... Parameters, std::size_t... Places>
+  template <class S, class Base, class R, class... Parameters>
   Json call_back(const S& skeleton, R (Base::*callback)(std::uint32_t, Parameters...) const,
-                 const Json& arguments, std::index_sequence<Places...>) const {
-    const std::uint32_t client = ServiceContext::current_client();
+                 const Json& arguments) const {
+    const std::uint32_t asked = client();
     const auto call = [&] {
-      return (skeleton.*callback)(
-          client, made_from_json<std::decay_t<Parameters>>(adapters_, arguments.at(Places))...);
+      return std::apply(
+          [&](const auto&... values) -> R {
+            return (skeleton.*callback)(asked, values..., CallOptions());
+          },
+          read_arguments<Parameters...>(adapters_, arguments));
     };
     if constexpr (std::is_void_v<R>) {
       call();
@@ -191,8 +196,7 @@ void Script::add_callback(const std::string& name, const S& skeleton,
                           R (Base::*callback)(std::uint32_t, Parameters...) const) {
   add_action("call_" + name, [this, name, &skeleton, callback](std::string_view result_type) {
     try {
-      return call_back(skeleton, callback, told("callbacks", name),
-                       std::index_sequence_for<Parameters...>());
+      return call_back(skeleton, callback, told("callbacks", name));
     } catch (const Error& error) {
       if (result_type == typeid(R).name()) throw;
       return Json(error.what());

@@ -38,6 +38,8 @@ internal static class NodeSettings
             ClientWithoutStringTable = !hasStringTable,
             ServerStringTable = hasStringTable,
             ServerWithout = without,
+            // What recordings throw that is no error of the protocol is told as the reference does.
+            EnableDetailedErrors = true,
             HeartbeatPeriod = request["heartbeat_ms"] is { } period ? TimeSpan.FromMilliseconds(period.GetValue<int>()) : null,
             MemoryTransferLimit = Json.Part(request["node_options"], "memory_max_transfer")?.GetValue<int>() ?? 0,
         };

@@ -172,7 +172,7 @@ void DynamicScript::add_callback(const MemberDescription& member) {
     try {
       return json_of_value(
           definitions_, member.type,
-          object().call_back(member.name, ServiceContext::current_client(),
+          object().call_back(member.name, client(),
                              arguments_of(member.name, told("callbacks", member.name))));
     } catch (const Error& error) {
       if (result_type == member.type.text()) throw;

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "conformance/runners/shared/adapters.hpp"
+#include "conformance/runners/shared/arguments.hpp"
 #include "conformance/runners/shared/planned.hpp"
 
 namespace rr::conformance {
@@ -64,33 +65,34 @@ class Caller {
   }
 
   // What the generated code calls, with a pointer to the member of the stub or of what that
-  // implements.
+  // implements. The last parameter of what waits for an answer are the options of the call; those
+  // of the thread apply here.
   template <class S, class Base, class T>
-  Json get_by(S& stub, T (Base::*getter)()) {
-    return to_json<T>(adapters_, (stub.*getter)());
+  Json get_by(S& stub, T (Base::*getter)(const CallOptions&)) {
+    return to_json<T>(adapters_, (stub.*getter)({}));
   }
   template <class S, class Base, class T>
-  void set_by(S& stub, void (Base::*setter)(T), const Json& value) {
-    (stub.*setter)(made_from_json<std::decay_t<T>>(adapters_, value));
+  void set_by(S& stub, void (Base::*setter)(T, const CallOptions&), const Json& value) {
+    (stub.*setter)(made_from_json<std::decay_t<T>>(adapters_, value), {});
   }
   template <class S, class Base, class R, class... Parameters>
   Json call_by(S& stub, R (Base::*function)(Parameters...), const Json& arguments) {
-    constexpr std::index_sequence_for<Parameters...> places;
     if constexpr (std::is_void_v<R>) {
-      called(stub, function, arguments, places);
+      called(stub, function, arguments);
       return nullptr;
     } else {
-      return to_json<R>(adapters_, called(stub, function, arguments, places));
+      return to_json<R>(adapters_, called(stub, function, arguments));
     }
   }
   template <class S, class Base, class T>
-  Held find_by(S& stub, std::shared_ptr<T> (Base::*getter)(), const Json&, std::string_view type) {
-    return held((stub.*getter)(), type);
+  Held find_by(S& stub, std::shared_ptr<T> (Base::*getter)(const CallOptions&), const Json&,
+               std::string_view type) {
+    return held((stub.*getter)({}), type);
   }
   template <class S, class Base, class T, class Index>
-  Held find_by(S& stub, std::shared_ptr<T> (Base::*getter)(Index), const Json& index,
-               std::string_view type) {
-    return held((stub.*getter)(index.get<std::decay_t<Index>>()), type);
+  Held find_by(S& stub, std::shared_ptr<T> (Base::*getter)(Index, const CallOptions&),
+               const Json& index, std::string_view type) {
+    return held((stub.*getter)(index.get<std::decay_t<Index>>(), {}), type);
   }
   template <class S, class Base, class... Parameters>
   Subscription listen_by(S& stub, Event<Parameters...> (Base::*event)(),
@@ -117,8 +119,7 @@ class Caller {
   std::unique_ptr<PlannedGenerator> generate_by(S& stub,
                                                 Generator<R, P> (Base::*function)(Parameters...),
                                                 const Json& arguments) {
-    return std::make_unique<TypedGenerator<R, P>>(
-        adapters_, called(stub, function, arguments, std::index_sequence_for<Parameters...>()));
+    return std::make_unique<TypedGenerator<R, P>>(adapters_, called(stub, function, arguments));
   }
   template <class S, class Base, class R, class... Parameters>
   void callback_by(S& stub, Callback<R(Parameters...)> (Base::*member)(),
@@ -131,14 +132,11 @@ class Caller {
   }
 
  private:
-  template <class S, class Base, class R, class... Parameters, std::size_t... Places>
-  R called(S& stub, R (Base::*function)(Parameters...), const Json& arguments,
-           std::index_sequence<Places...>) {
-    if (arguments.size() != sizeof...(Parameters))
-      throw std::runtime_error("another parameter count");
-    std::tuple<std::decay_t<Parameters>...> values{
-        made_from_json<std::decay_t<Parameters>>(adapters_, arguments.at(Places))...};
-    return (stub.*function)(std::get<Places>(values)...);
+  template <class S, class Base, class R, class... Parameters>
+  R called(S& stub, R (Base::*function)(Parameters...), const Json& arguments) {
+    return std::apply(
+        [&](const auto&... values) -> R { return (stub.*function)(values..., CallOptions()); },
+        read_arguments<Parameters...>(adapters_, arguments));
   }
   // A varobject has no declared type: it is held as what it is.
   static Held held(std::shared_ptr<Stub> stub, std::string_view type) {

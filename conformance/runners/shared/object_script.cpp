@@ -12,6 +12,9 @@ namespace rr::conformance {
 namespace {
 
 constexpr std::string_view later = "_later";
+
+/// Whose call something was put off by, on the thread that does it.
+thread_local std::uint32_t put_off_client = 0;
 /// An answer is long gone then.
 constexpr std::chrono::milliseconds delay{50};
 
@@ -54,7 +57,14 @@ Json ObjectScript::outcome(std::string_view function, const Json& parameters,
   if (function.ends_with(later)) {
     const auto put_off = actions_.find(function.substr(0, function.size() - later.size()));
     if (put_off != actions_.end()) {
-      do_later(std::string(function), [&act = put_off->second] { (void)act({}); });
+      const auto fired = actions_.find(
+          std::string("fire_answered_").append(put_off->first, put_off->first.find('_') + 1));
+      do_later(std::string(function),
+               [this, client = ServiceContext::current_client(), &act = put_off->second, fired] {
+                 put_off_client = client;
+                 (void)act({});
+                 if (fired != actions_.end()) (void)fired->second({});
+               });
       return nullptr;
     }
   }
@@ -81,6 +91,10 @@ void ObjectScript::do_later(std::string name, std::function<void()> what) {
       std::cerr << name + ": something else than an exception was thrown\n";
     }
   });
+}
+
+std::uint32_t ObjectScript::client() {
+  return put_off_client != 0 ? put_off_client : ServiceContext::current_client();
 }
 
 // What is put off may have kept the object, and be the last that did.

@@ -26,7 +26,7 @@ namespace rr::conformance {
 /// made of. Used by any thread. Functions that drive other members are known by their names:
 /// `fire_<event>`, `send_<pipe>`, `close_<pipe>`, `received_count`, `send_<wire>`, `close_<wire>`,
 /// `last_<wire>`, `call_<callback>`, `release_child`; with `_later` behind it a function does so
-/// when it has been answered.
+/// when it has been answered. Behind `call_X_later` comes the event `answered_X`, if there is one.
 class ObjectScript {
  public:
   explicit ObjectScript(Json node) : node_(std::move(node)) {}
@@ -73,6 +73,8 @@ class ObjectScript {
   /// Does it once what happens now has been answered; nobody is left to be told what it throws, so
   /// the error output is, by this name.
   void do_later(std::string name, std::function<void()> what);
+  /// Who is served: whose call this is, or put this off.
+  [[nodiscard]] static std::uint32_t client();
   /// Waits for what has been put off. First in the destructor of what that uses.
   void finish();
 
