@@ -30,7 +30,11 @@ refused() {
 robdef=$bin/robdef
 client=$bin/encrypted_client
 show "$robdef" ca init ours
-for node in $lamp $friend $former; do show "$robdef" ca issue "$node" --ca ours; done
+for node in $lamp $former; do show "$robdef" ca issue "$node" --ca ours; done
+# The friend makes its key by itself, and asks for a certificate.
+show "$robdef" ca request $friend --output friend
+show "$robdef" ca sign friend/$friend.csr --ca ours
+cat ours/nodes/$friend.cert.pem friend/$friend.key >friend/$friend.pem
 show "$robdef" ca init theirs
 show "$robdef" ca issue $stranger --ca theirs
 
@@ -45,26 +49,30 @@ done
 url=$(sed -n 's/^ready: //p' service)
 echo "ready: $url"
 
-show "$client" "$url" ours/ca.pem ours/revoked.pem ours/nodes/$friend.pem
+show "$client" "$url" ours/ca.pem ours/revoked.pem friend/$friend.pem
 show "$client" "$url" ours/ca.pem ours/revoked.pem ours/nodes/$former.pem
 
 refused 'an authority that this node does not trust' \
-  "$client" "$url" theirs/ca.pem theirs/revoked.pem ours/nodes/$friend.pem
+  "$client" "$url" theirs/ca.pem theirs/revoked.pem friend/$friend.pem
 refused "does not trust the authority of this node's certificate" \
   "$client" "$url" ours/ca.pem ours/revoked.pem theirs/nodes/$stranger.pem
 refused 'wants a certificate of this node, which has none' \
   "$client" "$url" ours/ca.pem ours/revoked.pem
 refused 'Node not found' \
-  "$client" "${url/$lamp/$friend}" ours/ca.pem ours/revoked.pem ours/nodes/$friend.pem
+  "$client" "${url/$lamp/$friend}" ours/ca.pem ours/revoked.pem friend/$friend.pem
 refused 'this node serves encrypted connections only' \
-  "$client" "${url/rrs+tcp/rr+tcp}" ours/ca.pem ours/revoked.pem ours/nodes/$friend.pem
+  "$client" "${url/rrs+tcp/rr+tcp}" ours/ca.pem ours/revoked.pem friend/$friend.pem
 
-sleep 0.1  # the time of the list of revoked certificates is to be another
 show "$robdef" ca revoke $former --ca ours
 refused "this node's certificate has been revoked" \
   "$client" "$url" ours/ca.pem ours/revoked.pem ours/nodes/$former.pem
 
-show "$client" "$url" ours/ca.pem ours/revoked.pem ours/nodes/$friend.pem
+show "$client" "$url" ours/ca.pem ours/revoked.pem friend/$friend.pem
+
+# The service gets another certificate while it runs; the one before is revoked.
+show "$robdef" ca issue $lamp --renew --new-key --revoke-old --ca ours
+show "$client" "$url" ours/ca.pem ours/revoked.pem friend/$friend.pem
+show "$robdef" ca list --ca ours
 kill "$service"
 wait "$service"
 service=

@@ -2,10 +2,12 @@
 // Serves a lamp by TLS only, to clients whose certificates are of the same authority.
 #include <signal.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <iostream>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "experimental/lamp.hpp"
@@ -14,14 +16,17 @@
 namespace {
 
 constexpr const char* usage =
-    "usage: encrypted_service CERTIFICATE AUTHORITY REVOKED\n"
+    "usage: encrypted_service CERTIFICATE AUTHORITY REVOKED [KEY [ADDRESS PORT]]\n"
     "Serves a lamp until it is interrupted. CERTIFICATE (nodes/ID.pem), AUTHORITY (ca.pem) and\n"
-    "REVOKED (revoked.pem) are files that `robdef ca` makes.\n";
+    "REVOKED (revoked.pem) are files that `robdef ca` makes. KEY (ID.key) is that of a "
+    "certificate\n"
+    "which the node has requested, or empty. Without ADDRESS and PORT it listens on the loopback\n"
+    "interface, at a port that is free.\n";
 
 }  // namespace
 
 int main(int argc, char** argv) try {
-  if (argc != 4) {
+  if (argc != 4 && argc != 5 && argc != 7) {
     std::fputs(usage, stderr);
     return 2;
   }
@@ -35,6 +40,7 @@ int main(int argc, char** argv) try {
   rr::NodeOptions options;
   options.name = "lamp.host";
   options.tls = {.certificate_file = argv[1],
+                 .key_file = argc > 4 ? argv[4] : "",
                  .authority_files = {argv[2]},
                  .revocation_files = {argv[3]},
                  .is_required = true,
@@ -45,8 +51,10 @@ int main(int argc, char** argv) try {
   rr::Node node(options);
   const auto service =
       node.register_service("lamp", std::make_shared<experimental::lamp::LampDefault>());
-  const int port = node.listen_tcp(0, "127.0.0.1");
-  std::printf("ready: rrs+tcp://127.0.0.1:%d/?nodeid=%s&service=lamp\n", port,
+  const std::string address = argc > 5 ? argv[5] : "127.0.0.1";
+  const auto wanted = static_cast<std::uint16_t>(argc > 6 ? std::stoul(argv[6]) : 0);
+  const int port = node.listen_tcp(wanted, address);
+  std::printf("ready: rrs+tcp://%s:%d/?nodeid=%s&service=lamp\n", address.c_str(), port,
               node.id().text().c_str());
   std::fflush(stdout);
   int signal = 0;

@@ -51,4 +51,9 @@ void announce(const std::string& url) {
   std::fflush(stdout);
 }
 
+void say_where(int port, bool is_everywhere) {
+  std::fprintf(stderr, "listens at port %d of %s\n", port,
+               is_everywhere ? "all interfaces" : "this machine; --everywhere opens it to others");
+}
+
 }  // namespace serving

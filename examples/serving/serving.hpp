@@ -33,4 +33,7 @@ std::optional<int> read_seconds(std::string_view word);
 /// Prints `ready: URL`, which scripts wait for.
 void announce(const std::string& url);
 
+/// Says on standard error who can connect to a port, and how to change that: `--everywhere`.
+void say_where(int port, bool is_everywhere);
+
 }  // namespace serving

@@ -171,25 +171,31 @@ class Host final : public host::CameraHostDefault {
 };
 
 constexpr const char* usage =
-    "usage: smart_room_service [--port N] [--seconds N]\n"
+    "usage: smart_room_service [--port N] [--seconds N] [--everywhere]\n"
     "Serves the simulated smart room until it is interrupted, or for so many seconds.\n"
-    "  --port N      TCP port, 0 for any free one (default 6257)\n";
+    "  --port N      TCP port, 0 for any free one (default 6257)\n"
+    "  --everywhere  for clients of other machines, too; without it of this one only\n";
 
 struct Options {
   int port = 6257;
   int seconds = 0;
+  bool is_everywhere = false;
 };
 
 /// False when the words are no options.
 bool read(int argc, char** argv, Options& options) {
-  for (int i = 1; i < argc; i += 2) {
+  for (int i = 1; i < argc; ++i) {
     const std::string_view name = argv[i];
-    if (i + 1 == argc) return false;
+    if (name == "--everywhere") {
+      options.is_everywhere = true;
+      continue;
+    }
+    if (++i == argc) return false;
     int* const value = name == "--port"      ? &options.port
                        : name == "--seconds" ? &options.seconds
                                              : nullptr;
-    const char* const end = argv[i + 1] + std::strlen(argv[i + 1]);
-    if (value == nullptr || std::from_chars(argv[i + 1], end, *value).ptr != end || *value < 0) {
+    const char* const end = argv[i] + std::strlen(argv[i]);
+    if (value == nullptr || std::from_chars(argv[i], end, *value).ptr != end || *value < 0) {
       return false;
     }
   }
@@ -208,7 +214,9 @@ int main(int argc, char** argv) try {
   rr::Node node({.name = "RobotCameraHost"});
   const auto service =
       node.register_service("CameraHost", std::make_shared<Host>(std::make_shared<Room>()));
-  const auto port = node.listen("rr+tcp://0.0.0.0:" + std::to_string(options.port));
+  const auto port = node.listen_tcp(static_cast<std::uint16_t>(options.port),
+                                    options.is_everywhere ? "*" : "localhost");
+  serving::say_where(port, options.is_everywhere);
   serving::announce("tcp://localhost:" + std::to_string(port) + "/RobotCameraHost/CameraHost");
   stay.wait_for_end();
   return 0;

@@ -3,6 +3,7 @@
 // general interface) and cameras.
 using System.Collections.Generic;
 using System.Linq;
+using System.Threading;
 using System.Threading.Tasks;
 using Robdef.Runtime;
 using RobotCameraHostInterface;
@@ -15,16 +16,16 @@ namespace SmartRoom;
 /// </summary>
 internal sealed class Lights(Room room) : RobotDeviceDefault
 {
-    public override ValueTask<string> GetNameAsync() => new("RGB lights");
+    public override ValueTask<string> GetNameAsync(CancellationToken cancellationToken) => new("RGB lights");
 
-    public override ValueTask<double[]> GetPropertyAsync(string name) => name switch
+    public override ValueTask<double[]> GetPropertyAsync(string name, CancellationToken cancellationToken) => name switch
     {
         "GetRGB" => new(Host.Numbers(room.Lights)),
         "Positions" => new(Host.Numbers(Room.LightPlaces)),
         _ => throw Host.Refuse($"the lights have no property `{name}` to get"),
     };
 
-    public override ValueTask<int> SetPropertyAsync(string name, double[] val)
+    public override ValueTask<int> SetPropertyAsync(string name, double[] val, CancellationToken cancellationToken)
     {
         if (name != "SetRGBRange")
         {
@@ -59,32 +60,32 @@ internal sealed class Lights(Room room) : RobotDeviceDefault
 /// </summary>
 internal sealed class Sensors(Room room) : RobotDeviceDefault
 {
-    public override ValueTask<string> GetNameAsync() => new("RGB sensors");
+    public override ValueTask<string> GetNameAsync(CancellationToken cancellationToken) => new("RGB sensors");
 
-    public override ValueTask<double[]> GetPropertyAsync(string name) => name switch
+    public override ValueTask<double[]> GetPropertyAsync(string name, CancellationToken cancellationToken) => name switch
     {
         "ReadRGB" => new(Host.Numbers(Room.SensorPlaces.Select((_, index) => room.Sensor(index)))),
         "Positions" => new(Host.Numbers(Room.SensorPlaces)),
         _ => throw Host.Refuse($"the sensors have no property `{name}` to get"),
     };
 
-    public override ValueTask<int> SetPropertyAsync(string name, double[] val) =>
+    public override ValueTask<int> SetPropertyAsync(string name, double[] val, CancellationToken cancellationToken) =>
         throw Host.Refuse($"the sensors have no property `{name}` to set");
 }
 
 /// <summary>A ceiling camera. Property: `Position`, in metres.</summary>
 internal sealed class Camera(Room room, int index) : RobotCameraDefault
 {
-    public override ValueTask<string> GetNameAsync() => new($"ceiling camera {index}");
+    public override ValueTask<string> GetNameAsync(CancellationToken cancellationToken) => new($"ceiling camera {index}");
 
-    public override ValueTask<double[]> GetPropertyAsync(string name) => name == "Position"
+    public override ValueTask<double[]> GetPropertyAsync(string name, CancellationToken cancellationToken) => name == "Position"
         ? new(Host.Numbers([Room.CameraPlaces[index]]))
         : throw Host.Refuse($"a camera has no property `{name}` to get");
 
-    public override ValueTask<int> SetPropertyAsync(string name, double[] val) =>
+    public override ValueTask<int> SetPropertyAsync(string name, double[] val, CancellationToken cancellationToken) =>
         throw Host.Refuse($"a camera has no property `{name}` to set");
 
-    public override ValueTask<CameraBitmap?> GetCurrentStreamFrameCameraBitmapAsync() =>
+    public override ValueTask<CameraBitmap?> GetCurrentStreamFrameCameraBitmapAsync(CancellationToken cancellationToken) =>
         new(new CameraBitmap { Width = Room.PictureWidth, Height = Room.PictureHeight, Data = room.Picture(index) });
 }
 
@@ -99,19 +100,19 @@ internal sealed class Host : CameraHostDefault
         _cameras = [.. Room.CameraPlaces.Select((_, index) => new Camera(room, index))];
     }
 
-    public override ValueTask<Skeleton> GetRobdeviceAsync(int index) => new(Find(_devices, index, "device"));
+    public override ValueTask<Skeleton> GetRobdeviceAsync(int index, CancellationToken cancellationToken) => new(Find(_devices, index, "device"));
 
-    public override ValueTask<Skeleton> GetRobcameraAsync(int index) => new(Find(_cameras, index, "camera"));
+    public override ValueTask<Skeleton> GetRobcameraAsync(int index, CancellationToken cancellationToken) => new(Find(_cameras, index, "camera"));
 
-    public override ValueTask<int> GetRobotDeviceCountAsync() => new(_devices.Length);
+    public override ValueTask<int> GetRobotDeviceCountAsync(CancellationToken cancellationToken) => new(_devices.Length);
 
-    public override ValueTask<int> GetRobotCameraCountAsync() => new(_cameras.Length);
+    public override ValueTask<int> GetRobotCameraCountAsync(CancellationToken cancellationToken) => new(_cameras.Length);
 
-    public override ValueTask SetRobotDeviceCountAsync(int value) => throw Refuse("the number of devices is fixed");
+    public override ValueTask SetRobotDeviceCountAsync(int value, CancellationToken cancellationToken) => throw Refuse("the number of devices is fixed");
 
-    public override ValueTask SetRobotCameraCountAsync(int value) => throw Refuse("the number of cameras is fixed");
+    public override ValueTask SetRobotCameraCountAsync(int value, CancellationToken cancellationToken) => throw Refuse("the number of cameras is fixed");
 
-    internal static RobdefException Refuse(string message) => new(ErrorCode.InvalidArgument, message);
+    internal static RobdefException Refuse(string message) => new InvalidArgumentException(message);
 
     internal static double[] Numbers(IEnumerable<Color> colors) =>
         [.. colors.SelectMany(color => new[] { color.Red, color.Green, color.Blue })];

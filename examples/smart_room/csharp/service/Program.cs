@@ -10,15 +10,18 @@ namespace SmartRoom;
 internal static class Program
 {
     private const string Usage = """
-        usage: smart_room_service [--port N] [--seconds N]
+        usage: smart_room_service [--port N] [--seconds N] [--everywhere]
         Serves the simulated smart room until it is interrupted, or for so many seconds.
           --port N      TCP port, 0 for any free one (default 6257)
+          --everywhere  for clients of other machines, too; without it of this one only
         """;
 
     private static int Main(string[] arguments)
     {
         int port = 6257;
         int seconds = 0;
+        bool isEverywhere = Array.IndexOf(arguments, "--everywhere") >= 0;
+        arguments = Array.FindAll(arguments, argument => argument != "--everywhere");
         for (int i = 0; i < arguments.Length; i += 2)
         {
             if (i + 1 == arguments.Length
@@ -32,7 +35,7 @@ internal static class Program
         }
         try
         {
-            Serve(port, seconds > 0 ? TimeSpan.FromSeconds(seconds) : Timeout.InfiniteTimeSpan);
+            Serve(port, isEverywhere, seconds > 0 ? TimeSpan.FromSeconds(seconds) : Timeout.InfiniteTimeSpan);
             return 0;
         }
         catch (RobdefException error)
@@ -42,7 +45,7 @@ internal static class Program
         }
     }
 
-    private static void Serve(int port, TimeSpan time)
+    private static void Serve(int port, bool isEverywhere, TimeSpan time)
     {
         using var stop = new ManualResetEventSlim();
         void Stop(PosixSignalContext signal)
@@ -55,7 +58,9 @@ internal static class Program
 
         using var node = new Node(new NodeOptions { Name = "RobotCameraHost" });
         using Service service = node.Register("CameraHost", new Host(new Room()));
-        port = node.Listen($"rr+tcp://0.0.0.0:{port}");
+        port = node.Listen($"rr+tcp://{(isEverywhere ? "*" : "localhost")}:{port}");
+        Console.Error.WriteLine($"listens at port {port} of "
+            + (isEverywhere ? "all interfaces" : "this machine; --everywhere opens it to others"));
         Console.WriteLine($"ready: tcp://localhost:{port}/RobotCameraHost/CameraHost");
         stop.Wait(time);
     }
