@@ -29,11 +29,15 @@ packages() {
   done <"$top/tools/packages"
 }
 
-# missing_packages LEVEL: those that are not installed.
+# missing_packages LEVEL: those that are not installed. What another one provides is there: Node's own
+# package has npm in it, and conflicts with Debian's.
 missing_packages() {
-  local name
+  local name provided
+  provided=$(dpkg-query -W -f '${db:Status-Status} ${Provides}\n' | sed -n 's/^installed \(.\)/, \1/p' |
+    sed 's/ ([^)]*)//g; s/$/,/')
   for name in $(packages "$1"); do
-    [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || say "$name"
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] && continue
+    grep -qF ", $name," <<<"$provided" || say "$name"
   done
 }
 
@@ -49,6 +53,22 @@ install_packages() {
   with_progress apt-update apt-get update -q
   # shellcheck disable=SC2086  # a list of names
   with_progress apt-install apt-get install -q -y --no-install-recommends $missing
+}
+
+# Headers of a later Boost than Debian's usual one, which would have to go for it: what the tests need that the
+# usual one does not have. Unpacked, not installed.
+unpack_later_boost() {
+  local folder=$top/build/boost package=libboost1.81-dev
+  [ ! -d "$folder" ] || return 0
+  rm -rf "$folder.new"
+  mkdir -p "$folder.new" "$top/build/log"
+  (
+    cd "$folder.new"
+    apt-get download -q $package || { apt-get update -q && apt-get download -q $package; }
+    dpkg-deb --extract ./$package*.deb .
+    rm ./$package*.deb
+  ) >"$top/build/log/boost.log" 2>&1 || fail "cannot fetch $package: build/log/boost.log"
+  mv "$folder.new" "$folder"
 }
 
 # with_progress NAME COMMAND...: runs COMMAND with its output in build/log/NAME.log. Shows the last
