@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Holds the scripts of the tree to their syntax, and ./try and ./check to what they say of themselves: these two are
+# what a fresh machine begins with, before any other test can run. Usage: scripts_test.sh ROOT
+set -euo pipefail
+cd "$1"
+status=0
+complain() {
+  echo "$1" >&2
+  status=1
+}
+
+scripts=$(find . \( -name build -o -name node_modules -o -name .git \) -prune -o -type f -print |
+  xargs -d '\n' grep -lE -m 1 '^#!/usr/bin/env bash$')
+[ "$(wc -l <<<"$scripts")" -gt 10 ] || complain "only these scripts were found: $scripts"
+while read -r script; do
+  said=$(bash -n "$script" 2>&1) || complain "$script: $said"
+done <<<"$scripts"
+
+for script in ./try ./check; do
+  code=0
+  said=$("$script" --help 2>&1 </dev/null) || code=$?
+  [[ $code = 0 && $said = "usage: $script"* ]] || complain "$script --help ended with $code and said: $said"
+  code=0
+  said=$("$script" --nonsense 2>&1 </dev/null) || code=$?
+  [[ $code = 2 && $said = "usage: $script"* ]] || complain "$script --nonsense ended with $code and said: $said"
+done
+exit $status
