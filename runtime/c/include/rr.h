@@ -39,6 +39,7 @@
 #include "rr_c/discovery.h"
 #include "rr_c/filters.h"
 #include "rr_c/node.h"
+#include "rr_c/security.h"
 #include "rr_c/service.h"
 #include "rr_c/streams.h"
 #include "rr_c/subscriptions.h"

@@ -5,6 +5,7 @@
 
 #include "rr/codec.hpp"
 #include "rr/type.hpp"
+#include "runtime/c/src/security.hpp"
 
 namespace rr::capi {
 namespace {
@@ -26,6 +27,7 @@ Offer offer(std::uint32_t without, bool string_table) {
 
 NodeOptions read_options(const rr_node_options& given) {
   NodeOptions options;
+  options.audit = read_audit(given.audit);  // first: whatever else is wrong, it is dropped
   options.name = text(given.name);
   options.id = id_of(given.id);
   options.client_offer = offer(given.client_without, true);
@@ -44,6 +46,7 @@ NodeOptions read_options(const rr_node_options& given) {
   set(options.send_queue_limit, given.send_queue_limit);
   set(options.request_queue_limit, given.request_queue_limit);
   set(options.max_connections, given.max_connections);
+  options.tls = read_tls(given.tls);
   return options;
 }
 
@@ -94,6 +97,7 @@ class Connecting {
     options.credentials = credentials_;
     options.object_type = object_type_;
     options.request_timeout = duration(options_.request_timeout_ms);
+    options.allow_clear_credentials = options_.allow_clear_credentials != 0;
     options.definition_reader = tables;
     // Both always, since it is they that keep the context.
     options.on_closed = [call = options_.on_closed, context = context_](const Error& why) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "runtime/c/src/node.hpp"
+#include "runtime/c/src/security.hpp"
 #include "runtime/c/src/served_object.hpp"
 #include "runtime/c/src/users.hpp"
 
@@ -35,6 +36,8 @@ ServiceOptions read_options(const rr_service_options& given,
   if (given.monitor_patience_ms != 0) {
     options.monitor_patience = duration(given.monitor_patience_ms);
   }
+  options.rights = read_rights(given.rights);
+  options.rights_file = text(given.rights_file);
   // Both always, since it is they that keep the context.
   options.on_client_connected = [call = given.on_client_connected,
                                  context](const ServiceClient& client) {
@@ -114,6 +117,10 @@ rr_status rr_service_set_attributes(rr_service* service, const rr_elements* attr
     const auto context = context_of(service);
     context->set_attributes(rr::capi::read_map(need(attributes, "there are no attributes")));
   });
+}
+
+rr_status rr_service_set_rights(rr_service* service, const rr_str* rights, rr_error** error) {
+  return guarded(error, [&] { context_of(service)->set_rights(rr::capi::read_rights(rights)); });
 }
 
 rr_status rr_service_release_path(rr_service* service, rr_str path, uint32_t client,

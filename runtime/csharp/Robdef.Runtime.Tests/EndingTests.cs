@@ -31,6 +31,10 @@ public sealed class EndingTests
     /// <summary>What the process has.</summary>
     private sealed record Held(int Files, int Threads, long Managed, long Native, long Resident)
     {
+        /// <summary>What the open files are: number and target of each, such as <c>12 socket:[4711]</c>.</summary>
+        public static IEnumerable<string> OpenFiles() =>
+            Directory.GetFiles("/proc/self/fd").Select(file => $"{Path.GetFileName(file)} {new FileInfo(file).LinkTarget}");
+
         public static Held Now()
         {
             for (int i = 0; i < 3; ++i)
@@ -195,7 +199,7 @@ public sealed class EndingTests
         {
             after = Held.Now();
             return after.Files <= before.Files + others && after.Threads <= before.Threads + 2 && after.Native < before.Native + 2_000_000;
-        }, TimeSpan.FromSeconds(30)), $"{before} before, {after} after");
+        }, TimeSpan.FromSeconds(30)), $"{before} before, {after} after, files: {string.Join(", ", Held.OpenFiles())}");
         Assert.True(after.Managed < before.Managed + 500_000, $"{before} before, {after} after");
         // The collector keeps pages of what has long been freed, as many as its youngest generation may have.
         Assert.True(after.Resident < before.Resident + 300_000_000, $"{before} before, {after} after");

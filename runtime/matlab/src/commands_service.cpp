@@ -7,6 +7,7 @@
 #include "rr/users.hpp"
 #include "runtime/matlab/src/credentials.hpp"
 #include "runtime/matlab/src/served.hpp"
+#include "runtime/matlab/src/struct_fields.hpp"
 
 namespace rr::matlab {
 namespace {
@@ -73,23 +74,33 @@ void served_members(Runtime& runtime, Call& call) {
   call.give(make_cells(declarations));
 }
 
-// register_service(name, object, attributes, users, require_user, extra_imports): number;
-// the last is [] for all definitions, or a cell array of names
+// register_service(name, object, options): number; the options are those of
+// RobotRaconteur.RegisterService
 void register_service(Runtime& runtime, Call& call) {
   const auto served = runtime.handles().get<ServedHandle>(call.handle(1));
   ServiceOptions options;
-  if (call.has(2)) {
-    options.attributes = read_varvalues(call[2], "attributes", "a containers.Map or a struct");
-  }
-  if (call.has(3) && !call.text(3).empty()) {
-    options.users = std::make_shared<PasswordUsers>(call.text(3));
-  }
-  if (call.has(4)) options.require_user = read_number<bool>(call[4]);
   std::optional<std::set<std::string>> extra;
-  if (call.has(5) && mxIsCell(call[5])) {
-    const std::vector<std::string> names = read_texts(call[5]);
-    extra.emplace(names.begin(), names.end());
-  }
+  read_fields(
+      call[2], "service options",
+      {{"Attributes",
+        [&](const mxArray* given) {
+          options.attributes = read_varvalues(given, "attributes", "a containers.Map or a struct");
+        }},
+       {"Users",
+        [&](const mxArray* given) {
+          const std::string users = read_text(given);
+          if (!users.empty()) options.users = std::make_shared<PasswordUsers>(users);
+        }},
+       {"RequireUser", read_into(options.require_user)},
+       {"ExtraImports",
+        [&](const mxArray* given) {
+          if (!mxIsCell(given)) return;  // `[]`: all, as without it
+          const std::vector<std::string> names = read_texts(given);
+          extra.emplace(names.begin(), names.end());
+        }},
+       {"Rights",
+        [&](const mxArray* given) { options.rights = std::make_shared<Rights>(read_text(given)); }},
+       {"RightsFile", read_into(options.rights_file)}});
   const Service service = dynamic::register_service(runtime.node(), call.text(0), served->object,
                                                     std::move(options), extra);
   call.give(give_handle(runtime, std::make_shared<ServiceHandle>(service)));
@@ -106,6 +117,13 @@ void unregister_service(Runtime& runtime, Call& call) {
   });
   runtime.wait_until([&] { return has_ended->load(); }, std::chrono::milliseconds::max());
   runtime.handles().remove(call.handle(0));
+}
+
+// set_rights(service, text): with `[]` for the text everything is allowed
+void set_rights(Runtime& runtime, Call& call) {
+  const auto handle = runtime.handles().get<ServiceHandle>(call.handle(0));
+  const bool is_all = mxIsNumeric(call[1]) && count_of(call[1]) == 0;
+  handle->service->set_rights(is_all ? nullptr : std::make_shared<const Rights>(call.text(1)));
 }
 
 // service_clients(service): numbers of the clients, a column
@@ -180,6 +198,7 @@ std::vector<Command> service_commands() {
           {"served_members", served_members},
           {"register_service", register_service},
           {"unregister_service", unregister_service},
+          {"set_rights", set_rights},
           {"service_clients", service_clients},
           {"release_path", release_path},
           {"listen_tcp", listen_tcp},

@@ -49,6 +49,7 @@ void connect(Runtime& runtime, Call& call) {
   if (call.has(1)) options.username = call.text(1);
   if (call.has(2)) options.credentials = read_credentials(call[2]);
   if (call.has(3)) options.object_type = call.text(3);
+  options.allow_clear_credentials = runtime.allow_clear_credentials;
   const auto listeners = std::make_shared<Listeners>(runtime);
   options.on_closed = [listeners](const Error& why) {
     Listeners::tell_last(listeners, session_news("ClientClosed", why.message()));

@@ -17,7 +17,7 @@ void give_subscription(Runtime& runtime, Call& call, ServiceSubscription made) {
 
 // subscribe(urls [, username, credentials, object type]): number
 void subscribe(Runtime& runtime, Call& call) {
-  SubscriptionOptions options;
+  SubscriptionOptions options{.allow_clear_credentials = runtime.allow_clear_credentials};
   if (call.has(1)) options.username = call.text(1);
   if (call.has(2)) options.credentials = read_credentials(call[2]);
   if (call.has(3)) options.object_type = call.text(3);
@@ -27,7 +27,7 @@ void subscribe(Runtime& runtime, Call& call) {
 
 // subscribe_type(types, filter): number
 void subscribe_type(Runtime& runtime, Call& call) {
-  SubscriptionOptions options;
+  SubscriptionOptions options{.allow_clear_credentials = runtime.allow_clear_credentials};
   if (call.has(1)) options.filter = read_filter(call[1]);
   give_subscription(
       runtime, call,

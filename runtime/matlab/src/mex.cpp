@@ -19,7 +19,7 @@ namespace {
 // interpreter is gone then.
 rr::matlab::Runtime* runtime = nullptr;
 std::span<const rr::matlab::Module* const> compiled_in;
-rr::NodeOptions next_options;  // of nodes that are made
+rr::matlab::RuntimeOptions next_options;  // of nodes that are made
 // Of the last handle that was given, by this or an earlier one: what the user still holds of an
 // earlier one must not mean anything here.
 std::uint32_t generation = 0;

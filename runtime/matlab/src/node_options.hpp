@@ -7,8 +7,14 @@
 
 namespace rr::matlab {
 
-/// The options of a node from a struct of RobotRaconteur.SetNodeOptions: times in seconds. Throws
-/// rr::Error that names the field.
-NodeOptions read_node_options(const mxArray* given);
+/// What RobotRaconteur.SetNodeOptions sets.
+struct RuntimeOptions {
+  NodeOptions node;
+  /// Of all connections, see ConnectOptions.
+  bool allow_clear_credentials = false;
+};
+
+/// From its struct: times in seconds. Throws rr::Error that names the field.
+RuntimeOptions read_node_options(const mxArray* given);
 
 }  // namespace rr::matlab

@@ -12,12 +12,14 @@ namespace rr::matlab {
 
 using Clock = std::chrono::steady_clock;
 
-Runtime::Runtime(std::uint32_t generation, NodeOptions options)
-    : generator_limit(options.budget.client_session),
+Runtime::Runtime(std::uint32_t generation, RuntimeOptions given)
+    : generator_limit(given.node.budget.client_session),
+      allow_clear_credentials(given.allow_clear_credentials),
       queue_(std::make_shared<Queue>()),
       log_(std::make_shared<Log>()),
       handles_(generation),
       interrupts_(std::make_unique<Interrupts>([this] { interrupted(); })) {
+  NodeOptions& options = given.node;
   options.log = [log = log_](LogLevel level, std::string_view text) { log->write(level, text); };
   options.channels.emplace("rr+serial", serial_channel());
   node_ = std::make_unique<Node>(std::move(options));

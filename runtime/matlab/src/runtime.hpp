@@ -45,7 +45,7 @@ struct RecordTypes {
 class Runtime {
  public:
   /// `generation`: see Handles.
-  Runtime(std::uint32_t generation, NodeOptions options);
+  Runtime(std::uint32_t generation, RuntimeOptions given);
   ~Runtime();
   Runtime(const Runtime&) = delete;
   Runtime& operator=(const Runtime&) = delete;
@@ -113,6 +113,8 @@ class Runtime {
   std::shared_ptr<Connection> current;
   /// What all values of a generator may take in memory, unless the call says otherwise: bytes.
   const std::size_t generator_limit;
+  /// Of all connections, see ConnectOptions.
+  const bool allow_clear_credentials;
 
  private:
   /// A blocking call, for who is told of interrupts on another thread.

@@ -335,6 +335,22 @@
 %! RobotRaconteur.MonitorExit(b);
 %! service.Close();
 
+%!test % rights: by rules, and by others while a client is connected
+%! [~, ~, url] = offered();
+%! options = struct('Rights', sprintf('deny anyone path sealed member add\nallow anyone\n'));
+%! service = RobotRaconteur.RegisterService('sealed', 'experimental.rig.Rig', rr_rig(), options);
+%! c = RobotRaconteur.ConnectService([url, 'sealed']);
+%! fails(@() c.add(1, 2), 'RobotRaconteur:AuthenticationError', ...
+%!   'A client that is not logged in may not call `add` of `sealed`');
+%! service.SetRights([]);
+%! assert(c.add(1, 2), 3);
+%! service.SetRights('');
+%! assert(~isempty(strfind(failure_of(c), 'may not call')));
+%! fails(@() service.SetRights('permit bob'), 'RobotRaconteur:InvalidConfiguration', '?');
+%! service.Close();
+%! fails(@() RobotRaconteur.RegisterService('x', 'experimental.rig.Rig', rr_rig(), struct('Right', '')), ...
+%!   'RobotRaconteur:InvalidArgument', 'service options: there is no `Right`');
+
 %!test % definitions with mistakes
 %! fails(@() RobotRaconteurServed('experimental.rig.Rug', struct()), 'RobotRaconteur:KeyNotFound', ...
 %!   'no object `experimental.rig.Rug`');
@@ -347,9 +363,13 @@
 %!   'RobotRaconteur:InvalidArgument', 'node options: there is no `Nodename`');
 %! fails(@() RobotRaconteur.SetNodeOptions(struct('ClientOffer', 5)), ...
 %!   'RobotRaconteur:DataTypeMismatch', 'what the node offers: expected a struct, got double');
+%! fails(@() RobotRaconteur.SetNodeOptions(struct('AuditFile', '/no/such/folder/audit')), ...
+%!   'RobotRaconteur:InvalidConfiguration', '?');
 %! id = '{a1b2c3d4-1111-4222-8333-444455556666}';
+%! audit = fullfile(getenv('RR_TEST_FOLDER'), 'audit.jsonl');
 %! RobotRaconteur.SetNodeOptions(struct('NodeName', 'example.rig', 'NodeID', id, ...
-%!   'HeartbeatPeriod', 2, 'ClientOffer', struct('MessageV4', false)));
+%!   'HeartbeatPeriod', 2, 'ClientOffer', struct('MessageV4', false), ...
+%!   'AuditFile', audit, 'AuditRequests', true));
 %! RobotRaconteur.RegisterServiceType(fullfile(getenv('RR_TEST_FILES'), 'experimental.rig.robdef'));
 %! assert(rrmex('node').id, id(2:end - 1));
 %! fails(@() RobotRaconteur.SetNodeOptions(struct()), 'RobotRaconteur:InvalidOperation', ...
@@ -361,5 +381,14 @@
 %! c = RobotRaconteur.ConnectService(sprintf('rr+tcp://127.0.0.1:%d/?service=rig', port));
 %! assert(rrmex('service', c.rr_h).node_name, 'example.rig');
 %! assert(c.add(1, 2), 3);
+%! RobotRaconteur.Shutdown();
+%! lines = strsplit(strtrim(fileread(audit)), "\n");
+%! assert(~isempty(strfind(lines{1}, '"event":"connect","outcome":"allowed","service":"rig"')));
+%! assert(any(cellfun(@(line) ~isempty(strfind(line, '"member":"add","operation":"call"')), lines)));
+%! RobotRaconteur.SetNodeOptions(struct('CertificateFile', '/no/such/certificate.pem'));
+%! fails(@() rrmex('node'), 'RobotRaconteur:InvalidConfiguration', '?');
+%! RobotRaconteur.SetNodeOptions(struct('RequireTls', true));
+%! fails(@() RobotRaconteur.ConnectService('rr+tcp://127.0.0.1:1/?service=rig'), 'RobotRaconteur:ConnectionError', ...
+%!   'this node requires TLS, and `rr+tcp` does not use it: `rrs+tcp` does');
 %! RobotRaconteur.Shutdown();
 %! RobotRaconteur.SetNodeOptions(struct());

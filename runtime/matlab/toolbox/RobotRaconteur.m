@@ -209,33 +209,17 @@ classdef RobotRaconteur
       %   Offers obj, a handle object or a struct of function handles (see RobotRaconteurServed), as
       %   an object of a registered type. options is a struct: Attributes (a containers.Map or
       %   struct), Users (a text of users), RequireUser (false: clients may also come without a
-      %   user), ExtraImports (cells with the names of the definitions that clients get besides
+      %   user), Rights (a text of rules, what each user may do) or RightsFile (a file of them, which
+      %   is looked at every second), ExtraImports (cells with the names of the definitions that clients get besides
       %   those that the type's imports; without it they get all that are known). Requests are
       %   answered by Poll and ServeFor, and while a call of one's own waits.
       if nargin < 4
         options = struct();
       end
-      attributes = [];
-      users = '';
-      require_user = true;
-      extra_imports = [];
-      if isfield(options, 'Attributes')
-        attributes = options.Attributes;
-      end
-      if isfield(options, 'Users')
-        users = options.Users;
-      end
-      if isfield(options, 'RequireUser')
-        require_user = options.RequireUser;
-      end
-      if isfield(options, 'ExtraImports')
-        extra_imports = options.ExtraImports;
-      end
       if ~isa(obj, 'RobotRaconteurServed')
         obj = RobotRaconteurServed(type, obj);
       end
-      service = RobotRaconteurService(name, obj, attributes, users, require_user, ...
-                                      extra_imports);
+      service = RobotRaconteurService(name, obj, options);
     end
     function port = StartServer(port, address)
       %STARTSERVER Listen at a TCP port, 0 for a free one; returns it. Clients of this machine can
@@ -274,7 +258,11 @@ classdef RobotRaconteur
     function SetNodeOptions(options)
       %SETNODEOPTIONS How the node is made: before it is used first, or after Shutdown. A struct
       %   with any of NodeName, NodeID; RequestTimeout, ConnectTimeout, HeartbeatPeriod in seconds;
-      %   MemoryTransferLimit, ClientSessionLimit in bytes; CertificateFile, KeyFile, AuthorityFiles (cells), RequireTls;
+      %   MemoryTransferLimit, ClientSessionLimit in bytes; CertificateFile, KeyFile, AuthorityFiles
+      %   and RevocationFiles (cells), Pins (a containers.Map of node ids and SHA-256), RequireTls,
+      %   MustCertifyClients, TrustSystemAuthorities, AcceptsOutdatedLists, LookAgainPeriod;
+      %   AuditFile (lines of JSON: who connects, logs in, is refused), AuditRequests (handled
+      %   requests, too); AllowClearCredentials (log in without TLS where discovery has found a URL);
       %   ClientOffer and ServerOffer: structs with any of MessageV4, StringTable, CombinedConnect.
       rrmex('node_options', options);
     end

@@ -9,11 +9,10 @@ classdef RobotRaconteurService < handle
     rr_h = uint64(0);
   end
   methods
-    function obj = RobotRaconteurService(name, root, attributes, users, require_user, extra_imports)
+    function obj = RobotRaconteurService(name, root, options)
       obj.Name = name;
       obj.Root = root;
-      obj.rr_h = rrmex('register_service', name, root.rr_h, attributes, users, require_user, ...
-                       extra_imports);
+      obj.rr_h = rrmex('register_service', name, root.rr_h, options);
     end
     function Close(obj)
       %CLOSE Tell all clients that the service ends.
@@ -21,6 +20,11 @@ classdef RobotRaconteurService < handle
         rrmex('unregister_service', obj.rr_h);
         obj.rr_h = uint64(0);
       end
+    end
+    function SetRights(obj, rights)
+      %SETRIGHTS Other rights from now on, a text of rules, for clients that are connected, too; [] for
+      %   everything. They hold until RightsFile changes, if there is one.
+      rrmex('set_rights', obj.rr_h, rights);
     end
     function numbers = Clients(obj)
       %CLIENTS The numbers of the clients, for CallBack.

@@ -4,6 +4,7 @@
 
 /* Nodes and connecting. Included by rr.h. */
 
+#include "security.h"
 #include "values.h"
 
 #ifdef __cplusplus
@@ -47,6 +48,8 @@ typedef struct rr_node_options {
   uint64_t send_queue_limit;      /* bytes */
   uint64_t request_queue_limit;   /* bytes */
   uint64_t max_connections;
+  const rr_tls_options* tls;     /* minor version 4, as the next; may be NULL */
+  const rr_audit_options* audit; /* may be NULL */
 } rr_node_options;
 
 /* `options` may be NULL. */
@@ -83,7 +86,9 @@ typedef struct rr_connect_options {
       credentials; /* instead of the password, unless count is 0: a map of strings to varvalues */
   rr_str object_type;         /* what the root must be or implement, qualified; empty: anything */
   int32_t request_timeout_ms; /* of all calls; 0: the node's; RR_NO_LIMIT */
-  uint32_t reserved;
+  /* 1: logs in without TLS also at a URL that discovery has found, which anybody on the network can
+   * announce. URLs from elsewhere are not asked about (minor version 4). */
+  uint32_t allow_clear_credentials;
   void* context;
   /* Once, when the session has ended, whoever ended it: RR_OPERATION_ABORTED for this side,
    * RR_CONNECTION_ERROR for a lost connection or a service that sends this client away,

@@ -271,6 +271,11 @@ typedef struct rr_service_options {
    * broken off. On a thread of the node or that of rr_service_close or _disconnect, before
    * on_client_disconnected (minor version 2). */
   void (*on_client_leaving)(void* context, const rr_client_info* client);
+  /* What each user may do, as docs/access.md has it (minor version 4, as the next). NULL:
+   * everything; a text without rules allows nothing. */
+  const rr_str* rights;
+  /* The same in a file, instead of `rights`; empty: none. It is looked at every second. */
+  rr_str rights_file;
 } rr_service_options;
 
 /* Offers an object and what it refers to, until the service is closed or the node ends.
@@ -287,6 +292,10 @@ RR_API void rr_service_close(rr_service* service);
 RR_API rr_str rr_service_name(const rr_service* service);
 RR_API rr_status rr_service_set_attributes(rr_service* service, const rr_elements* attributes,
                                            rr_error** error);
+/* Other rights from now on, for sessions that are open, too: what they may not do any more ends.
+ * NULL: everything. They hold until the file of rights changes, if there is one (minor version 4).
+ */
+RR_API rr_status rr_service_set_rights(rr_service* service, const rr_str* rights, rr_error** error);
 /* Forgets the object at a path and those below, and tells the clients; the next request finds it
  * anew. With a client that is not 0: only that client's own object. */
 RR_API rr_status rr_service_release_path(rr_service* service, rr_str path, uint32_t client,

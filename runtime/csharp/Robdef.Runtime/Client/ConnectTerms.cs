@@ -62,6 +62,7 @@ internal readonly unsafe ref struct ConnectTerms
             Credentials = _credentials.Value,
             ObjectType = _type.Value,
             RequestTimeoutMs = options.RequestTimeout is { } timeout ? Times.Milliseconds(timeout) : 0,
+            AllowClearCredentials = options.AllowClearCredentials ? 1u : 0,
         };
         if (options.Closed is not null || options.PathReleased is not null)
         {

@@ -26,11 +26,11 @@ public sealed class Node : IDisposable
     public unsafe Node(NodeOptions options)
     {
         ArgumentNullException.ThrowIfNull(options);
-        using var name = new NativeText(options.Name);
+        using var scope = new NativeScope();
         var native = new RrNodeOptions
         {
             Size = (nuint)sizeof(RrNodeOptions),
-            Name = name.Value,
+            Name = scope.Text(options.Name),
             ClientWithout = (options.ClientWithoutVersion4 ? 1u : 0) | (options.ClientWithoutStringTable ? 2u : 0)
                 | (options.ClientWithoutCombinedConnect ? 4u : 0),
             ServerWithout = (uint)options.ServerWithout,
@@ -42,6 +42,8 @@ public sealed class Node : IDisposable
             ClientTimeoutMs = options.ClientTimeout is { } silence ? Times.Milliseconds(silence) : 0,
             MessageSize = (uint)options.MessageSize,
             MemoryTransferLimit = (uint)options.MemoryTransferLimit,
+            Tls = SecurityTerms.Of(options.Tls, scope),
+            Audit = SecurityTerms.Of(options.Audit, scope),
         };
         Faults = new Faults(options.EnableDetailedErrors, options.Log);
         Callbacks = new ServedSession("that a service has called", Faults);
@@ -57,6 +59,9 @@ public sealed class Node : IDisposable
         _handle = new NodeHandle(node);
         Discovery = new Discovery(this);
     }
+
+    /// <summary>Its id: that of the options or of its certificate, or a random one.</summary>
+    public Guid Id => Copies.Id(Functions.rr_node_get_id(_handle));
 
     /// <summary>Finding other nodes and their services, and being found.</summary>
     public Discovery Discovery { get; }

@@ -73,6 +73,12 @@ public sealed record NodeOptions
     /// learn that there was one, unless it is a <see cref="RobdefException"/>; <see cref="Log"/> gets all, with the stack.
     /// </summary>
     public bool EnableDetailedErrors { get; init; }
+
+    /// <summary>Certificates, and whom the node trusts.</summary>
+    public TlsOptions? Tls { get; init; }
+
+    /// <summary>Where what clients do is recorded.</summary>
+    public AuditOptions? Audit { get; init; }
 }
 
 /// <summary>How a client connects.</summary>
@@ -92,6 +98,12 @@ public sealed record ConnectOptions
 
     /// <summary>How long each request may take; the node's limit when not set.</summary>
     public TimeSpan? RequestTimeout { get; init; }
+
+    /// <summary>
+    /// Logs in without TLS also at a URL that discovery has found, which anybody on the network can announce. URLs from
+    /// elsewhere are not asked about.
+    /// </summary>
+    public bool AllowClearCredentials { get; init; }
 
     /// <summary>
     /// Told once when the session has ended, whoever ended it: OperationAborted for this side, ConnectionError for

@@ -8,7 +8,7 @@ namespace Robdef.Runtime.Native;
 internal static unsafe partial class Functions
 {
     private const string Library = "robdef_runtime";
-    private const uint Version = 0x00010003;
+    private const uint Version = 0x00010004;
 
     static Functions()
     {
@@ -64,6 +64,8 @@ internal static unsafe partial class Functions
     public static partial void rr_node_shutdown(SafeHandle node);
     [LibraryImport(Library)]
     public static partial int rr_node_listen(SafeHandle node, RrStr url, out ushort port, nint* error);
+    [LibraryImport(Library)]
+    public static partial RrNodeId rr_node_get_id(SafeHandle node);
     [LibraryImport(Library)]
     public static partial int rr_client_connect(SafeHandle node, RrStr* urls, nuint count, RrConnectOptions* options, out nint client, nint* error);
     [LibraryImport(Library)]
@@ -419,6 +421,8 @@ internal static unsafe partial class Functions
     public static partial RrStr rr_service_name(SafeHandle service);
     [LibraryImport(Library)]
     public static partial int rr_service_set_attributes(SafeHandle service, RrElements* attributes, nint* error);
+    [LibraryImport(Library)]
+    public static partial int rr_service_set_rights(SafeHandle service, RrStr* rights, nint* error);
     [LibraryImport(Library)]
     public static partial int rr_service_clients(SafeHandle service, nint context, delegate* unmanaged[Cdecl]<nint, RrClientInfo*, void> each, nint* error);
     [LibraryImport(Library)]

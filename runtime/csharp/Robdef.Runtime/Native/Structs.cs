@@ -105,6 +105,8 @@ internal unsafe struct RrNodeOptions
     public ulong SendQueueLimit;
     public ulong RequestQueueLimit;
     public ulong MaxConnections;
+    public RrTlsOptions* Tls;
+    public RrAuditOptions* Audit;
 }
 
 [StructLayout(LayoutKind.Sequential)]
@@ -116,7 +118,7 @@ internal unsafe struct RrConnectOptions
     public RrElements Credentials;
     public RrStr ObjectType;
     public int RequestTimeoutMs;
-    public uint Reserved;
+    public uint AllowClearCredentials;
     public nint Context;
     public delegate* unmanaged[Cdecl]<nint, RrErrorInfo*, void> OnClosed;
     public delegate* unmanaged[Cdecl]<nint, RrStr, void> OnPathReleased;
@@ -330,4 +332,6 @@ internal unsafe struct RrServiceOptions
     public delegate* unmanaged[Cdecl]<nint, RrClientInfo*, void> OnClientDisconnected;
     public delegate* unmanaged[Cdecl]<nint, void> Drop;
     public delegate* unmanaged[Cdecl]<nint, RrClientInfo*, void> OnClientLeaving;
+    public RrStr* Rights;
+    public RrStr RightsFile;
 }

@@ -19,6 +19,12 @@ public sealed record ServiceOptions
     /// <summary>With users: clients may connect without one.</summary>
     public bool UserIsOptional { get; init; }
 
+    /// <summary>What each user may do, as rules (docs/access.md). Null: everything; a text without rules allows nothing.</summary>
+    public string? Rights { get; init; }
+
+    /// <summary>The same in a file, instead of <see cref="Rights"/>; it is looked at every second. Empty: none.</summary>
+    public string RightsFile { get; init; } = "";
+
     /// <summary>How long a client may have an object to itself without asking for anything; 30 s when not set.</summary>
     public TimeSpan? MonitorPatience { get; init; }
 
@@ -80,6 +86,19 @@ public sealed class Service : IDisposable
         Failure.Check(Functions.rr_service_set_attributes(_handle, &native, &error), error, KnownTypes.None);
     }
 
+    /// <summary>
+    /// Other rights from now on, for sessions that are open, too: what they may not do any more ends. Null: everything.
+    /// They hold until the file of rights changes, if there is one.
+    /// </summary>
+    /// <exception cref="InvalidConfigurationException">A rule is wrong; the message says where.</exception>
+    public unsafe void SetRights(string? rights)
+    {
+        using var scope = new NativeScope();
+        RrStr text = rights is null ? default : scope.Text(rights);
+        nint error;
+        Failure.Check(Functions.rr_service_set_rights(_handle, rights is null ? null : &text, &error), error, KnownTypes.None);
+    }
+
     /// <summary>The clients that are connected now.</summary>
     public unsafe IReadOnlyList<ServedClient> GetClients()
     {
@@ -107,8 +126,8 @@ public sealed class Service : IDisposable
     internal static unsafe Service Register(Node node, string name, Skeleton root, ServiceOptions options)
     {
         KnownTypes types = root.RrTypes;
-        using var text = new NativeText(name);
-        using var attributes = new NativeElements(options.Attributes);
+        using var scope = new NativeScope();
+        RrStr rights = options.Rights is null ? default : scope.Text(options.Rights);
         var extra = new nint[options.ExtraDefinitions.Count];
         for (int i = 0; i < extra.Length; ++i)
         {
@@ -118,15 +137,14 @@ public sealed class Service : IDisposable
         nint users = 0;
         if (options.Users.Length != 0)
         {
-            using var lines = new NativeText(options.Users);
-            Failure.Check(Functions.rr_users_from_text(lines.Value, out users, &error), error, types);
+            Failure.Check(Functions.rr_users_from_text(scope.Text(options.Users), out users, &error), error, types);
         }
         fixed (nint* definitions = extra)
         {
             var native = new RrServiceOptions
             {
                 Size = (nuint)sizeof(RrServiceOptions),
-                Attributes = attributes.Value,
+                Attributes = scope.Map(options.Attributes),
                 ExtraDefinitions = definitions,
                 ExtraDefinitionCount = (nuint)extra.Length,
                 Users = users,
@@ -137,8 +155,10 @@ public sealed class Service : IDisposable
                 OnClientDisconnected = &ClientSink.OnDisconnected,
                 OnClientLeaving = &ClientSink.OnLeaving,
                 Drop = &Context.Drop,
+                Rights = options.Rights is null ? null : &rights,
+                RightsFile = scope.Text(options.RightsFile),
             };
-            int status = Functions.rr_service_register(node.Handle, text.Value, root.RrServe(), &native, out nint service, &error);
+            int status = Functions.rr_service_register(node.Handle, scope.Text(name), root.RrServe(), &native, out nint service, &error);
             if (users != 0)
             {
                 Functions.rr_users_release(users);
