@@ -79,6 +79,7 @@ void RawSkeleton::rr_dispatch(std::size_t place, Request& request) {
   auto asked = std::make_unique<MemberRequest>(kind_of(member, request.is_set()), state);
   asked->info.member = static_cast<std::uint32_t>(place);
   asked->set_arguments(read_question(request.rr_source()));
+  request.rr_source().made.expect();
   ask(std::move(asked));
   state->leave();
 }

@@ -68,7 +68,7 @@ TEST(RightsOfC, DecideWhatClientsMayDo) {
   EXPECT_THAT(denied.message, HasSubstr("may not call `ask` of `silent`"));
 
   ASSERT_EQ(rr_service_set_rights(silent.service.get(), nullptr, nullptr), RR_OK);
-  EXPECT_EQ(ask(silent).status, RR_OPERATION_TIMEOUT);  // the program has it, and does not answer
+  EXPECT_EQ(ask(silent).status, RR_REQUEST_TIMEOUT);  // the program has it, and does not answer
   const rr_str none = view("");
   ASSERT_EQ(rr_service_set_rights(silent.service.get(), &none, nullptr), RR_OK);
   EXPECT_EQ(ask(silent).status, RR_AUTHENTICATION_ERROR);
@@ -100,7 +100,7 @@ TEST(RightsOfC, FollowTheirFile) {
   rr_service_options options = service_options();
   options.rights_file = view(path);
   SilentService silent(nullptr, &options);
-  EXPECT_EQ(ask(silent).status, RR_OPERATION_TIMEOUT);
+  EXPECT_EQ(ask(silent).status, RR_REQUEST_TIMEOUT);
   write(path, "allow anyone access connect\n");
   EXPECT_TRUE(eventually([&] { return ask(silent).status == RR_AUTHENTICATION_ERROR; }));
 }
@@ -166,11 +166,11 @@ TEST(AuditOfC, TellsOfHandledRequestsWhereAsked) {
     const NodeHandle node = make_node();
     const ClientHandle client = connect(node, listen(server), "counter");
     const ObjectHandle root = root_of(client);
-    EXPECT_EQ(call(root, "count", nullptr, nullptr, RR_PROPERTY_GET).status, RR_OK);
+    EXPECT_EQ(call(root, "value", nullptr, nullptr, RR_PROPERTY_GET).status, RR_OK);
     EXPECT_TRUE(eventually([&] {
       return ::testing::Value(record.taken(),
                               ::testing::Contains(AllOf(HasSubstr(R"("event":"access")"),
-                                                        HasSubstr(R"("member":"count")"))));
+                                                        HasSubstr(R"("member":"value")"))));
     }));
   }
   all_members_release(offered);
@@ -265,9 +265,9 @@ using CredentialsOfC = Announced;
 TEST_F(CredentialsOfC, GoInClearToFoundUrlsOnlyWhereTheProgramSaysSo) {
   const auto server = std::make_unique<Node>(NodeOptions{.name = "found"});
   const auto users =
-      std::make_shared<PasswordUsers>("alice " + PasswordUsers::hash("secret") + "\n");
+      std::make_shared<PasswordUsers>("alice " + PasswordUsers::hash("secret") + " _\n");
   server->register_service("counter", std::make_shared<Counter>("found"),
-                           {.users = users, .require_user = false});
+                           {.users = users});
   server->listen_tcp(0, "127.0.0.1");
   server->discovery().announce({.network = network_, .period = std::chrono::milliseconds(200)});
 

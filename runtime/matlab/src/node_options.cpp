@@ -12,7 +12,7 @@
 namespace rr::matlab {
 namespace {
 
-ReadField read_into(Offer& offer) {
+ReadField read_offer(Offer& offer) {
   return [&](const mxArray* given) {
     read_fields(given, "what the node offers",
                 {{"MessageV4", read_into(offer.message_v4)},
@@ -39,8 +39,8 @@ RuntimeOptions read_node_options(const mxArray* given) {
       given, "node options",
       {{"NodeName", read_into(node.name)},
        {"NodeID", [&](const mxArray* text) { node.id = read_node_id(read_text(text)); }},
-       {"ClientOffer", read_into(node.client_offer)},
-       {"ServerOffer", read_into(node.server_offer)},
+       {"ClientOffer", read_offer(node.client_offer)},
+       {"ServerOffer", read_offer(node.server_offer)},
        {"RequestTimeout", read_into(node.request_timeout)},
        {"ConnectTimeout", read_into(node.connect_timeout)},
        {"HeartbeatPeriod",

@@ -22,6 +22,7 @@
 #include "runtime/matlab/src/handles.hpp"
 #include "runtime/matlab/src/interrupts.hpp"
 #include "runtime/matlab/src/log.hpp"
+#include "runtime/matlab/src/node_options.hpp"
 #include "runtime/matlab/src/plans.hpp"
 #include "runtime/matlab/src/queue.hpp"
 #include "runtime/matlab/src/user_functions.hpp"

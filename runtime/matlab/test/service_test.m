@@ -346,7 +346,8 @@
 %! assert(c.add(1, 2), 3);
 %! service.SetRights('');
 %! assert(~isempty(strfind(failure_of(c), 'may not call')));
-%! fails(@() service.SetRights('permit bob'), 'RobotRaconteur:InvalidConfiguration', '?');
+%! fails(@() service.SetRights('permit bob'), 'RobotRaconteur:InvalidConfiguration', ...
+%!   'rights:1:1: a rule begins with `allow` or `deny`');
 %! service.Close();
 %! fails(@() RobotRaconteur.RegisterService('x', 'experimental.rig.Rig', rr_rig(), struct('Right', '')), ...
 %!   'RobotRaconteur:InvalidArgument', 'service options: there is no `Right`');
@@ -364,7 +365,8 @@
 %! fails(@() RobotRaconteur.SetNodeOptions(struct('ClientOffer', 5)), ...
 %!   'RobotRaconteur:DataTypeMismatch', 'what the node offers: expected a struct, got double');
 %! fails(@() RobotRaconteur.SetNodeOptions(struct('AuditFile', '/no/such/folder/audit')), ...
-%!   'RobotRaconteur:InvalidConfiguration', '?');
+%!   'RobotRaconteur:InvalidConfiguration', ...
+%!   'cannot open `/no/such/folder/audit`: No such file or directory');
 %! id = '{a1b2c3d4-1111-4222-8333-444455556666}';
 %! audit = fullfile(getenv('RR_TEST_FOLDER'), 'audit.jsonl');
 %! RobotRaconteur.SetNodeOptions(struct('NodeName', 'example.rig', 'NodeID', id, ...
@@ -386,7 +388,8 @@
 %! assert(~isempty(strfind(lines{1}, '"event":"connect","outcome":"allowed","service":"rig"')));
 %! assert(any(cellfun(@(line) ~isempty(strfind(line, '"member":"add","operation":"call"')), lines)));
 %! RobotRaconteur.SetNodeOptions(struct('CertificateFile', '/no/such/certificate.pem'));
-%! fails(@() rrmex('node'), 'RobotRaconteur:InvalidConfiguration', '?');
+%! fails(@() rrmex('node'), 'RobotRaconteur:InvalidConfiguration', ...
+%!   '`/no/such/certificate.pem`: it cannot be read');
 %! RobotRaconteur.SetNodeOptions(struct('RequireTls', true));
 %! fails(@() RobotRaconteur.ConnectService('rr+tcp://127.0.0.1:1/?service=rig'), 'RobotRaconteur:ConnectionError', ...
 %!   'this node requires TLS, and `rr+tcp` does not use it: `rrs+tcp` does');

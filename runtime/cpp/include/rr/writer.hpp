@@ -144,6 +144,10 @@ class Writer : public Latch {
   void reset(MessageVersion version);
   [[nodiscard]] MessageVersion version() const { return version_; }
 
+  /// Until reset(): what is written stays until the message has been sent, texts too, so that large
+  /// ones need not be copied.
+  void attach_texts() { attaches_texts_ = true; }
+
   /// Bytes written so far: a mark to measure from.
   [[nodiscard]] std::size_t position() const { return attached_bytes_ + used(); }
 
@@ -234,6 +238,7 @@ class Writer : public Latch {
   std::byte* end_ = nullptr;
   std::size_t last_large_ = 0;  // capacity of a buffer that was too large to keep
   std::size_t attached_bytes_ = 0;
+  bool attaches_texts_ = false;
   std::vector<Attachment> attachments_;
   std::vector<Piece> pieces_;
   MessageVersion version_ = MessageVersion::v4;

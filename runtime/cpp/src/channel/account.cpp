@@ -27,35 +27,56 @@ Pools make_pools(const NodeOptions& options) {
   const std::size_t sessions =
       budget.sessions != 0 ? budget.sessions : std::max(39 * mib, for_messages);
   const auto make = [](std::size_t bytes, std::size_t reserve, std::size_t largest) {
-    return std::make_shared<Pool>(bytes, reserve, std::min(largest, bytes / 3));
+    return std::make_shared<Pool>(bytes, reserve, largest);
   };
   return {make(budget.before_session, std::min(budget.reserve, stranger_reserve),
                options.size_before_connect),
           make(sessions, budget.reserve, options.limits.message_size)};
 }
 
+Pool::Pool(std::size_t limit, std::size_t reserve, std::size_t largest)
+    : limit_(limit),
+      reserve_(reserve),
+      messages_(std::max(limit / 2, std::min(largest, limit))),
+      rests_(std::min(largest, limit / 3)) {}
+
 std::size_t Pool::held() const {
   const std::lock_guard lock(mutex_);
   return held_;
 }
 
-bool Pool::lend(std::size_t held, std::size_t more, Bound bound) {
-  const bool is_lent = lend_under_lock(held, more, bound);
+bool Pool::lend(std::size_t held, std::size_t more, Use use) {
+  const bool is_lent = lend_under_lock(held, more, use);
   if (!is_lent && on_full_ != nullptr) on_full_();
   return is_lent;
 }
 
-bool Pool::lend_under_lock(std::size_t held, std::size_t more, Bound bound) {
+bool Pool::lend_under_lock(std::size_t held, std::size_t more, Use use) {
   const std::lock_guard lock(mutex_);
   if (held + more > reserve_) {
-    const std::size_t limit = bound == Bound::part ? limit_ - rests_ : limit_;
+    const std::size_t limit = limit_of(use);
     if (held_ > limit || more > limit - held_) return false;
-    const bool is_shared = bound != Bound::pool;
+    const bool is_shared = use == Use::part || use == Use::other;
     if (is_shared && held + more > share * (limit - held_ - more)) return false;
   }
   held_ += more;
   peak_ = std::max(peak_, held_);
   return true;
+}
+
+std::size_t Pool::limit_of(Use use) const {
+  switch (use) {
+    case Use::part:
+      return messages_ - rests_;
+    case Use::rest:
+      return messages_;
+    case Use::reading:
+      return std::max(messages_, limit_ - limit_ / 4);
+    case Use::making:
+      return limit_ - limit_ / 16;
+    default:
+      return limit_;
+  }
 }
 
 bool Pool::is_mostly_free(std::size_t more) const {
@@ -87,18 +108,19 @@ Account::Account(std::shared_ptr<Pool> pool, std::size_t limit)
 
 Account::~Account() { pool_->take_back(lent_); }
 
-bool Account::draw_under_lock(std::size_t bytes, Bound bound) {
-  const bool may_exceed = bound == Bound::none;
+bool Account::draw_under_lock(std::size_t bytes, Use use) {
+  const bool may_exceed = use == Use::present;
   const std::size_t reused = std::min(bytes, offered_);
   bytes -= reused;
+  if (reused != 0 && use == Use::other) use = Use::answer;
   if (!may_exceed && (held_ > limit_ || bytes > limit_ - held_)) return false;
   const std::size_t wanted = held_ + bytes;
   if (wanted > lent_) {
     // The rounding must not be what is refused.
     const std::size_t rounded = rounded_up(wanted, quantum);
-    if (pool_->lend(lent_, rounded - lent_, bound)) {
+    if (pool_->lend(lent_, rounded - lent_, use)) {
       lent_ = rounded;
-    } else if (pool_->lend(lent_, wanted - lent_, bound)) {
+    } else if (pool_->lend(lent_, wanted - lent_, use)) {
       lent_ = wanted;
     } else if (may_exceed) {
       pool_->lend_anyway(wanted - lent_);
@@ -114,27 +136,37 @@ bool Account::draw_under_lock(std::size_t bytes, Bound bound) {
 
 bool Account::draw(std::size_t bytes) {
   const std::lock_guard lock(mutex_);
-  return draw_under_lock(bytes, Bound::share);
+  return draw_under_lock(bytes, Use::other);
 }
 
 bool Account::draw_part(std::size_t bytes) {
   const std::lock_guard lock(mutex_);
-  return draw_under_lock(bytes, Bound::part);
+  return draw_under_lock(bytes, Use::part);
 }
 
 bool Account::draw_rest(std::size_t bytes) {
   const std::lock_guard lock(mutex_);
-  return draw_under_lock(bytes, Bound::pool);
+  return draw_under_lock(bytes, Use::rest);
+}
+
+bool Account::draw_reading(std::size_t bytes) {
+  const std::lock_guard lock(mutex_);
+  return draw_under_lock(bytes, Use::reading);
+}
+
+bool Account::draw_making(std::size_t bytes) {
+  const std::lock_guard lock(mutex_);
+  return draw_under_lock(bytes, Use::making);
 }
 
 bool Account::draw_ahead(std::size_t bytes) {
   const std::lock_guard lock(mutex_);
-  return pool_->is_mostly_free(bytes) && draw_under_lock(bytes, Bound::share);
+  return pool_->is_mostly_free(bytes) && draw_under_lock(bytes, Use::other);
 }
 
 void Account::draw_anyway(std::size_t bytes) {
   const std::lock_guard lock(mutex_);
-  draw_under_lock(bytes, Bound::none);
+  draw_under_lock(bytes, Use::present);
 }
 
 void Account::give_back(std::size_t bytes) {
@@ -190,6 +222,18 @@ bool Charge::add_part(std::size_t bytes) {
 
 bool Charge::add_rest(std::size_t bytes) {
   if (account_ && !account_->draw_rest(bytes)) return false;
+  bytes_ += bytes;
+  return true;
+}
+
+bool Charge::add_reading(std::size_t bytes) {
+  if (account_ && !account_->draw_reading(bytes)) return false;
+  bytes_ += bytes;
+  return true;
+}
+
+bool Charge::add_making(std::size_t bytes) {
+  if (account_ && !account_->draw_making(bytes)) return false;
   bytes_ += bytes;
   return true;
 }

@@ -17,12 +17,14 @@ namespace rr::channel {
 /// hold two thirds of the pool and many peers equal shares; and always a small reserve, so that a
 /// full pool does not stop small messages.
 ///
-/// What is drawn in parts leaves some of the pool for rests (Account::draw_rest). If that is room
-/// for the largest whole, one of those that wait for theirs can always go on.
+/// What comes leaves room for what is made of it, so that peers do not wait for each other:
+/// messages may fill half of the pool, or as much as one of them takes; what is read from them goes
+/// up to three quarters; answers, and what is kept, have all of it. Messages that come in parts
+/// leave room for the rest of the largest, at most a third of the pool.
 class Pool {
  public:
-  Pool(std::size_t limit, std::size_t reserve, std::size_t rests = 0)
-      : limit_(limit), reserve_(reserve), rests_(rests) {}
+  /// `largest`: a message.
+  Pool(std::size_t limit, std::size_t reserve, std::size_t largest = 0);
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
@@ -41,20 +43,24 @@ class Pool {
 
  private:
   friend class Account;
-  // What limits a draw: what is kept for rests, the share of one account, the pool, or nothing.
-  enum class Bound : std::uint8_t { part, share, pool, none };
+  // What is drawn for: a part of a message, all that is missing of one, what is read from one, what
+  // a handler makes, an answer for which some was drawn already, anything else, or what is there
+  // anyway. How far it may fill the pool, and whether beyond the share of one account.
+  enum class Use : std::uint8_t { part, rest, reading, making, answer, other, present };
 
   // `more` bytes for an account that has `held`. False, and nothing happens, when they are too
   // many.
-  bool lend(std::size_t held, std::size_t more, Bound bound);
-  bool lend_under_lock(std::size_t held, std::size_t more, Bound bound);
+  bool lend(std::size_t held, std::size_t more, Use use);
+  bool lend_under_lock(std::size_t held, std::size_t more, Use use);
+  [[nodiscard]] std::size_t limit_of(Use use) const;
   [[nodiscard]] bool is_mostly_free(std::size_t more) const;
   void lend_anyway(std::size_t bytes);
   void take_back(std::size_t bytes);
 
   const std::size_t limit_;
   const std::size_t reserve_;
-  const std::size_t rests_;
+  const std::size_t messages_;  // may take so much
+  const std::size_t rests_;     // of which parts leave so much
   std::size_t fall_ = 0;
   std::function<void(std::size_t)> on_fall_;
   std::function<void()> on_full_;
@@ -83,6 +89,10 @@ class Account {
   /// The same for all that is missing of it: as long as the pool has so much this peer may hold
   /// more than its share. Otherwise several could wait for each other.
   [[nodiscard]] bool draw_rest(std::size_t bytes);
+  /// The same for what is read from a message that is there.
+  [[nodiscard]] bool draw_reading(std::size_t bytes);
+  /// The same for what the handler of a request makes.
+  [[nodiscard]] bool draw_making(std::size_t bytes);
   /// For what may never come: only while three quarters of the pool stay free.
   [[nodiscard]] bool draw_ahead(std::size_t bytes);
   /// For what has come about already: goes beyond the limits.
@@ -98,8 +108,8 @@ class Account {
   [[nodiscard]] std::size_t held() const;
 
  private:
-  using Bound = Pool::Bound;
-  bool draw_under_lock(std::size_t bytes, Bound bound);
+  using Use = Pool::Use;
+  bool draw_under_lock(std::size_t bytes, Use use);
   void give_back_under_lock(std::size_t bytes);
 
   // The pool is asked for so much at once, so that most draws do not lock it.
@@ -134,6 +144,10 @@ class Charge {
   [[nodiscard]] bool add_part(std::size_t bytes);
   /// The same with Account::draw_rest().
   [[nodiscard]] bool add_rest(std::size_t bytes);
+  /// The same with Account::draw_reading().
+  [[nodiscard]] bool add_reading(std::size_t bytes);
+  /// The same with Account::draw_making().
+  [[nodiscard]] bool add_making(std::size_t bytes);
   /// The same with Account::draw_ahead().
   [[nodiscard]] bool add_ahead(std::size_t bytes);
   void add_anyway(std::size_t bytes);

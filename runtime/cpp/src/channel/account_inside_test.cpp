@@ -71,6 +71,24 @@ TEST(Account, ThoseThatHoldPartsDoNotWaitForEachOther) {
   }
 }
 
+TEST(Account, MessagesLeaveRoomForWhatIsReadFromThemAndThatForAnswers) {
+  constexpr std::size_t largest = 12 * mib;
+  const auto pool = pool_of(39 * mib, 0, largest);
+  Accounts accounts = accounts_of(pool);
+  for (auto& account : accounts) static_cast<void>(account->draw_rest(6 * mib));
+  EXPECT_EQ(pool->held(), 18 * mib);  // half of it
+  for (auto& account : accounts) static_cast<void>(account->draw_reading(6 * mib));
+  EXPECT_EQ(pool->held(), 24 * mib);  // three quarters
+  EXPECT_TRUE(accounts.back()->draw(6 * mib));
+}
+
+TEST(Account, OneOfTheLargestMessagesFitsIntoASmallPool) {
+  const auto pool = pool_of(12 * mib, 0, 10 * mib);
+  Account account(pool, no_limit);
+  EXPECT_TRUE(account.draw_part(2 * mib));
+  EXPECT_TRUE(account.draw_rest(8 * mib));
+}
+
 TEST(Account, HasItsOwnLimit) {
   Account account(pool_of(48 * mib), 100);
   EXPECT_TRUE(account.draw(100));
@@ -176,7 +194,7 @@ TEST(Account, WhatIsOfferedIsDrawnOnceMore) {
     EXPECT_EQ(made.bytes(), 0U);
     EXPECT_TRUE(sent.add(5 * mib));
     EXPECT_EQ(account->held(), 6 * mib);
-    EXPECT_FALSE(sent.add(3 * mib));  // 1 MiB is left, and the pool has not 2 for this one
+    EXPECT_FALSE(sent.add(5 * mib));  // 1 MiB is left, and the pool has not 4
     EXPECT_EQ(account->held(), 6 * mib);
   }
   EXPECT_EQ(account->held(), 5 * mib);

@@ -15,6 +15,12 @@ struct LateWork::Queue {
   std::deque<std::function<void()>> work;
   bool has_thread = false;
   std::thread::id runner;  // the thread, once it runs
+  std::thread thread;      // the last one, which may have ended
+
+  // Under the lock. Of a thread that has ended, but for its last instructions.
+  void join() {
+    if (thread.joinable()) thread.join();
+  }
 
   void run() {
     std::unique_lock lock(mutex);
@@ -39,14 +45,19 @@ struct LateWork::Queue {
 
 LateWork::LateWork() : queue_(std::make_shared<Queue>()) {}
 
-LateWork::~LateWork() { wait(); }
+LateWork::~LateWork() {
+  wait();
+  const std::lock_guard lock(queue_->mutex);
+  if (queue_->thread.joinable()) queue_->thread.detach();  // this is it
+}
 
 void LateWork::add(std::function<void()> work) {
   const std::lock_guard lock(queue_->mutex);
   queue_->work.push_back(std::move(work));
   if (std::exchange(queue_->has_thread, true)) return;
+  queue_->join();
   try {
-    std::thread([queue = queue_] { queue->run(); }).detach();
+    queue_->thread = std::thread([queue = queue_] { queue->run(); });
   } catch (const std::system_error&) {
     queue_->has_thread = false;  // then whoever waits does it
   }
@@ -56,10 +67,13 @@ void LateWork::wait() {
   std::unique_lock lock(queue_->mutex);
   if (queue_->runner == std::this_thread::get_id()) return;
   queue_->ended.wait(lock, [&] { return !queue_->has_thread; });
-  if (queue_->work.empty()) return;
-  queue_->has_thread = true;
-  lock.unlock();
-  queue_->run();
+  if (!queue_->work.empty()) {
+    queue_->has_thread = true;
+    lock.unlock();
+    queue_->run();
+    lock.lock();
+  }
+  if (!queue_->has_thread) queue_->join();
 }
 
 bool LateWork::is_own_thread() const {

@@ -53,6 +53,7 @@ void Writer::reset(MessageVersion version) {
   }
   begin_ = end_;
   attached_bytes_ = 0;
+  attaches_texts_ = false;
   attachments_.clear();
   version_ = version;
   clear();
@@ -173,7 +174,11 @@ void Writer::string_element(const ElementName& name, std::string_view text) {
     fail(ErrorCode::protocol_error, too_long, name.text);
     return;
   }
-  prepend_bytes(text.data(), text.size());
+  if (attaches_texts_) {
+    prepend_array(std::as_bytes(std::span(text)), MemoryRef());
+  } else {
+    prepend_bytes(text.data(), text.size());
+  }
   element(name, ElementType::string, {}, static_cast<std::uint32_t>(text.size()), end);
 }
 

@@ -79,6 +79,31 @@ std::vector<std::future<std::size_t>> ask_all(std::vector<Client<CounterStub>>& 
   return calls;
 }
 
+// The request, its text as a value, the answer, and what of it waits to be sent: no more than a
+// node has for clients, so it may be all that one of them needs at a time.
+TEST(AnswerRoom, TextsOfTheLargestMessagesAreSentBackToAClientThatIsAlone) {
+  Studio studio;
+  auto client = studio.connect();
+  const std::string text(std::size_t{11} * 1024 * 1024, 'x');
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(client->echo(text), text);
+}
+
+TEST(AnswerRoom, LargeTextsOfSeveralClientsTakeTurns) {
+  Studio studio;
+  auto clients = studio.connect(6);
+  const std::string text(std::size_t{6} * 1024 * 1024, 'x');
+  std::vector<std::future<bool>> calls;
+  for (auto& client : clients) {
+    calls.push_back(std::async(std::launch::async, [&] {
+      for (int i = 0; i < 3; ++i) {
+        if (client->echo(text) != text) return false;
+      }
+      return true;
+    }));
+  }
+  for (auto& call : calls) EXPECT_TRUE(call.get());
+}
+
 TEST(AnswerRoom, HandlersThatMakeLargeAnswersTakeTurnsWhereThereIsNoRoomForAll) {
   Studio studio;
   auto clients = studio.connect(12);

@@ -197,6 +197,7 @@ void ServerEndpoint::step_generator(const Question& question, Decoder& decoder,
   }
   if (generator->result != nullptr) result = generator->result->make();
   HandlerMemory made(*this, question, host_->answer_sizes().expected(*generator->member));
+  made.expect();
   if (!generator->source->rr_step(parameter.get(), result.get())) {
     throw Error(ErrorCode::stop_iteration, "");
   }

@@ -18,13 +18,17 @@ struct Question;
 /// refused for it. With the dispatch turn.
 class HandlerMemory final : private codec::LargeAllocations {
  public:
-  /// Waits until there is room (Budget::patience), but not with requests that came with others:
-  /// their answers gather. Throws rr::Error (out_of_system_resource), as does what allocates.
+  /// Draws nothing yet, but for arrays that are made meanwhile.
   HandlerMemory(ServerEndpoint& endpoint, const Question& question, std::size_t expected);
   ~HandlerMemory() = default;
   HandlerMemory(const HandlerMemory&) = delete;
   HandlerMemory& operator=(const HandlerMemory&) = delete;
 
+  /// Draws what is expected: when the request has been read, since whoever waits for that must find
+  /// room (channel::Pool). Waits until there is some (Budget::patience), but not with requests that
+  /// came with others: their answers gather. Throws rr::Error (out_of_system_resource), as does what
+  /// allocates.
+  void expect();
   /// What follows is not the handler's: what it has made is drawn anew where it waits to be sent.
   /// Returns what was drawn for it.
   channel::Charge end();
@@ -35,6 +39,7 @@ class HandlerMemory final : private codec::LargeAllocations {
   void grow_to(std::size_t bytes);
 
   ServerEndpoint& endpoint_;
+  const std::size_t expected_;
   const bool may_wait_;
   channel::Charge room_;  // has no account until something is drawn: most handlers make little
   std::size_t used_ = 0;  // by arrays

@@ -22,6 +22,7 @@ void Request::read_arguments(void* const* values) const {
   const service::Question& question = source_->question;
   Decoder decoder = question.decoder(&source_->types);
   endpoint::read_values(decoder, question.entry, source_->member.parameters, values);
+  source_->made.expect();
 }
 
 void Request::answer(const void* value) {

@@ -158,7 +158,11 @@ void ServerEndpoint::answer_value(const Question& question, std::string_view nam
 void ServerEndpoint::answer_result(const Question& question, const Member& member,
                                    HandlerMemory& made, const void* value) {
   const channel::OfferedCharge made_before(made.end());
+  // What the request has brought goes when its handler has returned, which is soon.
+  const channel::OfferedCharge decoded(question.decoded != nullptr ? question.decoded->end()
+                                                                   : channel::Charge());
   Writer& writer = begin_answer(question);
+  writer.attach_texts();
   member.type->write(writer, member.kind == MemberKind::function ? "return" : "value", value);
   if (writer.failed()) throw endpoint::latched(writer);
   host_->answer_sizes().note(member, writer.size());

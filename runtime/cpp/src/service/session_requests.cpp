@@ -135,7 +135,7 @@ void ServerEndpoint::handle_question(Question question) {
     answer_nothing(question);
     return;
   }
-  DecodedMemory decoded(*this);
+  DecodedMemory decoded(*this, question);
   question.decoded = &decoded;
   const CurrentEndpoint current(*this, entry.service_path);
   std::exception_ptr exception;
@@ -265,6 +265,7 @@ void ServerEndpoint::answer_member(Question& question, MemberKind kind) {
     throw Error(ErrorCode::write_only_member, "Write only property");
   }
   HandlerMemory made(*this, question, is_set ? 0 : host_->answer_sizes().expected(member));
+  if (member.parameters.empty()) made.expect();
   Request::Source source{*this, question, *host_->types(), member, object, is_set, made};
   Request request(source);
   try {
