@@ -266,8 +266,7 @@ TEST_F(CredentialsOfC, GoInClearToFoundUrlsOnlyWhereTheProgramSaysSo) {
   const auto server = std::make_unique<Node>(NodeOptions{.name = "found"});
   const auto users =
       std::make_shared<PasswordUsers>("alice " + PasswordUsers::hash("secret") + " _\n");
-  server->register_service("counter", std::make_shared<Counter>("found"),
-                           {.users = users});
+  server->register_service("counter", std::make_shared<Counter>("found"), {.users = users});
   server->listen_tcp(0, "127.0.0.1");
   server->discovery().announce({.network = network_, .period = std::chrono::milliseconds(200)});
 

@@ -35,7 +35,7 @@ struct ServiceClient {
 /// OutOfSystemResource.
 struct ServiceLimits {
   /// Objects besides the root, those of clients' own included.
-  std::size_t objects = 16'384;
+  std::size_t objects = 8'192;
   /// While there are more than so many, those that nobody uses any more are released when a session
   /// ends.
   std::size_t unused_objects = 1'024;

@@ -144,6 +144,8 @@ class Writer : public Latch {
   void reset(MessageVersion version);
   [[nodiscard]] MessageVersion version() const { return version_; }
 
+  /// When the message has been sent, and nothing of it is needed any more: a large buffer goes.
+  void release();
   /// Until reset(): what is written stays until the message has been sent, texts too, so that large
   /// ones need not be copied.
   void attach_texts() { attaches_texts_ = true; }

@@ -19,8 +19,9 @@ namespace rr::channel {
 ///
 /// What comes leaves room for what is made of it, so that peers do not wait for each other:
 /// messages may fill half of the pool, or as much as one of them takes; what is read from them goes
-/// up to three quarters; answers, and what is kept, have all of it. Messages that come in parts
-/// leave room for the rest of the largest, at most a third of the pool.
+/// up to three quarters; what handlers make leaves a sixteenth; answers, and what is kept, have all
+/// of it. Messages that come in parts leave room for the rest of the largest, at most a third of
+/// the pool.
 class Pool {
  public:
   /// `largest`: a message.

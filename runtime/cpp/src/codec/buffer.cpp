@@ -80,8 +80,8 @@ Allocation codec::allocate_fresh(std::size_t size) {
   return is_large(size) ? allocate_large(size, codec::take_fresh_block) : allocate(size);
 }
 
-codec::WatchedThread::WatchedThread(LargeAllocations* watch) noexcept
-    : outer_(std::exchange(rr::watch, watch)) {}
+codec::WatchedThread::WatchedThread(LargeAllocations* next) noexcept
+    : outer_(std::exchange(watch, next)) {}
 
 codec::WatchedThread::~WatchedThread() { watch = outer_; }
 

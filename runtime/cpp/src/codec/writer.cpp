@@ -59,6 +59,10 @@ void Writer::reset(MessageVersion version) {
   clear();
 }
 
+void Writer::release() {
+  if (capacity() > most_kept) reset(version_);
+}
+
 void Writer::grow(std::size_t size) {
   const std::size_t kept = used();
   std::size_t larger = std::max({first_buffer, capacity() * 2, kept + size});

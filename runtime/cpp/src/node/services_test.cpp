@@ -96,6 +96,16 @@ TEST(Services, AClientCanBeSentAway) {
   EXPECT_TRUE(pair.service->clients().empty());
 }
 
+TEST(Services, DoNotListAClientThatHasClosedItsSession) {
+  Pair pair;
+  for (int i = 0; i < 200; ++i) {
+    auto counter = pair.connect();
+    ASSERT_EQ(pair.service->clients().size(), 1U);
+    counter.close();
+    ASSERT_TRUE(pair.service->clients().empty()) << i;
+  }
+}
+
 TEST(Services, OneOfSeveralClientsCanBeSentAway) {
   Pair pair;
   auto first = pair.connect();

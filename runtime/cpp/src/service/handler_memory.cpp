@@ -37,7 +37,7 @@ void HandlerMemory::grow_to(std::size_t bytes) {
   if (wanted <= room_.bytes()) return;
   if (room_.bytes() == 0) room_ = channel::Charge(endpoint_.connection().account());
   const std::size_t more = wanted - room_.bytes();
-  const auto draw = [&] { return room_.add_making(more); };
+  const auto draw = [&] { return may_wait_ ? room_.add_making(more) : room_.add(more); };
   if (draw()) return;
   if (may_wait_ && wait_for_room(endpoint_, endpoint_.core()->options().budget.patience, draw)) {
     return;

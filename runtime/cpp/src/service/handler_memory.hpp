@@ -26,8 +26,8 @@ class HandlerMemory final : private codec::LargeAllocations {
 
   /// Draws what is expected: when the request has been read, since whoever waits for that must find
   /// room (channel::Pool). Waits until there is some (Budget::patience), but not with requests that
-  /// came with others: their answers gather. Throws rr::Error (out_of_system_resource), as does what
-  /// allocates.
+  /// came with others: their answers gather. Throws rr::Error (out_of_system_resource), as does
+  /// what allocates.
   void expect();
   /// What follows is not the handler's: what it has made is drawn anew where it waits to be sent.
   /// Returns what was drawn for it.

@@ -52,7 +52,7 @@ std::string spelled_index(const ServedObject& parent, const endpoint::PathSegmen
 }
 
 // Bytes of an object's path, on average; it is kept several times.
-constexpr std::size_t path_room = 512;
+constexpr std::size_t path_room = 256;
 // What an object takes, about; the program's own part of it is not known.
 constexpr std::size_t object_cost = 1024;
 constexpr std::size_t copies_of_path = 7;

@@ -14,6 +14,8 @@ namespace {
 
 // Header of a message of several entries, with what senders leave free.
 constexpr std::size_t header_room = 512;
+// Small answers are copied into the message in which they leave, which nobody is charged for.
+constexpr std::size_t most_gathered = std::size_t{1024} * 1024;
 // What an answer that waits takes besides its bytes, about.
 constexpr std::size_t answer_cost = 256;
 
@@ -27,9 +29,9 @@ Error too_much() {
 ResponseBatch::ResponseBatch(const std::shared_ptr<ServerEndpoint>& endpoint, std::size_t count)
     : endpoint_(endpoint),
       version_(endpoint->connection().version()),
-      message_room_(
-          std::max<std::size_t>(endpoint->core()->options().limits.message_size, 2 * header_room) -
-          header_room),
+      message_room_(std::clamp<std::size_t>(endpoint->core()->options().limits.message_size,
+                                            2 * header_room, most_gathered) -
+                    header_room),
       charge_(endpoint->connection().account()),
       settled_(count),
       missing_(count) {}

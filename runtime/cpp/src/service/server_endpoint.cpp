@@ -69,6 +69,7 @@ void ServerEndpoint::send_answer(Writer& writer, std::uint32_t entry_count, Entr
       connection_->stream(writer);
       break;
   }
+  writer.release();  // the thread may not write anything for long, and nobody is charged for it
 }
 
 void ServerEndpoint::stream_packet(Writer& writer, const EntryHeader& header,

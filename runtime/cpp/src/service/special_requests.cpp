@@ -341,6 +341,8 @@ std::uint32_t ServerEndpoint::disconnect(Decoder& decoder, const Message& messag
     throw service_not_found();
   }
   is_leaving_ = true;
+  // Before the answer: who has closed a session is not to find it listed.
+  if (is_member_.exchange(false)) host_->remove_client(*this);
   return 0;
 }
 
