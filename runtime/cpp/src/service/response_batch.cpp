@@ -15,7 +15,7 @@ namespace {
 // Header of a message of several entries, with what senders leave free.
 constexpr std::size_t header_room = 512;
 // Small answers are copied into the message in which they leave, which nobody is charged for.
-constexpr std::size_t most_gathered = std::size_t{1024} * 1024;
+constexpr std::size_t most_copied = std::size_t{1024} * 1024;
 // What an answer that waits takes besides its bytes, about.
 constexpr std::size_t answer_cost = 256;
 
@@ -29,9 +29,9 @@ Error too_much() {
 ResponseBatch::ResponseBatch(const std::shared_ptr<ServerEndpoint>& endpoint, std::size_t count)
     : endpoint_(endpoint),
       version_(endpoint->connection().version()),
-      message_room_(std::clamp<std::size_t>(endpoint->core()->options().limits.message_size,
-                                            2 * header_room, most_gathered) -
-                    header_room),
+      message_room_(
+          std::max<std::size_t>(endpoint->core()->options().limits.message_size, 2 * header_room) -
+          header_room),
       charge_(endpoint->connection().account()),
       settled_(count),
       missing_(count) {}
@@ -47,6 +47,7 @@ ResponseBatch::Answer ResponseBatch::kept(const Entry& request, Writer& answer) 
   for (const Piece& piece : pieces) {
     if (!answer.owner(piece)) copied += piece.size;
   }
+  result.copied = copied;
   const Allocation memory = allocate(copied);
   std::byte* room = memory.bytes;
   for (const Piece& piece : pieces) {
@@ -99,6 +100,7 @@ void ResponseBatch::settle(std::size_t place) {
   for (; ready_ != settled_.size() && settled_[ready_]; ++ready_) {
     if (answer == waiting_.end() || answer->first != ready_) continue;
     ready_size_ += answer->second.size;
+    ready_copied_ += answer->second.copied;
     ++answer;
   }
 }
@@ -106,13 +108,17 @@ void ResponseBatch::settle(std::size_t place) {
 // Under the lock: the next answers, if they fill a message or no more will come.
 ResponseBatch::Answers ResponseBatch::take_ready() {
   Answers answers;
-  if (missing_ != 0 && !must_flush_ && ready_size_ <= message_room_) return answers;
+  const bool is_full = ready_size_ > message_room_ || ready_copied_ > most_copied;
+  if (missing_ != 0 && !must_flush_ && !is_full) return answers;
   std::size_t size = 0;
+  std::size_t copied = 0;
   while (!waiting_.empty() && waiting_.begin()->first < ready_) {
     const auto first = waiting_.begin();
-    if (!answers.empty() && size + first->second.size > message_room_) return answers;
     size += first->second.size;
+    copied += first->second.copied;
+    if (!answers.empty() && (size > message_room_ || copied > most_copied)) return answers;
     ready_size_ -= first->second.size;
+    ready_copied_ -= first->second.copied;
     answers.push_back(std::move(first->second));
     waiting_.erase(first);
   }

@@ -44,7 +44,8 @@ class ResponseBatch {
   struct Answer {
     std::vector<Part> parts{};
     std::size_t size = 0;
-    std::size_t cost = 0;  // what is drawn for it
+    std::size_t copied = 0;  ///< bytes of it that are copied into the message in which it leaves
+    std::size_t cost = 0;    // what is drawn for it
     // Of the request, for an error in its place.
     EntryType request_type{};
     std::uint32_t request_id = 0;
@@ -71,6 +72,7 @@ class ResponseBatch {
   std::size_t missing_;                    // places that are not settled
   std::size_t ready_ = 0;                  // all before this place are settled
   std::size_t ready_size_ = 0;             // bytes of answers before it
+  std::size_t ready_copied_ = 0;           // those of them that are to be copied
   bool must_flush_ = false;                // what is ready, though more would fit
   bool is_sending_ = false;                // a thread is in flush()
 };
