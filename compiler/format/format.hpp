@@ -21,7 +21,7 @@ enum class Reason : std::uint8_t {
   missing_line_end,  ///< of the last line
 };
 
-/// What a user is told of it: `blank line missing above`.
+/// The message for the user: `blank line missing above`.
 std::string_view text_of(Reason reason);
 
 /// Replaces the bytes from `begin` to `end`.

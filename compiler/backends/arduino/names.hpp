@@ -16,7 +16,7 @@ using model::code_name;
 
 /// A word of C++, or a macro or function of the Arduino core.
 bool is_reserved(std::string_view word);
-/// The name with `_` behind it when it is reserved.
+/// The name followed by `_` when it is reserved.
 std::string identifier(std::string_view name);
 /// `moveTo` for move_to; a name in capitals keeps them.
 std::string camel(std::string_view name);

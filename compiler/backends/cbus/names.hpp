@@ -20,7 +20,7 @@ std::string prefix_of(std::string_view service);
 std::string type_name(const model::Record& record);
 /// `EXPERIMENTAL_ARM_BUS_H`
 std::string guard_of(std::string_view service);
-/// The name with `_` behind it when C or C++ reserves it; then R0903 is reported.
+/// The name followed by `_` when C or C++ reserves it; then R0903 is reported.
 std::string field_name(std::string_view name, Span span, Report& report);
 
 /// The names of all types together, since C has one space for them.

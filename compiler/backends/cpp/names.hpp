@@ -21,7 +21,7 @@ using model::code_name;
 bool is_reserved(std::string_view word);
 /// Something of the global namespace, where services may not have a namespace of the same name.
 bool is_global_name(std::string_view word);
-/// The name itself, with `_` behind it when it is reserved.
+/// The name itself, followed by `_` when it is reserved.
 std::string identifier(std::string_view name);
 
 /// `experimental::mount` for experimental.mount.

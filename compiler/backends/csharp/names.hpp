@@ -40,7 +40,7 @@ bool has_default(const model::Object& object);
 /// The class that holds the constants of a definition.
 inline constexpr std::string_view constants_class = "Constants";
 
-/// `name`, with `_` behind it where C# or the type around it, `owner`, has it already; then R0903
+/// `name`, followed by `_` where C# or the type around it, `owner`, has it already; then R0903
 /// is reported.
 std::string member_name(std::string_view wire_name, std::string_view owner, Span span,
                         Report& report);

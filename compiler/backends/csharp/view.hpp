@@ -90,9 +90,9 @@ struct MemberView : MemberFacts {
   std::vector<ParameterView> parameters;
   std::vector<ParameterView> writes;  ///< the parameters from the last to the first
   std::string signature;              ///< `double pan, double tilt`
-  std::string signature_before;       ///< the same with `, ` behind it, unless it is empty
+  std::string signature_before;       ///< the same with `, ` after it, unless it is empty
   std::string arguments;              ///< `pan, tilt`
-  std::string arguments_before;       ///< the same with `, ` behind it, unless it is empty
+  std::string arguments_before;       ///< the same with `, ` after it, unless it is empty
   std::string cancel;                 ///< a name for the token behind the parameters
   std::string client;                 ///< a name for the client before the parameters
   std::string urgent;                 ///< `, MemberAccess.Urgent` or empty
@@ -100,7 +100,7 @@ struct MemberView : MemberFacts {
   std::string task;                   ///< function, callback: what an asynchronous one gives
   std::string result;                 ///< `double`, `void`, `Generator<double>`
   std::string served;                 ///< function: what the skeleton's member gives
-  std::string served_before;          ///< function: what it takes, with `, ` behind it likewise
+  std::string served_before;          ///< function: what it takes, with `, ` after it likewise
   std::string served_cancel;          ///< a name for the token behind that
   std::string invocation;             ///< function: `RrCallMoveTo(pan, tilt)`
   std::string verb;                   ///< `Run`, `Open`, `OpenSink`, `OpenFilter`

@@ -25,7 +25,7 @@ bool is_class_word(std::string_view word);
 /// A function of MATLAB or Octave that hides a package of the same name.
 bool is_function(std::string_view word);
 
-/// The name itself, with `_` behind it when it is a keyword.
+/// The name itself, followed by `_` when it is a keyword.
 std::string identifier(std::string_view name);
 /// A type: not a keyword, nor a word that a file with a class cannot begin with.
 std::string type_name(std::string_view name);

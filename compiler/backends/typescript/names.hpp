@@ -35,7 +35,7 @@ std::string service_name(const model::Object& object);
 /// The constants of an object or record.
 std::string constants_name(std::string_view owner);
 
-/// `name` as a method, with `_` behind it where each object has it already; then R0903 is reported.
+/// `name` as a method, followed by `_` where each object has it already; then R0903 is reported.
 std::string member_name(std::string_view wire_name, Span span, Report& report);
 
 /// The names of one definition's module.

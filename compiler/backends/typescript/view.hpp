@@ -94,7 +94,7 @@ struct MemberView : MemberFacts {
   std::string stub;           ///< empty for varobject
   std::string skeleton;       ///< empty for varobject
   std::string index;          ///< objref: `index: number`, or empty
-  std::string index_more;     ///< the same with `, ` behind it
+  std::string index_more;     ///< the same with `, ` after it
   std::string handle;         ///< event, pipe, wire, callback, memory: the stub's type
   std::string handle_served;  ///< the skeleton's
   std::string handle_call;    ///< `rr_pipe`

@@ -16,7 +16,7 @@ template <class Take>
 bool wait_for_room(ServerEndpoint& endpoint, channel::Milliseconds patience, Take&& take) {
   constexpr channel::Milliseconds period{2};
   channel::Reactor::about_to_wait();
-  const channel::Time until = channel::Clock::now() + patience;
+  const channel::Time until = channel::after(channel::Clock::now(), patience);
   while (!take()) {
     if (channel::Clock::now() >= until || endpoint.connection().is_closed()) return false;
     std::this_thread::sleep_for(period);
