@@ -177,7 +177,7 @@ void ServiceExchange::converse(std::span<const std::byte> input, const Taker& ta
     if (pieces.size() > 1) await_reading(client_);
   }
   if (rest.empty()) {
-    ::shutdown(client_, SHUT_WR);
+    if (!waits_for_answer_) ::shutdown(client_, SHUT_WR);
   } else {
     send_all(client_, marker());
   }
