@@ -250,9 +250,10 @@ bool can_be_message(std::span<const std::byte> begun, std::size_t whole);
 /// `message` views `bytes`. Sources: 01, section 9; 02, section 10.
 bool read_message(std::span<const std::byte> bytes, const Limits& limits, bool standard_strings,
                   Message& message, const char** what);
-/// The same, with the first entry at hand, which saves reading it again.
+/// The same, with the first entry at hand, which saves reading it again. `progress`, unless null,
+/// is called now and then while a message with very many elements is checked.
 bool read_message(std::span<const std::byte> bytes, const Limits& limits, bool standard_strings,
-                  Message& message, Entry& first);
+                  Message& message, Entry& first, void (*progress)() = nullptr);
 
 /// The check that read_message makes of every element, for elements from elsewhere: `count` of them
 /// must fill `bytes` exactly, at all depths. Without it a walk of nested elements has no limit of

@@ -90,6 +90,21 @@ TEST(Budgets, BlocksThatHaveBeenUsedAreNotTakenForWhatIsChargedAsItComes) {
   EXPECT_GE(codec::spare_block_bytes(), message.size());
 }
 
+// Giving blocks back takes milliseconds; whoever finds no room need not wait for that.
+TEST(Budgets, SpareBlocksOfAFullPoolGoOnAnotherThread) {
+  const auto reactor = std::make_shared<Reactor>(4);
+  reactor->start();
+  const Pools pools = make_pools({.budget = {.before_session = 64 * kib}});
+  watch_pools(pools, reactor);
+  codec::give_back_large_block(codec::take_large_block(mebibyte));
+  ASSERT_GE(codec::spare_block_bytes(), mebibyte);
+  const auto account = std::make_shared<Account>(pools.before_session, no_limit);
+  Charge charge(account);
+  EXPECT_FALSE(charge.add(mebibyte));
+  EXPECT_TRUE(comes_true([] { return codec::spare_block_bytes() == 0; }));
+  reactor->stop();
+}
+
 TEST(Budgets, WhatAHandlerKeepsIsNotChargedAfterwards) {
   std::mutex mutex;
   std::vector<MemoryRef> kept;

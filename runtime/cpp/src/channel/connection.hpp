@@ -82,10 +82,6 @@ enum class Priority : std::uint8_t {
   fixed,   ///< nothing, and nothing overtakes it or what waits before it
 };
 
-/// What one connection has brought is handled by a polling thread for so long before it serves
-/// others.
-inline constexpr std::chrono::microseconds longest_turn{250};
-
 /// Carries messages to and from one other node. Any thread may send.
 ///
 /// Reading has no thread of its own: a thread that waits for an answer reads the connection itself

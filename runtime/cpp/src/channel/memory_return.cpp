@@ -57,6 +57,32 @@ class MemoryReturn final : public Timer, public std::enable_shared_from_this<Mem
   std::size_t fallen_before_ = 0;       // of them, when this was last due
 };
 
+// Spare blocks go when a pool is full. That takes milliseconds, and who finds the pool full may be
+// the polling thread.
+class SpareDrop final : public Timer, public std::enable_shared_from_this<SpareDrop> {
+ public:
+  explicit SpareDrop(std::weak_ptr<Reactor> reactor) : reactor_(std::move(reactor)) {}
+  ~SpareDrop() {
+    if (const auto reactor = reactor_.lock()) reactor->cancel(*this);
+  }
+
+  void begin() {
+    if (codec::spare_block_bytes() == 0 || is_due_.exchange(true)) return;
+    if (const auto reactor = reactor_.lock()) {
+      reactor->schedule(*this, weak_from_this(), Clock::now());
+    }
+  }
+
+ private:
+  void on_timer() override {
+    is_due_ = false;
+    codec::drop_spare_blocks();
+  }
+
+  const std::weak_ptr<Reactor> reactor_;
+  std::atomic<bool> is_due_{false};
+};
+
 }  // namespace
 
 // glibc raises both thresholds when a program frees a large block. Each heap may then keep tens of
@@ -78,10 +104,11 @@ void fix_heap_thresholds() {
 
 void watch_pools(const Pools& pools, const std::shared_ptr<Reactor>& reactor) {
   const auto memory_return = std::make_shared<MemoryReturn>(reactor);
+  const auto spare_drop = std::make_shared<SpareDrop>(reactor);
   for (const auto& pool : {pools.before_session, pools.sessions}) {
     pool->set_on_fall(codec::smallest_large_block,
                       [memory_return](std::size_t fallen) { memory_return->begin(fallen); });
-    pool->set_on_full(codec::drop_spare_blocks);
+    pool->set_on_full([spare_drop] { spare_drop->begin(); });
   }
 }
 

@@ -176,10 +176,13 @@ void Reactor::wake_watching_thread() {
 
 void Reactor::poll(Polling& polling) {
   current_polling = &polling;
+  Time yield_at = Time::min();  // while there is always something posted
   while (handle_events(polling)) {
     if (has_work_.load(std::memory_order_acquire) && !run_posted(polling)) break;
     if (is_stopping_.load(std::memory_order_acquire)) break;
-    const int patience = has_work_.load(std::memory_order_acquire) ? 0 : -1;
+    const bool must_go_on = has_work_.load(std::memory_order_acquire);
+    if (must_go_on) yield_processor(yield_at);
+    const int patience = must_go_on ? 0 : -1;
     const int found = epoll_wait(epoll_, events_.get(), events_at_once, patience);
     event_count_ = found > 0 ? static_cast<std::size_t>(found) : 0;
     next_event_ = 0;
@@ -190,6 +193,7 @@ void Reactor::poll(Polling& polling) {
 // Whoever takes the turn away does so between these two only, and from the handler that it saw.
 void Reactor::enter(Polling& polling, Pollable* pollable) {
   handling_ = pollable;
+  polling.yield_at = Time::min();
   turn_.store(++polling.turn);
   if (watching_thread_sleeps_.load()) wake_watching_thread();
 }
@@ -296,6 +300,30 @@ void Reactor::give_way() {
   std::unique_lock lock(reactor.mutex_);
   reactor.hand_over(*polling, true);
   reactor.report_missing_thread(lock);
+}
+
+// Others come first where one processor is for all, who wait for an answer of this thread, too.
+void Reactor::yield_processor(Time& at) {
+  const Time now = Clock::now();
+  if (now < at) return;
+  at = now + longest_turn;
+  std::this_thread::yield();
+}
+
+void Reactor::yield() {
+  thread_local Time yield_at = Time::min();
+  Polling* const polling = current_polling;
+  if (polling == nullptr || !polling->reactor->is_inside(*polling)) {
+    yield_processor(yield_at);
+    return;
+  }
+  const Time now = Clock::now();
+  if (polling->yield_at == Time::min()) {
+    polling->yield_at = now + longest_turn;
+  } else if (now >= polling->yield_at) {
+    polling->yield_at = now + longest_turn;
+    give_way();
+  }
 }
 
 bool Reactor::is_polling() const {

@@ -132,6 +132,10 @@ class Reactor {
   /// Before a handler that is expected to take long: another thread polls from now on, if this one
   /// has until now. Nothing happens when there is none.
   static void give_way();
+  /// To be called now and then by work that may be long, under no lock. When it has kept the
+  /// polling thread for longest_turn another one polls from now on; and a thread that does not poll
+  /// lets others have its processor first, as often.
+  static void yield();
   /// True while the calling thread polls: what it does holds up others.
   [[nodiscard]] bool is_polling() const;
   /// What waits for threads of a share is looked at again.
@@ -184,6 +188,7 @@ class Reactor {
   [[nodiscard]] bool is_inside(const Polling& polling) const;
   bool handle_events(Polling& polling);
   bool run_posted(Polling& polling);
+  static void yield_processor(Time& at);
   bool next_posted(Posted& next, Handling& admission);
   void run(const std::function<void()>& work) const;
   bool add_thread();

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -11,6 +13,7 @@
 #include <future>
 #include <memory>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -58,6 +61,13 @@ class LongTimer final : public Timer {
     may_end.get_future().wait();
   }
 };
+
+// In nanoseconds, as struct sched_attr says it: after 24 bytes of other things.
+std::uint64_t slice_of_this_thread() {
+  std::array<std::uint64_t, 7> attributes{};
+  EXPECT_EQ(::syscall(SYS_sched_getattr, 0, attributes.data(), sizeof attributes, 0), 0);
+  return attributes[3];
+}
 
 TEST(Reactor, StopsWhileATimerRuns) {
   const auto owner = std::make_shared<int>();
@@ -211,6 +221,55 @@ TEST(Reactor, PostedWorkOfAPollableThatBlocksTakesAThreadOfItsShare) {
     std::this_thread::yield();
   }
   EXPECT_EQ(guest->thread_share()->held(), 0U);
+  reactor.stop();
+}
+
+// Others are not to wait until the thread that watches has seen twice that it takes long. That one
+// may be faster on a busy machine, but not always.
+TEST(Reactor, WorkThatTakesLongGivesWayByItself) {
+  Reactor reactor(4);
+  reactor.start();
+  bool has_given_way = false;
+  for (int i = 0; i < 200 && !has_given_way; ++i) {
+    const auto share = reactor.open_share("address " + std::to_string(i));
+    std::promise<bool> done;
+    reactor.post(
+        [&] {
+          while (reactor.is_polling()) Reactor::yield();
+          done.set_value(!share->is_slow());  // what is found stuck is
+        },
+        share);
+    has_given_way = done.get_future().get();
+  }
+  EXPECT_TRUE(has_given_way);
+  reactor.stop();
+}
+
+// Kernels before 6.12 know no slices of ordinary threads.
+TEST(Reactor, ItsThreadsAskForShortSlices) {
+  Reactor reactor(4);
+  reactor.start();
+  const std::uint64_t usual = slice_of_this_thread();
+  std::promise<std::uint64_t> asked;
+  reactor.post([&] { asked.set_value(slice_of_this_thread()); });
+  EXPECT_EQ(asked.get_future().get(), usual == 0 ? 0U : 100'000U);
+  EXPECT_EQ(slice_of_this_thread(), usual) << "the program's own threads are left alone";
+  reactor.stop();
+}
+
+TEST(Reactor, WorkThatIsShortKeepsThePollingThread) {
+  Reactor reactor(4);
+  reactor.start();
+  bool polls_still = false;
+  for (int i = 0; i < 200 && !polls_still; ++i) {
+    std::promise<bool> done;
+    reactor.post([&] {
+      Reactor::yield();
+      done.set_value(reactor.is_polling());
+    });
+    polls_still = done.get_future().get();
+  }
+  EXPECT_TRUE(polls_still);
   reactor.stop();
 }
 

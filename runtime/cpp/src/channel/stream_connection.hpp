@@ -207,6 +207,8 @@ class StreamConnection final : public Connection,
   void refuse_stream(const Scratch& scratch, std::size_t size);
   bool take_read_turn(bool until_end = false);
   void read_as_reactor(bool until_end);
+  [[nodiscard]] bool takes_long() const;
+  void note_read(bool was_long);
   void read_soon(bool until_end);
   bool leave_read_turn(Scratch& scratch, bool may_dispatch);
   bool hand_on(Scratch& scratch, bool may_dispatch, bool& must_post);
@@ -396,12 +398,12 @@ class StreamConnection final : public Connection,
   bool is_layered_ = false;       // with the read turn: the carrier is a LayeredCarrier
   NodeId certified_node_;  // what the other side has proved to be; once, before is_proven_ is set
   std::atomic<bool> is_proven_{false};
-  bool has_receive_timeout_ = false;     // with the read turn
-  bool acknowledges_late_ = true;        // with the read turn
-  std::atomic<bool> takes_long_{false};  // written by who has just read
-  unsigned busy_receives_ = 0;           // with the read turn
-  std::uint32_t busy_leads_ = 0;         // with the read turn
-  bool holds_back_answers_ = false;      // with the dispatch turn
+  bool has_receive_timeout_ = false;         // with the read turn
+  bool acknowledges_late_ = true;            // with the read turn
+  std::atomic<std::uint8_t> long_reads_{0};  // in a row; written by who has just read
+  unsigned busy_receives_ = 0;               // with the read turn
+  std::uint32_t busy_leads_ = 0;             // with the read turn
+  bool holds_back_answers_ = false;          // with the dispatch turn
 
   std::mutex sending_;
   Outbox outbox_;                          // under sending_

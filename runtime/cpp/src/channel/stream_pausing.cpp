@@ -16,7 +16,7 @@ constexpr Milliseconds memory_pause{40};
 // Who has not opened a session sends small messages: so much is received at once.
 constexpr std::size_t stranger_receive = 8 * 1024;
 // So that others are looked at before a large message is whole.
-constexpr std::size_t largest_receive = std::size_t{256} * 1024;
+constexpr std::size_t largest_receive = std::size_t{128} * 1024;
 // The slowest that a message may come.
 constexpr std::size_t bytes_a_second = 64 * 1024;
 

@@ -3,6 +3,7 @@
 #include <sys/epoll.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <string_view>
@@ -17,8 +18,10 @@ namespace {
 // After so many full receives in a row other connections get their chance.
 constexpr int receives_at_once = 16;
 constexpr std::size_t bytes_at_once = std::size_t{128} * 1024;
-// A connection that has kept the polling thread for so long does not go before others next time.
+// A connection that has kept the polling thread for so long, twice in a row, does not go before
+// others next time. Once may be the system's doing, which has given the processor to others.
 constexpr std::chrono::microseconds long_time{100};
+constexpr std::uint8_t many_long_reads = 2;
 
 constexpr std::string_view not_our_protocol = "HTTP/1.1 404 File Not Found\r\n";
 
@@ -60,12 +63,22 @@ void StreamConnection::on_ready(std::uint32_t events) {
   if ((events & (EPOLLIN | end_events)) == 0) return;
   // Clients that keep the thread long are often ready at once: between two of them it is polled, so
   // that others wait for one of them and not for all.
-  if (role_ == Role::server && takes_long_.load(std::memory_order_relaxed)) {
+  if (role_ == Role::server && takes_long()) {
     if (until_end) is_end_in_sight_.store(true, std::memory_order_relaxed);
     read_soon(until_end);
   } else if (take_read_turn(until_end)) {
     read_as_reactor(until_end);
   }
+}
+
+bool StreamConnection::takes_long() const {
+  return long_reads_.load(std::memory_order_relaxed) >= many_long_reads;
+}
+
+void StreamConnection::note_read(bool was_long) {
+  const std::uint8_t before = long_reads_.load(std::memory_order_relaxed);
+  const int now = was_long ? std::min(before + 1, int{many_long_reads}) : 0;
+  long_reads_.store(static_cast<std::uint8_t>(now), std::memory_order_relaxed);
 }
 
 void StreamConnection::read_soon(bool until_end) {
@@ -109,14 +122,14 @@ void StreamConnection::read_as_reactor(bool until_end) {
     const bool may_stay = is_busy(last_received);
     const bool is_again = leave_read_turn(*scratch, true);
     if (!is_again && !has_more) {
-      takes_long_.store(Clock::now() - begin > long_time, std::memory_order_relaxed);
+      note_read(Clock::now() - begin > long_time);
       if (may_stay) stay(*scratch);
       return;
     }
     if (left == 1 || bytes >= bytes_at_once) break;
     if (!take_read_turn()) return;
   }
-  takes_long_.store(true, std::memory_order_relaxed);
+  long_reads_.store(many_long_reads, std::memory_order_relaxed);
   read_soon(until_end);
 }
 
@@ -207,7 +220,7 @@ bool StreamConnection::take(Scratch& scratch, Frame& frame) {
   Entry& first = scratch.first;
   scratch.parsed = 0;
   if (!read_message(frame.bytes, limits(), has_standard_strings_.load(std::memory_order_relaxed),
-                    message, first)) {
+                    message, first, &Reactor::yield)) {
     return false;
   }
   if (!was_heard_.load(std::memory_order_relaxed)) {
@@ -465,8 +478,8 @@ void StreamConnection::handle_frame(Scratch& scratch, const Frame& frame, bool i
   Message& message = scratch.message;
   // It could be read once, so it can be read again.
   const Limits any_size{.message_size = largest_size_, .depth = options_->limits.depth};
-  if (!is_parsed &&
-      !read_message(frame.bytes, any_size, has_standard_strings_, message, scratch.first)) {
+  if (!is_parsed && !read_message(frame.bytes, any_size, has_standard_strings_, message,
+                                  scratch.first, &Reactor::yield)) {
     return;
   }
   complete(message);

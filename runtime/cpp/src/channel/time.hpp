@@ -51,4 +51,8 @@ inline void wait_until(std::condition_variable& condition, std::unique_lock<std:
 #endif
 }
 
+/// What one connection has brought is handled by a polling thread for so long before it serves
+/// others.
+inline constexpr std::chrono::microseconds longest_turn{250};
+
 }  // namespace rr::channel

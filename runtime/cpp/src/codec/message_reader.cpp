@@ -115,7 +115,7 @@ const char* parse_begun_header(std::span<const std::byte> begun, std::size_t who
 }
 
 const char* check_message(std::span<const std::byte> bytes, const Limits& limits,
-                          UnknownCode unknown, Message& message, Entry& first) {
+                          UnknownCode unknown, Message& message, Entry& first, void (*progress)()) {
   if (const char* wrong = parse_header(bytes, limits, message)) return wrong;
   if (message.entry_count == 0 && unknown == UnknownCode::refuse) return "no entries";
   Cursor entries{message.entries.data(), message.entries.data() + message.entries.size()};
@@ -130,7 +130,7 @@ const char* check_message(std::span<const std::byte> bytes, const Limits& limits
             : parse_entry<UnknownCode::keep>(version, entries, &message.strings, entry);
     if (wrong == nullptr) {
       wrong = check_elements(version, entry.elements, entry.element_count, &message.strings,
-                             limits.depth, unknown);
+                             limits.depth, unknown, progress);
     }
     if (wrong != nullptr) return wrong;
   }
@@ -205,9 +205,10 @@ bool read_message(std::span<const std::byte> bytes, const Limits& limits, bool s
 }
 
 bool read_message(std::span<const std::byte> bytes, const Limits& limits, bool standard_strings,
-                  Message& message, Entry& first) {
+                  Message& message, Entry& first, void (*progress)()) {
   message.strings.reset(standard_strings);
-  return codec::check_message(bytes, limits, codec::UnknownCode::refuse, message, first) == nullptr;
+  return codec::check_message(bytes, limits, codec::UnknownCode::refuse, message, first,
+                              progress) == nullptr;
 }
 
 bool EntryReader::next(Entry& entry) {

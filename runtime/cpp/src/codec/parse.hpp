@@ -330,13 +330,15 @@ const char* parse_begun_header(std::span<const std::byte> begun, std::size_t who
                                Message& message);
 
 /// Walks `count` elements that must fill `bytes` exactly, at all depths, and believes nothing.
+/// Calls `progress`, unless it is null, after every thousand of them.
 const char* check_elements(MessageVersion version, std::span<const std::byte> bytes,
                            std::uint32_t count, const StringTable* strings, std::uint32_t depth,
-                           UnknownCode unknown);
+                           UnknownCode unknown, void (*progress)() = nullptr);
 
 /// parse_header() and check_elements() for all entries, which must fill the message exactly. With
 /// UnknownCode::keep a message may have no entries, as recordings of refused messages do.
 const char* check_message(std::span<const std::byte> bytes, const Limits& limits,
-                          UnknownCode unknown, Message& message, Entry& first);
+                          UnknownCode unknown, Message& message, Entry& first,
+                          void (*progress)() = nullptr);
 
 }  // namespace rr::codec

@@ -269,6 +269,38 @@ TEST(Reader, BoundsTheDepth) {
   }
 }
 
+// Who checks a large message may let others go first, however its elements are nested.
+TEST(Reader, SaysThatItGoesOnAfterEachThousandElements) {
+  static int calls = 0;
+  const auto calls_for = [](MessageVersion version, int lists, int items) {
+    Writer writer;
+    writer.reset(version);
+    const std::size_t end = writer.position();
+    for (int i = 0; i < lists; ++i) {
+      const std::size_t list_end = writer.position();
+      for (int k = 0; k < items; ++k) {
+        writer.element(ElementName(k), ElementType::void_, {}, 0, writer.position());
+      }
+      writer.element(ElementName(i), ElementType::list, {}, static_cast<std::uint32_t>(items),
+                     list_end);
+    }
+    writer.element("value", ElementType::list, {}, static_cast<std::uint32_t>(lists), end);
+    writer.entry({.type = EntryType::function_call_req, .service_path = "svc", .member = "f"}, 1,
+                 end);
+    writer.message({}, 1);
+    Message message;
+    Entry first;
+    calls = 0;
+    EXPECT_TRUE(read_message(writer.copy(), Limits{}, false, message, first, [] { ++calls; }));
+    return calls;
+  };
+  for (const MessageVersion version : {MessageVersion::v2, MessageVersion::v4}) {
+    EXPECT_EQ(calls_for(version, 1, 1'000), 0);
+    EXPECT_EQ(calls_for(version, 1, 1'022), 1);
+    EXPECT_EQ(calls_for(version, 100, 100), 9);
+  }
+}
+
 TEST(Reader, ChecksElementsFromElsewhere) {
   const auto list = from_hex(
       "27 01 0576616c7565 6c00 02"

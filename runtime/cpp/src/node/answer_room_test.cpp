@@ -17,6 +17,7 @@
 #include "runtime/cpp/src/node/testing/counter.hpp"
 #include "runtime/cpp/src/node/testing/gate.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
+#include "runtime/cpp/src/node/testing/raw_client.hpp"
 
 namespace rr::testing {
 namespace {
@@ -191,6 +192,27 @@ TEST(AnswerRoom, IsGivenBackByHandlersThatThrow) {
   }
   camera->is_broken = false;
   EXPECT_EQ(client->blob(size).size(), size);
+}
+
+// So that others need not wait until a message with thousands of answers has been made.
+TEST(AnswerRoom, ManyGatheredAnswersLeaveInSeveralMessages) {
+  Node server;
+  auto service = server.register_service("counter", std::make_shared<Counter>());
+  RawClient client(server, "counter");
+  std::vector<RawClient::Request> requests;
+  for (std::uint32_t id = 1; id <= 600; ++id) {
+    requests.push_back({EntryType::property_get_req, "counter", "value", nullptr, id});
+  }
+  client.send(requests);
+  std::vector<std::size_t> sizes;
+  std::uint32_t last = 0;
+  while (last < requests.size()) {
+    const std::vector<RawClient::Answer> answers = client.receive_all();
+    ASSERT_FALSE(answers.empty());
+    sizes.push_back(answers.size());
+    for (const RawClient::Answer& answer : answers) EXPECT_EQ(answer.id, ++last);
+  }
+  EXPECT_EQ(sizes, (std::vector<std::size_t>{256, 256, 88}));
 }
 
 }  // namespace

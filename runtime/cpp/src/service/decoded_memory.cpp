@@ -26,6 +26,7 @@ bool DecodedMemory::draw(std::size_t bytes) {
     if (room_.bytes() > many_bytes && !std::exchange(has_given_way_, true)) {
       channel::Reactor::give_way();
     }
+    channel::Reactor::yield();
   }
   bytes_ += bytes;
   return true;

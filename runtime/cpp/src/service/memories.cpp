@@ -10,6 +10,7 @@
 
 #include "rr/error.hpp"
 #include "rr/type.hpp"
+#include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/endpoint/requests.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
 #include "runtime/cpp/src/service/directory.hpp"
@@ -27,6 +28,9 @@ namespace service {
 namespace {
 
 using Numbers = Array<std::uint64_t>;
+
+// Bytes whose reading keeps others waiting for long.
+constexpr std::size_t long_part = std::size_t{128} * 1024;
 
 // The part that a request names, in as many numbers as it has, and in one for each dimension.
 struct Part {
@@ -164,6 +168,7 @@ void ServerEndpoint::read_memory(const Question& question, Decoder& decoder, con
   check_size(part, form.item->size, directory_->core()->options().limits.message_size,
              question.entry);
   channel::Charge charge = charge_part(part, form.item->size, *connection_);
+  if (part.size > long_part / form.item->size) channel::Reactor::give_way();
   if (auto* const pieces = dynamic_cast<PieceMemory*>(&memory)) {
     const std::shared_ptr<const void> piece = pieces->read_piece(part.position, part.count);
     PartElements elements(part, form.is_multi, true);

@@ -15,7 +15,9 @@ namespace {
 // Header of a message of several entries, with what senders leave free.
 constexpr std::size_t header_room = 512;
 // Small answers are copied into the message in which they leave, which nobody is charged for.
-constexpr std::size_t most_copied = std::size_t{1024} * 1024;
+constexpr std::size_t most_copied = std::size_t{256} * 1024;
+// Making a message of so many answers keeps others waiting for long enough.
+constexpr std::size_t most_gathered = 256;
 // What an answer that waits takes besides its bytes, about.
 constexpr std::size_t answer_cost = 256;
 
@@ -101,6 +103,7 @@ void ResponseBatch::settle(std::size_t place) {
     if (answer == waiting_.end() || answer->first != ready_) continue;
     ready_size_ += answer->second.size;
     ready_copied_ += answer->second.copied;
+    ++ready_count_;
     ++answer;
   }
 }
@@ -108,7 +111,8 @@ void ResponseBatch::settle(std::size_t place) {
 // Under the lock: the next answers, if they fill a message or no more will come.
 ResponseBatch::Answers ResponseBatch::take_ready() {
   Answers answers;
-  const bool is_full = ready_size_ > message_room_ || ready_copied_ > most_copied;
+  const bool is_full =
+      ready_size_ > message_room_ || ready_copied_ > most_copied || ready_count_ >= most_gathered;
   if (missing_ != 0 && !must_flush_ && !is_full) return answers;
   std::size_t size = 0;
   std::size_t copied = 0;
@@ -116,7 +120,9 @@ ResponseBatch::Answers ResponseBatch::take_ready() {
     const auto first = waiting_.begin();
     size += first->second.size;
     copied += first->second.copied;
-    if (!answers.empty() && (size > message_room_ || copied > most_copied)) return answers;
+    const bool fits = size <= message_room_ && copied <= most_copied;
+    if (!answers.empty() && (!fits || answers.size() == most_gathered)) return answers;
+    --ready_count_;
     ready_size_ -= first->second.size;
     ready_copied_ -= first->second.copied;
     answers.push_back(std::move(first->second));

@@ -73,8 +73,9 @@ class ResponseBatch {
   std::size_t ready_ = 0;                  // all before this place are settled
   std::size_t ready_size_ = 0;             // bytes of answers before it
   std::size_t ready_copied_ = 0;           // those of them that are to be copied
-  bool must_flush_ = false;                // what is ready, though more would fit
-  bool is_sending_ = false;                // a thread is in flush()
+  std::size_t ready_count_ = 0;
+  bool must_flush_ = false;  // what is ready, though more would fit
+  bool is_sending_ = false;  // a thread is in flush()
 };
 
 }  // namespace rr::service
