@@ -22,6 +22,7 @@ set(robdef_layers
   "compiler/breaking/wire_object_rows.cpp: compiler/breaking compiler/diagnostics runtime/cpp/include/rr"
   "compiler/breaking/wire_meaning_rows.cpp: compiler/breaking compiler/diagnostics runtime/cpp/include/rr"
   "compiler/output: compiler/diagnostics"
+  "compiler/docs: compiler/diagnostics compiler/model compiler/output"
   "compiler/backends: compiler/diagnostics compiler/model compiler/output"
   # A sketch is C++ too: words and literals are the same.
   "compiler/backends/arduino: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/check_values.hpp compiler/backends/implements.hpp compiler/backends/literals.hpp compiler/backends/member_facts.hpp compiler/backends/name_set.hpp compiler/backends/print.hpp compiler/backends/words.hpp compiler/backends/cpp/constants.hpp compiler/backends/cpp/literal_text.hpp compiler/backends/cpp/names.hpp"
@@ -34,7 +35,7 @@ set(robdef_layers
   # Uses generated code, which stands on the runtime.
   "compiler/backends/cpp/generated_test.cpp: compiler/model runtime/cpp/include/rr"
   "compiler/backends/cpp/generated_members_test.cpp: runtime/cpp/include/rr"
-  "compiler/driver: compiler/breaking compiler/diagnostics compiler/project compiler/syntax compiler/format compiler/model compiler/output compiler/backends runtime/cpp/include/rr runtime/cpp/src/replay"
+  "compiler/driver: compiler/breaking compiler/diagnostics compiler/docs compiler/project compiler/syntax compiler/format compiler/model compiler/output compiler/backends runtime/cpp/include/rr runtime/cpp/src/replay"
   "compiler/driver/live/members_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
   "compiler/driver/live/hostile_service_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
   "compiler/driver/live/session_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"

@@ -37,6 +37,13 @@ constexpr std::array commands = {
                "and NEW is a file, - for standard input, or a folder of definitions; a revision\n"
                "of git and a path in it, such as HEAD~1:definitions; a recording; or the URL of\n"
                "a running service. docs/breaking.md has all rules.\n"},
+    CommandRow{Command::docs, "docs", "[--format html|markdown] -o DIR [OPTION...] [FILE...]",
+               "write reference pages of definitions, for browsers or as Markdown",
+               "Writes a page for each definition and everything it imports, and an index, below\n"
+               "the output folder. Each page can be read without network and without the others;\n"
+               "types are links, and the search box finds names and words of all pages. Without\n"
+               "FILE the inputs of robdef.toml are taken. Nothing is written unless everything\n"
+               "can be, and a file whose text stays the same is not touched.\n"},
     CommandRow{Command::describe, "describe", "[OPTION...] FILE... | URL [PATH]",
                "print a readable outline of definitions",
                "Prints what the definitions offer: types with their sizes, objects with their\n"
@@ -121,11 +128,17 @@ constexpr std::array options = {
               {Command::generate},
               "folder to write below, made when missing;\ndefault: the current folder",
               take_text<&Options::output_folder>},
+    OptionRow{"--output",
+              "-o",
+              "DIR",
+              {Command::docs},
+              "folder to write below, made when missing",
+              take_text<&Options::output_folder>},
     OptionRow{"--import-path",
               "-I",
               "DIR",
-              {Command::generate, Command::check, Command::describe, Command::model, Command::view,
-               Command::breaking},
+              {Command::generate, Command::check, Command::docs, Command::describe, Command::model,
+               Command::view, Command::breaking},
               "look here for imported definitions; may be\nrepeated. An import a.b is the file\n"
               "a.b.robdef: beside the importing file, in\nthese folders, then in those of the\n"
               "environment",
@@ -161,22 +174,27 @@ constexpr std::array options = {
     OptionRow{"--list-outputs",
               "",
               "",
-              {Command::generate},
+              {Command::generate, Command::docs},
               "print the paths that would be written, one\na line, and write nothing",
               take_switch<&Options::lists_outputs>},
     OptionRow{"--depfile",
               "",
               "FILE",
-              {Command::generate},
+              {Command::generate, Command::docs},
               "write a make rule there that names every file\nthat was read",
               take_text<&Options::depfile>},
     OptionRow{"--depfile-target",
               "",
               "NAME",
-              {Command::generate},
+              {Command::generate, Command::docs},
               "target of that rule; default: the outputs",
               take_text<&Options::depfile_target>},
-    OptionRow{"--format", "", "FORM", reading_definitions,
+    OptionRow{
+        "--format", "", "FORM", {Command::docs}, "html (default) or markdown", take_docs_form},
+    OptionRow{"--format",
+              "",
+              "FORM",
+              {Command::generate, Command::check, Command::describe, Command::model, Command::view},
               "form of the findings: text (default), line\n(one line each) or json; json goes to"
               " standard\noutput unless the command prints there itself",
               take_format},

@@ -45,8 +45,9 @@ struct OptionRow {
 };
 
 /// The commands that read definitions.
-inline constexpr CommandSet reading_definitions = {
-    Command::generate, Command::check, Command::describe, Command::model, Command::view};
+inline constexpr CommandSet reading_definitions = {Command::generate, Command::check,
+                                                   Command::docs,     Command::describe,
+                                                   Command::model,    Command::view};
 
 std::span<const CommandRow> command_rows();
 std::span<const OptionRow> option_rows();

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "compiler/backends/backend.hpp"
+#include "compiler/docs/docs.hpp"
 #include "compiler/driver/command_table.hpp"
 #include "compiler/driver/depfile.hpp"
 #include "compiler/driver/job.hpp"
@@ -56,10 +57,14 @@ std::string count_of(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
+bool writes_files(const Options& options) {
+  return options.command == Command::generate || options.command == Command::docs;
+}
+
 void print_findings(const Report& report, const Sources& sources, const Options& options,
                     std::ostream& out, std::ostream& err) {
-  const bool prints_product = options.lists_outputs || (options.command != Command::check &&
-                                                        options.command != Command::generate);
+  const bool prints_product =
+      options.lists_outputs || (options.command != Command::check && !writes_files(options));
   std::ostream& target = options.format == Format::json && !prints_product ? out : err;
   target << render(report, sources, options.format);
   if (options.format != Format::text) return;
@@ -186,6 +191,7 @@ class Run {
   }
 
   FileSet generate(const Target& target) {
+    if (target.backend == nullptr) return docs::make_pages(model_, options_.docs_form);
     try {
       return target.backend->generate(model_, {.template_folder = target.template_folder}, report_);
     } catch (const TemplateError& error) {
@@ -221,7 +227,7 @@ class Run {
     out_ << text_;
     if (options_.lists_outputs) {
       for (const std::string& path : output_paths(outputs_)) out_ << path << '\n';
-    } else if (options_.command == Command::generate) {
+    } else if (writes_files(options_)) {
       const std::string failure = write_files();
       if (!failure.empty()) {
         err_ << "robdef: " << shortened(failure) << '\n';

@@ -34,6 +34,10 @@ Target make_target(std::string_view name, const Options& options, const project:
 
 std::vector<Target> make_targets(const Options& options, const project::Project* project) {
   std::vector<Target> targets;
+  if (options.command == Command::docs) {
+    targets.emplace_back().folder = options.output_folder;
+    return targets;
+  }
   for (const std::string& language : options.languages) {
     targets.push_back(make_target(language, options, project));
   }
@@ -61,6 +65,10 @@ std::string complaint_of(const Job& job, const Options& options, const project::
     return project == nullptr ? "no file given"
                               : "no file given; " + project->path + " has no inputs";
   }
+  if (options.command == Command::docs) {
+    // No folder by default: pages have names that others have, too, such as index.html.
+    return options.output_folder.empty() ? "`--output` is missing" : "";
+  }
   const bool needs_target =
       options.command == Command::generate || options.command == Command::view;
   if (!needs_target) return "";
@@ -83,7 +91,8 @@ Job make_job(const Options& options, const project::Project* project, std::strin
   job.targets = make_targets(options, project);
   job.is_strict = options.is_strict ||
                   (project != nullptr && project->is_strict && options.command == Command::check);
-  job.is_whole_project = project != nullptr && !has_inputs && options.languages.empty();
+  job.is_whole_project = options.command == Command::generate && project != nullptr &&
+                         !has_inputs && options.languages.empty();
   complaint = complaint_of(job, options, project);
   return job;
 }

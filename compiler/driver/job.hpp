@@ -10,11 +10,11 @@
 
 namespace robdef {
 
-/// A language that is generated or checked.
+/// A language that is generated or checked, or the pages of `robdef docs`.
 struct Target {
-  const Backend* backend = nullptr;
-  std::string folder = ".";     ///< to write below
-  std::string template_folder;  ///< empty: the templates of the backend
+  const Backend* backend = nullptr;  ///< null: pages
+  std::string folder = ".";          ///< to write below
+  std::string template_folder;       ///< empty: the templates of the backend
   std::vector<model::Rename> renames;
 };
 

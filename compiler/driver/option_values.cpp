@@ -79,6 +79,17 @@ std::string take_format(Options& options, const std::string& value) {
   return "";
 }
 
+std::string take_docs_form(Options& options, const std::string& value) {
+  if (value == "html") {
+    options.docs_form = docs::Form::html;
+  } else if (value == "markdown") {
+    options.docs_form = docs::Form::markdown;
+  } else {
+    return "unknown format `" + value + "`; known: `html`, `markdown`";
+  }
+  return "";
+}
+
 std::string take_breaking_form(Options& options, const std::string& value) {
   using Form = BreakingOptions::Form;
   if (value == "text") {

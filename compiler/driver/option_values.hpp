@@ -14,6 +14,7 @@ std::string take_language(Options& options, const std::string& value);
 std::string take_format(Options& options, const std::string& value);
 /// Several, separated by commas.
 std::string take_languages(Options& options, const std::string& value);
+std::string take_docs_form(Options& options, const std::string& value);
 std::string take_breaking_form(Options& options, const std::string& value);
 std::string take_categories(Options& options, const std::string& value);
 std::string take_allowed(Options& options, const std::string& value);

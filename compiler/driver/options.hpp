@@ -12,6 +12,7 @@
 #include "compiler/diagnostics/levels.hpp"
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/diagnostics/report.hpp"
+#include "compiler/docs/docs.hpp"
 #include "compiler/driver/authority_options.hpp"
 #include "compiler/driver/breaking_options.hpp"
 #include "compiler/driver/discover_options.hpp"
@@ -29,6 +30,7 @@ enum class Command {
   check,
   format,
   breaking,
+  docs,
   describe,
   model,
   view,
@@ -71,6 +73,7 @@ struct Options {
   bool lists_outputs = false;
   bool lists_codes = false;
   bool is_json = false;
+  docs::Form docs_form = docs::Form::html;
   bool checks_only = false;  ///< format: says what would change, and writes nothing
   BreakingOptions breaking;
   RecordingOptions recording;
