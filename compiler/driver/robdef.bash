@@ -23,7 +23,7 @@ _robdef() {
   COMPREPLY=()
   if [ "$COMP_CWORD" = 1 ]; then
     mapfile -t COMPREPLY < <(compgen -W \
-      'generate check format breaking describe model view explain inspect record replay bridge ca discover get set call watch connect
+      'generate check format breaking docs describe model view explain inspect record replay bridge ca discover get set call watch connect
       --help --version' -- "$word")
     return
   fi
@@ -36,6 +36,10 @@ _robdef() {
     --format)
       if [ "$command" = breaking ]; then
         mapfile -t COMPREPLY < <(compgen -W 'text json github' -- "$word")
+        return
+      fi
+      if [ "$command" = docs ]; then
+        mapfile -t COMPREPLY < <(compgen -W 'html markdown' -- "$word")
         return
       fi
       mapfile -t COMPREPLY < <(compgen -W 'text line json' -- "$word")
@@ -93,6 +97,7 @@ _robdef() {
       check) options="--strict --lang $reading" ;;
       format) options="--check --help" ;;
       breaking) options="--import-path -I --format --category --allow $live --help" ;;
+      docs) options="--output -o --list-outputs --depfile --depfile-target $reading" ;;
       view) options="--lang --rename $reading" ;;
       describe) options="$reading $live" ;;
       model) options=$reading ;;
