@@ -149,7 +149,7 @@ class DeclarationMaker {
                            context_.signatures.member(object, member), member.documentation);
     view.notes = finished(explain(member));
     std::vector<std::string> origins;
-    for (const model::Object* base : origins_of(object, member)) {
+    for (const model::Object* base : context_.uses.origins_of(object, member)) {
       origins.push_back(context_.signatures.member_of(*base, member.name));
     }
     if (!origins.empty()) view.notes.push_back("Inherited from " + joined(origins) + ".");

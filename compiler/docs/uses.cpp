@@ -2,18 +2,10 @@
 #include "compiler/docs/uses.hpp"
 
 #include <algorithm>
-#include <string>
 #include <type_traits>
 #include <variant>
 
 namespace robdef::docs {
-namespace {
-
-bool has_member(const model::Object& object, const std::string& name) {
-  return std::ranges::find(object.members, name, &model::Member::name) != object.members.end();
-}
-
-}  // namespace
 
 Uses::Uses(const model::Model& model) {
   for (const model::Definition* definition : by_name(model)) read(*definition);
@@ -33,6 +25,7 @@ void Uses::read(const model::Definition& definition) {
       implementers_[base].push_back({&definition, object.name});
     }
     for (const model::Member& member : object.members) {
+      members_[&object].insert(member.name);
       const Place place{&definition, object.name + "." + member.name};
       use(member.type, place);
       for (const model::Parameter& parameter : member.parameters) use(parameter.type, place);
@@ -68,14 +61,19 @@ const std::vector<Place>& Uses::importers_of(const model::Definition& definition
   return find(importers_, &definition);
 }
 
-std::vector<const model::Object*> origins_of(const model::Object& object,
-                                             const model::Member& member) {
+bool Uses::has_member(const model::Object* object, const std::string& name) const {
+  const auto found = members_.find(object);
+  return found != members_.end() && found->second.contains(name);
+}
+
+std::vector<const model::Object*> Uses::origins_of(const model::Object& object,
+                                                   const model::Member& member) const {
   // An object names all that it implements, those behind others, too.
   std::vector<const model::Object*> found;
   for (const model::Object* base : object.implements) {
     const bool is_handed_on = std::ranges::any_of(
-        base->implements, [&](const auto* one) { return has_member(*one, member.name); });
-    if (has_member(*base, member.name) && !is_handed_on) found.push_back(base);
+        base->implements, [&](const auto* one) { return has_member(one, member.name); });
+    if (has_member(base, member.name) && !is_handed_on) found.push_back(base);
   }
   return found;
 }

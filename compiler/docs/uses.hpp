@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "compiler/docs/addresses.hpp"
@@ -18,6 +21,10 @@ class Uses {
   /// Fields and members with this record, enum or object in their types, each once.
   [[nodiscard]] const std::vector<Place>& of(const void* declaration) const;
   [[nodiscard]] const std::vector<Place>& implementers_of(const model::Object& object) const;
+  /// The objects from which a member comes: those that `object` implements, that have it, and that
+  /// do not have it from another one. Empty for a member of its own.
+  [[nodiscard]] std::vector<const model::Object*> origins_of(const model::Object& object,
+                                                             const model::Member& member) const;
   [[nodiscard]] const std::vector<Place>& importers_of(const model::Definition& definition) const;
 
  private:
@@ -27,14 +34,12 @@ class Uses {
   void use(const model::Type& type, const Place& place);
   static const std::vector<Place>& find(const Table& table, const void* key);
 
+  [[nodiscard]] bool has_member(const model::Object* object, const std::string& name) const;
+
   Table uses_;
   Table implementers_;
   Table importers_;
+  std::unordered_map<const model::Object*, std::unordered_set<std::string_view>> members_;
 };
-
-/// The objects from which a member comes: those that `object` implements, directly or not, that
-/// have it and implement no other that has. Empty for a member of its own.
-std::vector<const model::Object*> origins_of(const model::Object& object,
-                                             const model::Member& member);
 
 }  // namespace robdef::docs

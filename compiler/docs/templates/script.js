@@ -95,6 +95,8 @@
     if (isAsked && found.length === 0) {
       var none = document.createElement("li");
       none.className = "empty";
+      none.setAttribute("role", "option");
+      none.setAttribute("aria-disabled", "true");
       none.textContent = "Nothing is found.";
       list.appendChild(none);
     }
@@ -109,7 +111,7 @@
   }
 
   function select(at) {
-    var items = list.querySelectorAll("[role=option]");
+    var items = list.querySelectorAll("[data-address]");
     if (items[selected]) items[selected].setAttribute("aria-selected", "false");
     selected = at;
     box.removeAttribute("aria-activedescendant");
@@ -130,7 +132,7 @@
   box.addEventListener("focus", function () { if (box.value) show(box.value); });
   box.addEventListener("blur", function () { open(false); });
   box.addEventListener("keydown", function (event) {
-    var items = list.querySelectorAll("[role=option]");
+    var items = list.querySelectorAll("[data-address]");
     if (event.key === "Escape") {
       open(false);
       return;
@@ -145,7 +147,7 @@
   // Before the box loses the focus, which would close the list.
   list.addEventListener("mousedown", function (event) {
     event.preventDefault();
-    go(event.target.closest("[role=option]"));
+    go(event.target.closest("[data-address]"));
   });
   document.addEventListener("keydown", function (event) {
     var isTyping = /^(input|textarea|select)$/i.test(event.target.tagName || "");
