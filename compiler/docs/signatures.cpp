@@ -93,10 +93,8 @@ std::string Signatures::constant(const model::Constant& constant, std::string_vi
     }
     return "constant struct " + title + ' ' + markup_.text("{") + text + markup_.text("}");
   }
-  const std::string type = constant.type.text();
-  const std::string all = model::written(constant);
-  const std::size_t value = std::string("constant " + type + ' ' + constant.name + ' ').size();
-  return "constant " + markup_.text(type) + ' ' + title + ' ' + markup_.text(all.substr(value));
+  return "constant " + markup_.text(constant.type.text()) + ' ' + title + ' ' +
+         markup_.text(model::written_value(constant));
 }
 
 std::string Signatures::name(const std::string& raw, const std::string& anchor) const {

@@ -274,8 +274,11 @@ std::string written(const Field& field, const Definition& file) {
 
 std::string written(const Constant& constant) {
   const std::string type = constant.is_struct ? "struct" : constant.type.text();
-  return "constant " + type + ' ' + constant.name + ' ' +
-         std::visit(LiteralText{}, constant.written);
+  return "constant " + type + ' ' + constant.name + ' ' + written_value(constant);
+}
+
+std::string written_value(const Constant& constant) {
+  return std::visit(LiteralText{}, constant.written);
 }
 
 std::string written(const Object& object, const Definition& file) {

@@ -25,6 +25,8 @@ std::string written(const Member& member, const Definition& file);
 std::string written(const Field& field, const Definition& file);
 /// A constant as its line without indentation: `constant int32[] A {1, 0x2}`.
 std::string written(const Constant& constant);
+/// Its value alone: `{1, 0x2}`.
+std::string written_value(const Constant& constant);
 /// An object as a file names it, for implements lines.
 std::string written(const Object& object, const Definition& file);
 
