@@ -27,6 +27,8 @@ class NewestValue {
   [[nodiscard]] bool is_fresh() const {
     return value_ && (lifespan_.count() <= 0 || channel::Clock::now() - arrived_ <= lifespan_);
   }
+  /// Leaves none.
+  [[nodiscard]] std::shared_ptr<const void> take() { return std::exchange(value_, nullptr); }
   /// Whatever its age.
   [[nodiscard]] const std::shared_ptr<const void>& value() const { return value_; }
   /// Its sender's time; of any value before, too.

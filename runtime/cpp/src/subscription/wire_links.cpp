@@ -52,7 +52,9 @@ void WireLinks::use(Link& link) {
   end.on_closed([weak_this, weak_link] {
     const auto self = weak_this.lock();
     const auto closed = weak_link.lock();
-    if (self && closed) self->closed(closed);
+    if (!self || !closed) return;
+    self->forget(as_wire(*closed));
+    self->closed(closed);
   });
   end.on_refused([weak_this, weak_link](const Error& why) {
     const auto self = weak_this.lock();
@@ -73,6 +75,13 @@ void WireLinks::leave(Link& link) {
 }
 
 // Values
+
+// Of a wire that is closed: nobody says any more that this is the value.
+void WireLinks::forget(WireLink& link) {
+  std::shared_ptr<const void> value;  // freed behind the lock
+  const std::lock_guard lock(mutex_);
+  value = link.newest.take();
+}
 
 void WireLinks::take(WireLink& link) {
   TimeSpec time;

@@ -74,6 +74,7 @@ class WireLinks final : public Links {
   void changed() override { arrived_.notify_all(); }
   void end_functions() override;
 
+  void forget(WireLink& link);
   void take(WireLink& link);
   void notify_soon();
   void notify_all();
