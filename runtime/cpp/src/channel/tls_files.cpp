@@ -96,6 +96,10 @@ TlsFiles::TlsFiles(const TlsOptions& options, const NodeId& own) : options_(opti
   const std::vector<std::string> authorities = authority_files_of(options_);
   authority_files_.have_changed(authorities, true);
   revocation_files_.have_changed(options_.revocation_files, true);
+  // To start the library takes milliseconds, which a node without files may never need.
+  const bool has_files = !options_.certificate_file.empty() || !authorities.empty() ||
+                         !options_.revocation_files.empty();
+  if (!has_files) return;
   read_certificate();
   read_authorities(authorities);
   read_lists();
@@ -203,13 +207,20 @@ StorePtr TlsFiles::make_store() const {
 }
 
 void TlsFiles::make_trust() {
+  if (!context_) read_certificate();
   trust_ = std::make_shared<const Trust>(
       Trust{context_, {make_store().release(), X509_STORE_free}, ++generation_});
 }
 
-std::shared_ptr<const Trust> TlsFiles::trust() const {
+std::shared_ptr<const Trust> TlsFiles::trust() {
   const std::lock_guard lock(mutex_);
+  if (!trust_) make_trust();
   return trust_;
+}
+
+bool TlsFiles::is_in_use() const {
+  const std::lock_guard lock(mutex_);
+  return trust_ != nullptr;
 }
 
 StorePtr TlsFiles::web_store() const {

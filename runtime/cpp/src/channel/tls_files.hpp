@@ -65,7 +65,10 @@ class TlsFiles {
   /// Reads again what has changed. A file that cannot be used leaves in use what was read before,
   /// which is reported once.
   void look_again(bool thoroughly);
-  [[nodiscard]] std::shared_ptr<const Trust> trust() const;
+  [[nodiscard]] std::shared_ptr<const Trust> trust();
+  /// False while there are no files and trust() was not asked for: the library has not been
+  /// started.
+  [[nodiscard]] bool is_in_use() const;
   /// The authorities of the web besides those of nodes.
   [[nodiscard]] StorePtr web_store() const;
   /// What is to be logged, which is forgotten.
@@ -99,7 +102,7 @@ class TlsFiles {
   WatchedFiles certificate_files_;
   WatchedFiles authority_files_;
   WatchedFiles revocation_files_;
-  std::shared_ptr<SSL_CTX> context_;
+  std::shared_ptr<SSL_CTX> context_;  // null until it is used, without files
   std::vector<CertificatePtr> authorities_;
   std::vector<RevocationsPtr> lists_;
   Lifetime certificate_life_;
