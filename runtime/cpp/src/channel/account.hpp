@@ -156,7 +156,9 @@ class Charge {
   [[nodiscard]] bool can_add(std::size_t bytes) const;
   /// At most what it has.
   void reduce(std::size_t bytes);
-  void clear() { reduce(bytes_); }
+  void clear() {
+    if (bytes_ != 0) reduce(bytes_);
+  }
 
  private:
   friend class OfferedCharge;

@@ -126,9 +126,11 @@ bool StreamConnection::take_turn_again(Time deadline) {
   *link = self.next;
   if (is_dispatched_ && !is_turn_loose_) return false;
   is_dispatched_ = true;
-  is_turn_loose_ = false;
+  const bool must_read = fasten_turn();
   --absent_;
   Turn::current(*this)->set_held(true);
+  lock.unlock();
+  if (must_read) read_soon(false);
   return true;
 }
 
@@ -179,7 +181,7 @@ void StreamConnection::handle_aside(Frame frame) {
     const Time begin = coarse_now();
     {
       const ScratchLease scratch;
-      self->handle_frame(*scratch, *kept, false);
+      self->handle_frame(*scratch, *kept, false, nullptr);
     }
     share->ran(coarse_now() != begin);
     self->end_absence();

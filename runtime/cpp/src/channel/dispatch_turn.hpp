@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <utility>
@@ -38,15 +39,34 @@ class StreamConnection::Turn {
   void set_held(bool is_held) { is_held_ = is_held; }
   /// Whether it is time to let others go first. Asked between messages, from the first one on.
   [[nodiscard]] bool is_over() {
+    if (unasked_ != 0) {
+      --unasked_;
+      return false;
+    }
     const Time now = Clock::now();
-    if (until_ == Time::min()) until_ = now + longest_turn;
+    if (until_ == Time::min()) until_ = now + longest();
+    // Short messages cost hardly more than the clock.
+    if (now - asked_ < quick) unasked_ = most_unasked;
+    asked_ = now;
     return now >= until_;
   }
+  /// Nobody else waits.
+  void go_on() {
+    until_ = asked_ + longest();
+    has_gone_on_ = true;
+  }
+  /// Whether it has since this was asked last.
+  bool has_gone_on() { return std::exchange(has_gone_on_, false); }
   void count(std::size_t requests) { requests_ += requests; }
   /// Whether a few requests have taken a tick of the coarse clock.
   [[nodiscard]] bool is_slow() const { return requests_ < many_requests && coarse_now() != begin_; }
 
  private:
+  // What a client receives at once is handled in that time: it need not be copied to wait.
+  [[nodiscard]] std::chrono::microseconds longest() const {
+    return connection_.role_ == Role::client ? 4 * longest_turn : longest_turn;
+  }
+
   StreamConnection& connection_;
   Scratch& scratch_;
   std::size_t next_ = 0;
@@ -54,7 +74,12 @@ class StreamConnection::Turn {
   bool is_put_off_ = false;
   static constexpr std::size_t many_requests = 16;
   const Time begin_ = coarse_now();
+  static constexpr std::chrono::microseconds quick{8};
+  static constexpr int most_unasked = 7;
   Time until_ = Time::min();
+  Time asked_{};
+  int unasked_ = 0;
+  bool has_gone_on_ = false;
   std::size_t requests_ = 0;
   Turn* const outer_;
 };

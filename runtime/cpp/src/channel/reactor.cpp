@@ -180,6 +180,7 @@ void Reactor::poll(Polling& polling) {
   while (handle_events(polling)) {
     if (has_work_.load(std::memory_order_acquire) && !run_posted(polling)) break;
     if (is_stopping_.load(std::memory_order_acquire)) break;
+    if (next_event_ != event_count_) continue;  // find_others() has found some meanwhile
     const bool must_go_on = has_work_.load(std::memory_order_acquire);
     if (must_go_on) yield_processor(yield_at);
     const int patience = must_go_on ? 0 : -1;
@@ -217,6 +218,53 @@ bool Reactor::handle_events(Polling& polling) {
     if (!leave(polling)) return false;
   }
   return true;
+}
+
+bool Reactor::holds_up_others() {
+  Polling* const polling = current_polling;
+  if (polling == nullptr || polling->reactor != this || !is_inside(*polling)) return false;
+  Pollable* const own = handling_;
+  if (!leave(*polling)) return false;  // nobody takes the turn away while events are fetched
+  const bool is_found = find_others(own);
+  enter(*polling, own);
+  return is_found;
+}
+
+bool Reactor::is_posted_for_others(const Pollable* own) const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(posted_.begin(), posted_.end(), [&](const Posted& posted) {
+    return posted.pollable == nullptr || posted.pollable.get() != own;
+  });
+}
+
+// Adds what is ready by now to the events that are still to be handled. One for `own`, which may
+// get more and more, is kept once.
+bool Reactor::find_others(const Pollable* own) {
+  if (has_work_.load(std::memory_order_acquire) && is_posted_for_others(own)) return true;
+  bool is_found = false;
+  epoll_event* kept = nullptr;
+  const auto look_at = [&](epoll_event& event) {
+    if (event.data.ptr == nullptr) return;
+    if (event.data.ptr != own) {
+      is_found = true;
+    } else if (kept == nullptr) {
+      kept = &event;
+    } else {
+      kept->events |= event.events;
+      event.data.ptr = nullptr;
+    }
+  };
+  for (std::size_t i = next_event_; i < event_count_; ++i) look_at(events_[i]);
+  if (is_found) return true;
+  const int room = static_cast<int>(events_at_once - event_count_);
+  const int found = room == 0 ? 0 : epoll_wait(epoll_, &events_[event_count_], room, 0);
+  for (int i = 0; i < found; ++i) look_at(events_[event_count_ + static_cast<std::size_t>(i)]);
+  // What was the last one, and has been merged, leaves its place to others.
+  if (found > 0) event_count_ += static_cast<std::size_t>(found);
+  while (event_count_ > next_event_ && events_[event_count_ - 1].data.ptr == nullptr) {
+    --event_count_;
+  }
+  return is_found;
 }
 
 // One at a time, then it is polled: connections that always have more to read post that again and

@@ -138,6 +138,9 @@ class Reactor {
   static void yield();
   /// True while the calling thread polls: what it does holds up others.
   [[nodiscard]] bool is_polling() const;
+  /// From a handler: true when the calling thread polls and somebody waits for it, who is not the
+  /// one whose handler this is.
+  [[nodiscard]] bool holds_up_others();
   /// What waits for threads of a share is looked at again.
   void reconsider();
   [[nodiscard]] unsigned session_threads() const { return terms_.session_threads; }
@@ -187,6 +190,8 @@ class Reactor {
   bool leave(Polling& polling);
   [[nodiscard]] bool is_inside(const Polling& polling) const;
   bool handle_events(Polling& polling);
+  [[nodiscard]] bool find_others(const Pollable* own);
+  [[nodiscard]] bool is_posted_for_others(const Pollable* own) const;
   bool run_posted(Polling& polling);
   static void yield_processor(Time& at);
   bool next_posted(Posted& next, Handling& admission);

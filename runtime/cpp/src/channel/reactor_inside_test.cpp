@@ -257,6 +257,79 @@ TEST(Reactor, ItsThreadsAskForShortSlices) {
   reactor.stop();
 }
 
+// What it finds when it looks for others is handled afterwards.
+TEST(Reactor, KnowsWhetherAHandlerHoldsUpOthers) {
+  Reactor reactor(2);  // nobody takes over
+  Bell bell(reactor);
+  std::future<void> heard = bell.heard();
+  std::promise<std::array<bool, 4>> done;
+  std::promise<void> ran;
+  reactor.post([&] {
+    const bool at_first = reactor.holds_up_others();
+    bell.ring();
+    const bool with_event = reactor.holds_up_others();
+    const bool still = reactor.holds_up_others();
+    reactor.post([&] { ran.set_value(); });
+    done.set_value({at_first, with_event, still, reactor.holds_up_others()});
+  });
+  reactor.start();
+  EXPECT_EQ(done.get_future().get(), (std::array<bool, 4>{false, true, true, true}));
+  EXPECT_EQ(heard.wait_for(10s), std::future_status::ready);
+  EXPECT_EQ(ran.get_future().wait_for(10s), std::future_status::ready);
+  EXPECT_FALSE(reactor.holds_up_others()) << "not a handler";
+  reactor.stop();
+}
+
+// Rings itself while it is heard: that holds up nobody, but is heard again.
+class Echo final : public Pollable {
+ public:
+  explicit Echo(Reactor& reactor) : reactor_(reactor) {
+    if (descriptor_ < 0) throw std::runtime_error("eventfd");
+    reactor_.add(descriptor_, EPOLLIN, *this);
+  }
+  ~Echo() {
+    reactor_.remove(descriptor_);
+    ::close(descriptor_);
+  }
+  Echo(const Echo&) = delete;
+  Echo& operator=(const Echo&) = delete;
+  void ring() const { ::eventfd_write(descriptor_, 1); }
+  std::future<bool> found() { return found_.get_future(); }
+  std::future<void> heard_again() { return heard_again_.get_future(); }
+
+ private:
+  void on_ready(std::uint32_t) override {
+    if (std::exchange(has_heard_, true)) {
+      heard_again_.set_value();
+      return;
+    }
+    bool has_found = false;
+    for (int i = 0; i < 100; ++i) {
+      ring();
+      has_found = reactor_.holds_up_others() || has_found;
+    }
+    found_.set_value(has_found);
+  }
+
+  Reactor& reactor_;
+  const int descriptor_ = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+  bool has_heard_ = false;
+  std::promise<bool> found_;
+  std::promise<void> heard_again_;
+};
+
+TEST(Reactor, AHandlerThatIsReadyAgainHoldsUpNobody) {
+  Reactor reactor(2);
+  Echo echo(reactor);
+  auto found = echo.found();
+  auto heard_again = echo.heard_again();
+  echo.ring();
+  reactor.start();
+  EXPECT_FALSE(found.get());
+  EXPECT_EQ(heard_again.wait_for(10s), std::future_status::ready);
+  reactor.stop();
+}
+
 TEST(Reactor, WorkThatIsShortKeepsThePollingThread) {
   Reactor reactor(4);
   reactor.start();

@@ -207,6 +207,8 @@ class StreamConnection final : public Connection,
   void refuse_stream(const Scratch& scratch, std::size_t size);
   bool take_read_turn(bool until_end = false);
   void read_as_reactor(bool until_end);
+  [[nodiscard]] bool is_drained_first() const;
+  bool fasten_turn();
   [[nodiscard]] bool takes_long() const;
   void note_read(bool was_long);
   void read_soon(bool until_end);
@@ -255,7 +257,7 @@ class StreamConnection final : public Connection,
   bool begin_absence();
   [[nodiscard]] std::shared_ptr<ThreadShare> callback_share();
   void end_absence();
-  void handle_frame(Scratch& scratch, const Frame& frame, bool is_parsed);
+  void handle_frame(Scratch& scratch, const Frame& frame, bool is_parsed, Turn* turn);
   void complete(Message& message) const;
 
   // What is carried otherwise than as plain bytes of the socket (stream_carried.cpp)

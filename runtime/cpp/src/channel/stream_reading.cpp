@@ -95,7 +95,7 @@ bool StreamConnection::take_read_turn(bool until_end) {
   const std::lock_guard lock(turns_);
   if (until_end) is_end_in_sight_.store(true, std::memory_order_relaxed);
   const bool has_left = role_ == Role::server && is_end_in_sight_.load(std::memory_order_relaxed);
-  if (is_read_ || (is_paused() && !has_left)) {
+  if (is_read_ || (is_paused() && !has_left) || is_drained_first()) {
     read_again_ = true;
     return false;
   }
@@ -104,6 +104,18 @@ bool StreamConnection::take_read_turn(bool until_end) {
   }
   is_read_ = true;
   return true;
+}
+
+// Under turns_. What a client reads while its queue waits for a thread would have to be copied into
+// it. A service reads on: its handlers may wait for answers to callbacks, and its queue for them.
+bool StreamConnection::is_drained_first() const {
+  return role_ == Role::client && is_turn_loose_ && !is_end_in_sight_;
+}
+
+// Under turns_: the turn is held by a thread again. True when it is to read on.
+bool StreamConnection::fasten_turn() {
+  is_turn_loose_ = false;
+  return role_ == Role::client && !is_read_ && std::exchange(read_again_, false);
 }
 
 // With the read turn, which is given back. The socket is edge-triggered: it is read until a receive
@@ -365,9 +377,12 @@ Frame StreamConnection::keep(Frame frame) {
   return {{memory.bytes, frame.bytes.size()}, std::move(memory.owner), {}};
 }
 
-// A thread that polls does not handle the messages of one connection for long.
+// A thread that polls does not handle the messages of one connection for long while others wait.
 bool StreamConnection::must_yield(Turn& turn) const {
-  return turn.is_over() && reactor_->is_polling();
+  if (!turn.is_over()) return false;
+  if (reactor_->holds_up_others()) return true;
+  turn.go_on();
+  return false;
 }
 
 // With the dispatch turn: the messages in the scratch. False when one of them is put off, and the
@@ -384,9 +399,10 @@ bool StreamConnection::dispatch(Turn& turn) {
       put_back(turn);
       break;
     }
+    if (turn.has_gone_on()) flush();  // others do not wait, but who has asked does
     Frame frame = turn.next();
     holds_back_answers_ = turn.has_next();
-    handle_frame(scratch, frame, count == 1 && parsed == 1);
+    handle_frame(scratch, frame, count == 1 && parsed == 1, &turn);
     if (turn.is_put_off() && is_suspended(turn, std::move(frame))) {
       if (count > 1) flush();
       return false;
@@ -434,7 +450,7 @@ bool StreamConnection::drain(Turn& turn) {
       queue_->pop_front();
       queued_bytes_ -= frame.bytes.size();
       lock.unlock();
-      handle_frame(turn.scratch(), frame, false);
+      handle_frame(turn.scratch(), frame, false, &turn);
       if (turn.is_put_off() && is_suspended(turn, std::move(frame))) return false;
       lock.lock();
     } else if (absent_ == 0 && std::exchange(is_closed_pending_, false)) {
@@ -461,10 +477,13 @@ void StreamConnection::drain_soon() {
 void StreamConnection::drain_posted() {
   bool was_stalled = false;
   {
+    bool must_read = false;
     {
       const std::lock_guard lock(turns_);
-      if (!std::exchange(is_turn_loose_, false)) return;  // somebody was faster
+      if (!is_turn_loose_) return;  // somebody was faster
+      must_read = fasten_turn();
     }
+    if (must_read) read_soon(false);
     const ScratchLease scratch;
     scratch->waiting.clear();
     Turn turn(*this, *scratch);
@@ -474,7 +493,9 @@ void StreamConnection::drain_posted() {
   if (was_stalled && take_read_turn()) read_as_reactor(true);
 }
 
-void StreamConnection::handle_frame(Scratch& scratch, const Frame& frame, bool is_parsed) {
+// `turn`: the thread's, or null.
+void StreamConnection::handle_frame(Scratch& scratch, const Frame& frame, bool is_parsed,
+                                    Turn* turn) {
   Message& message = scratch.message;
   // It could be read once, so it can be read again.
   const Limits any_size{.message_size = largest_size_, .depth = options_->limits.depth};
@@ -483,12 +504,12 @@ void StreamConnection::handle_frame(Scratch& scratch, const Frame& frame, bool i
     return;
   }
   complete(message);
-  if (Turn* const turn = Turn::current(*this)) turn->count(message.entry_count);
+  if (turn != nullptr) turn->count(message.entry_count);
   receiver_->handle(message, scratch.first, frame.owner);
   // What could not be sent is not to be kept until this thread writes again.
   Writer& writer = thread_writer();
   if (writer.size() >= Writer::attach_threshold) writer.reset(writer.version());
-  await_turn();
+  if (turn != nullptr && !turn->is_held()) take_turn_again(never);
 }
 
 // What a message of format 4 leaves out is known from the connection (02, section 7).
@@ -497,7 +518,7 @@ void StreamConnection::complete(Message& message) const {
     message.sender_node = remote_node_;
     message.receiver_node = options_->id;
   }
-  message.sender_node = sender_of(message);
+  if (is_proven_.load(std::memory_order_acquire)) message.sender_node = sender_of(message);
   if (!message.has_endpoints) {
     message.sender_endpoint = remote_endpoint_.load(std::memory_order_relaxed);
     message.receiver_endpoint = own_endpoint_.load(std::memory_order_relaxed);

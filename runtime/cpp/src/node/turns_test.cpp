@@ -64,10 +64,13 @@ TEST(Turns, OthersAreServedBetweenTheRequestsOfOneMessage) {
   for (std::uint32_t id = 1; id <= resets; ++id) requests.push_back(reset_request(id));
   busy.send(requests);
   expect_served_between(pair, *object, other);
-  // The answers come as if nothing had been between: all of them in one message, in their order.
-  const std::vector<RawClient::Answer> answers = busy.receive_all();
-  ASSERT_EQ(answers.size(), resets);
-  for (std::uint32_t id = 1; id <= resets; ++id) EXPECT_EQ(answers[id - 1].id, id);
+  // The answers come as if nothing had been between: gathered, in their order.
+  std::uint32_t last = 0;
+  while (last < resets) {
+    const std::vector<RawClient::Answer> answers = busy.receive_all();
+    ASSERT_EQ(answers.size(), std::min<std::size_t>(256, resets - last));
+    for (const RawClient::Answer& answer : answers) EXPECT_EQ(answer.id, ++last);
+  }
 }
 
 TEST(Turns, OthersAreServedBetweenTheMessagesOfOneClient) {

@@ -233,6 +233,7 @@ class ServerEndpoint final : public channel::Receiver,
     std::size_t offset = 0;  // of the next one, in the message's entries
   };
   Unfinished begin_or_continue(const Message& message);
+  [[nodiscard]] bool must_yield();
   bool put_off(const Unfinished& state);
 
   void end_members();

@@ -91,14 +91,16 @@ void ServerEndpoint::handle_session(const Message& message, const Entry& first,
   }
   Unfinished state = begin_or_continue(message);
   EntryReader entries(message, state.next, state.offset);
-  const channel::Time until = channel::Clock::now() + channel::longest_turn;
+  channel::Time until = channel::Clock::now() + channel::longest_turn;
   for (Entry entry; entries.next(entry);) {
     if (connection_->is_closed()) return;
     handle_question({message, entry, owner, state.batch, state.next++});
     connection_->await_turn();
     state.offset = entries.offset();
-    if (state.next < message.entry_count && channel::Clock::now() >= until && put_off(state)) {
-      return;
+    if (state.next == message.entry_count) break;
+    if (const channel::Time now = channel::Clock::now(); now >= until) {
+      if (must_yield() && put_off(state)) return;
+      until = now + channel::longest_turn;
     }
   }
 }
@@ -111,6 +113,12 @@ ServerEndpoint::Unfinished ServerEndpoint::begin_or_continue(const Message& mess
   Unfinished state = std::move(unfinished_.back());
   unfinished_.pop_back();
   return state;
+}
+
+// A thread that does not poll is held, which others of its session's address may have to wait for.
+bool ServerEndpoint::must_yield() {
+  channel::Reactor& reactor = directory_->core()->reactor();
+  return !reactor.is_polling() || reactor.holds_up_others();
 }
 
 // A message with so many requests that others have to wait for long: they come first, now and
