@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/harness/codec_check.hpp"
 
-#include "conformance/harness/comparison.hpp"
+#include "conformance/harness/explanation.hpp"
 #include "conformance/harness/values.hpp"
 
 namespace rr::conformance {
@@ -26,12 +26,14 @@ Json element_request(const Value& value) {
           {"hex", hex_of_bytes(*value.bytes)}};
 }
 
-std::string difference_of_bytes(const Bytes& recorded, const std::string& hex) {
-  const std::string wanted = hex_of_bytes(recorded);
-  std::size_t at = 0;
-  while (at < wanted.size() && at < hex.size() && wanted[at] == hex[at]) ++at;
-  return "byte " + std::to_string(at / 2) + ": ..." + wanted.substr(at & ~1U, 40) +
-         " recorded, ..." + (at < hex.size() ? hex.substr(at & ~1U, 40) : "") + " made";
+// What a runner has made.
+std::string difference_of(const Bytes& recorded, const Json& answer) {
+  return describe_bytes(recorded, bytes_of_hex(answer.get<std::string>()));
+}
+
+// A frame that contradicts itself says nothing about who reads or writes it.
+std::string explain(const Frame& frame, std::string fault) {
+  return contradiction(frame).value_or(std::move(fault));
 }
 
 void check_one_packing(const Value& value, Runner& decoder, Runner& encoder, Result& result) {
@@ -55,8 +57,7 @@ void check_one_packing(const Value& value, Runner& decoder, Runner& encoder, Res
   if (!packed.contains("hex"))
     return result.fail(place, value.type, "not packed: " + said(packed, 200));
   if (packed["hex"] != hex_of_bytes(*value.bytes)) {
-    return result.fail(place, value.type,
-                       difference_of_bytes(*value.bytes, packed["hex"].get<std::string>()));
+    return result.fail(place, value.type, difference_of(*value.bytes, packed["hex"]));
   }
   const Json decoded = decoder.ask(element_request(value));
   if (!decoded.contains("decoded")) {
@@ -81,7 +82,7 @@ Result check_decoding(const Scenario& scenario, Runner& decoder) {
       result.fail(frame_place(frame.number), "", "not decoded: " + said(answer, 200));
     } else if (answer["decoded"] != frame.decoded) {
       result.fail(frame_place(frame.number), "",
-                  describe_difference(frame.decoded, answer["decoded"]));
+                  explain(frame, describe_difference(frame.decoded, answer["decoded"])));
     }
   }
   return result;
@@ -96,7 +97,7 @@ Result check_encoding(const Scenario& scenario, Runner& encoder) {
       result.fail(frame_place(frame.number), "", "not encoded: " + said(answer, 200));
     } else if (answer["hex"] != hex_of_bytes(frame.bytes)) {
       result.fail(frame_place(frame.number), "",
-                  difference_of_bytes(frame.bytes, answer["hex"].get<std::string>()));
+                  explain(frame, difference_of(frame.bytes, answer["hex"])));
     }
   }
   return result;

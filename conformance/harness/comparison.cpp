@@ -5,6 +5,7 @@
 #include <regex>
 
 #include "conformance/harness/decoded.hpp"
+#include "conformance/harness/explanation.hpp"
 #include "runtime/cpp/src/replay/words.hpp"
 
 namespace rr::conformance {
@@ -169,34 +170,10 @@ std::optional<std::string> Comparison::difference(const Frame& frame,
     replay::put_aside_generator_index(before, now, connection.live_generators);
   }
   if (rr::write_tree(live) == frame.bytes) return std::nullopt;
-  return describe_difference(frame.decoded, json_of_message(live));
-}
-
-std::string describe_difference(const Json& recorded, const Json& live) {
-  const Json patch = Json::diff(recorded, live);
-  std::string text;
-  std::size_t shown = 0;
-  for (const Json& change : patch) {
-    if (shown++ == 3) {
-      text += "; and " + std::to_string(patch.size() - 3) + " more";
-      break;
-    }
-    const Json::json_pointer path(change.at("path").get<std::string>());
-    if (!text.empty()) text += "; ";
-    text += change.at("path").get<std::string>() + ": ";
-    const std::string operation = change.at("op");
-    const std::string before =
-        operation == "add"
-            ? "nothing"
-            : recorded.at(path).dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 120);
-    const std::string now = operation == "remove"
-                                ? "nothing"
-                                : change.at("value")
-                                      .dump(-1, ' ', false, Json::error_handler_t::replace)
-                                      .substr(0, 120);
-    text += before + " recorded, " + now + " came";
-  }
-  return text.empty() ? "the same fields, but other bytes" : text;
+  if (auto wrong = contradiction(frame)) return wrong;
+  const std::string fields = describe_difference(frame.decoded, json_of_message(live));
+  // What was put aside is not among the fields, but may have another length.
+  return fields.empty() ? describe_bytes(frame.bytes, rr::write_tree(live)) : fields;
 }
 
 }  // namespace rr::conformance

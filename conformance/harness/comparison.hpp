@@ -60,7 +60,4 @@ class Comparison {
 /// True for a name that a host language gave to its own exception.
 bool is_host_specific(const std::string& error_name);
 
-/// The places where two JSON values differ, in a line.
-std::string describe_difference(const Json& recorded, const Json& live);
-
 }  // namespace rr::conformance

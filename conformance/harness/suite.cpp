@@ -69,6 +69,7 @@ class Suite {
       play_runner();
     }
     report_.print(std::cout);
+    if (!report_.holds()) print_guide();
     if (options_.json) {
       std::ofstream stream(*options_.json);
       stream << report_.json().dump(1, ' ', false, Json::error_handler_t::replace) << "\n";
@@ -77,6 +78,19 @@ class Suite {
   }
 
  private:
+  // For those who have not made the folder.
+  void print_guide() const {
+    const std::string folder = options_.captures.string();
+    std::cout << "\n`recorded` is what the folder says, `came` what the tested program did: as "
+                 "service it\n"
+                 "answered the recorded requests, as client it took the steps of the plan.\n"
+                 "  frame N  `n` of "
+              << folder << "/scenarios/SCENARIO.VERSION.json\n  step N   the N-th, from 0, of "
+              << folder << "/plans/SCENARIO.json\n  case     `name` in " << folder
+              << "/values-VERSION.json or malformed.json\n"
+                 "One scenario alone is played with --only SCENARIO.\n";
+  }
+
   [[nodiscard]] bool is_wanted(const std::string& name) const {
     return options_.only.empty() || std::regex_match(name, std::regex(options_.only));
   }
