@@ -45,11 +45,11 @@ internal sealed class Loopback : IDisposable
     /// <summary>A node with an arm of a colour.</summary>
     public Node Serve(string name, string color) => Serve(name, color, new TestArm(), out _);
 
-    public Node Serve(string name, string color, TestArm arm, out Service service)
+    public Node Serve(string name, string color, TestArm arm, out Service service, string users = "")
     {
         var node = new Node(new NodeOptions { Name = name });
         _nodes.Add(node);
-        service = node.Register("arm", arm, new ServiceOptions { Attributes = new() { ["color"] = color } });
+        service = node.Register("arm", arm, new ServiceOptions { Attributes = new() { ["color"] = color }, Users = users });
         node.Listen("rr+tcp://127.0.0.1:0");
         node.Discovery.Announce(new AnnounceOptions
         {
@@ -140,6 +140,22 @@ public sealed class DiscoveryTests
         Assert.Single(discovery.FindServices(["some.Other", Type]));
         Assert.Equal(2, discovery.FindServices([]).Count);  // the index, too
         Assert.Empty(discovery.FindServices([Type], new FindOptions { TransportSchemes = ["rr+local"] }));
+    }
+
+    [Fact]
+    public void Credentials_go_in_clear_to_found_services_only_where_the_program_says_so()
+    {
+        using var loopback = new Loopback();
+        Discovery discovery = loopback.Node.Discovery;
+        loopback.Serve("one", "red", new TestArm(), out _, "alice 5ebe2294ecd0e0f08eab7690d2a6ee69 _\n");
+        Assert.True(Loopback.Eventually(() => discovery.FindServices<ArmStub>().Count == 1));
+        string url = Assert.Single(discovery.FindServices<ArmStub>()[0].Urls);
+        var alice = new ConnectOptions { UserName = "alice", Password = "secret" };
+        var refused = Assert.Throws<RobdefAuthenticationException>(() => loopback.Node.Connect<ArmStub>(url, alice));
+        Assert.Contains("without TLS", refused.Message, StringComparison.Ordinal);
+
+        using Client<ArmStub> client = loopback.Node.Connect<ArmStub>(url, alice with { AllowClearCredentials = true });
+        Assert.Equal(3, client.Root.Add(1, 2));
     }
 
     [Fact]

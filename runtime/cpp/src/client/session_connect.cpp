@@ -207,8 +207,8 @@ void Session::check_channel(const Url& url, const ChannelTraits& traits) {
 void Session::check_credentials() const {
   if (may_send_credentials_) return;
   throw Error(ErrorCode::authentication_error,
-              "credentials are not sent without TLS to a URL that discovery has found; " +
-                  std::string("`allow_clear_credentials` sends them"));
+              "credentials are not sent without TLS to a URL that discovery has found; the option "
+              "`allow_clear_credentials` (C#, MATLAB: `AllowClearCredentials`) sends them");
 }
 
 void Session::connect_combined(const Patience& patience) {
