@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "runtime/cpp/src/channel/remote_address.hpp"
@@ -39,6 +40,8 @@ StreamConnection::StreamConnection(Role role, Descriptor socket, std::shared_ptr
       largest_size_(terms_.traits.message_limit == 0
                         ? options_->limits.message_size
                         : std::min(options_->limits.message_size, terms_.traits.message_limit)),
+      many_answers_(role_ == Role::server ? std::min(stream_chunk, options_->answer_queue_limit)
+                                          : std::numeric_limits<std::size_t>::max()),
       carrier_(std::move(carrier)),
       remote_address_(remote_address_of(socket_.get(), terms_)),
       tap_(options_->tap.get()),

@@ -236,8 +236,15 @@ class StreamConnection final : public Connection,
   void look_at_message();
   void read_late(Time asked);
   void give_time();
-  [[nodiscard]] bool has_many_answers() const;
-  bool answers_wait();
+  // So many that it is worth a look.
+  [[nodiscard]] bool has_many_answers() const {
+    return outbox_bytes_.load(std::memory_order_relaxed) > many_answers_;
+  }
+  // True when requests have to wait until the other side has taken answers; go_on() comes then.
+  bool answers_wait() {
+    return has_many_answers() ? look_at_answers() : answers_wait_.load(std::memory_order_relaxed);
+  }
+  bool look_at_answers();
   [[nodiscard]] std::size_t unsent() const { return outbox_.size() + carrier_unsent(); }
   [[nodiscard]] std::size_t most_answers() const;
   // Under sending_: bytes of answers that wait, at most. Events and packets do not count: a client
@@ -345,6 +352,7 @@ class StreamConnection final : public Connection,
   const std::shared_ptr<const NodeOptions> options_;
   const LinkTerms terms_;
   const std::uint32_t largest_size_;  // of a message
+  const std::size_t many_answers_;    // bytes that wait; of a server
   // Null for plain bytes; written with the read turn and under sending_.
   std::unique_ptr<Carrier> carrier_;
   const std::string remote_address_;

@@ -143,12 +143,6 @@ void StreamConnection::give_time() {
 
 // Answers
 
-// So many that it is worth a look.
-bool StreamConnection::has_many_answers() const {
-  return role_ == Role::server && outbox_bytes_.load(std::memory_order_relaxed) >
-                                      std::min(stream_chunk, options_->answer_queue_limit);
-}
-
 // Under sending_: bytes that may wait before requests do.
 std::size_t StreamConnection::most_answers() const {
   return is_over_.load(std::memory_order_relaxed)
@@ -156,9 +150,7 @@ std::size_t StreamConnection::most_answers() const {
              : options_->answer_queue_limit;
 }
 
-// True when requests have to wait until the other side has taken answers; go_on() comes then.
-bool StreamConnection::answers_wait() {
-  if (!has_many_answers()) return answers_wait_.load(std::memory_order_relaxed);
+bool StreamConnection::look_at_answers() {
   if (!has_unsent_) flush();  // only held back
   const std::lock_guard lock(sending_);
   if (has_unsent_ && !is_closing_ && waiting_answers() > most_answers()) answers_wait_ = true;

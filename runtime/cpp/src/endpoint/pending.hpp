@@ -71,7 +71,7 @@ class Pending {
 class PendingTable {
  public:
   /// Gives the request its number: they start at 1 and grow by 1; numbers in use are skipped.
-  std::uint32_t add(Pending& request, const Asked& asked);
+  std::uint32_t add(Pending& request, Asked asked);
   /// The next number, for a request whose answer nobody waits for.
   std::uint32_t skip();
   struct Answered {
