@@ -2,6 +2,9 @@
 # robdef_generate(TARGET
 #   FILES a.robdef ...        definitions to generate code for; absolute or in the current source folder
 #   LANGUAGE cpp              or cbus: C99 for pods as buses; or typescript
+#   [PLUGIN program]          in place of LANGUAGE: a program that makes the files; a path is absolute or in the
+#                             current source folder, a name is one along PATH, or a plug-in of CONFIG
+#   [PLUGIN_OPTIONS key=value ...]
 #   [IMPORT_PATHS dir ...]    where imported definitions are looked for; the folders of FILES and the
 #                             environment variable ROBOTRACONTEUR_ROBDEF_PATH are searched too
 #   [CONFIG robdef.toml]      project file with renames and levels of warnings; none by default, wherever one is
@@ -15,6 +18,9 @@
 #
 # With LANGUAGE typescript, TARGET is a custom target: the modules a.b.c.ts are in OUTPUT_DIR when it is built, and what
 # compiles them depends on it. Nothing is linked.
+#
+# With PLUGIN it is the same: TARGET is a custom target, the plug-in runs once for each definition, and what it makes
+# is in OUTPUT_DIR when TARGET is built.
 #
 # Each definition has a command of its own that knows all files it read, so an edited import runs
 # again exactly what depends on it; files whose text stays the same are not touched.
@@ -66,10 +72,26 @@ function(robdef_config_option file result)
   set(${result} ${option} PARENT_SCOPE)
 endfunction()
 
+# What the command line says of a plug-in, and the file that it is, if it is one.
+function(robdef_plugin_maker program options arguments files)
+  set(found "")
+  cmake_path(ABSOLUTE_PATH program BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" NORMALIZE OUTPUT_VARIABLE path)
+  if(EXISTS "${path}" OR program MATCHES "/")
+    set(program "${path}")
+    set(found "${path}")
+  endif()
+  list(TRANSFORM options PREPEND "--plugin-option=")
+  set(${arguments} --plugin "${program}" ${options} PARENT_SCOPE)
+  set(${files} "${found}" PARENT_SCOPE)
+endfunction()
+
 function(robdef_generate target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "CONFIG;LANGUAGE;OUTPUT_DIR" "FILES;IMPORT_PATHS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "CONFIG;LANGUAGE;OUTPUT_DIR;PLUGIN" "FILES;IMPORT_PATHS;PLUGIN_OPTIONS")
   if(arg_UNPARSED_ARGUMENTS OR NOT arg_FILES)
     message(FATAL_ERROR "usage: robdef_generate(TARGET FILES ... LANGUAGE cpp [IMPORT_PATHS ...] [OUTPUT_DIR dir]); not understood: ${arg_UNPARSED_ARGUMENTS}")
+  endif()
+  if(arg_PLUGIN AND arg_LANGUAGE)
+    message(FATAL_ERROR "robdef_generate: give either LANGUAGE or PLUGIN")
   endif()
   if(NOT TARGET ${target})
     message(FATAL_ERROR "robdef_generate: there is no target ${target}")
@@ -97,11 +119,22 @@ function(robdef_generate target)
   list(REMOVE_DUPLICATES folders)
   list(TRANSFORM folders PREPEND "-I" OUTPUT_VARIABLE search)
 
+  set(maker --lang "${arg_LANGUAGE}")
+  set(maker_files "")
+  set(made_by "${arg_LANGUAGE}")
+  if(arg_PLUGIN)
+    robdef_plugin_maker("${arg_PLUGIN}" "${arg_PLUGIN_OPTIONS}" maker maker_files)
+    cmake_path(GET arg_PLUGIN FILENAME made_by)
+  endif()
+
   set(stamps "")
   foreach(file IN LISTS files)
     # A new service name means new file names.
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
-    robdef_output_names("${file}" "${arg_LANGUAGE}" names)
+    set(names "")
+    if(NOT arg_PLUGIN)
+      robdef_output_names("${file}" "${arg_LANGUAGE}" names)
+    endif()
     list(TRANSFORM names PREPEND "${arg_OUTPUT_DIR}/" OUTPUT_VARIABLE outputs)
     cmake_path(GET file FILENAME name)
     set(stamp "${CMAKE_CURRENT_BINARY_DIR}/${target}_robdef.stamps/${name}")
@@ -110,15 +143,15 @@ function(robdef_generate target)
     add_custom_command(
       OUTPUT "${stamp}.stamp"
       BYPRODUCTS ${outputs}
-      COMMAND robdef::robdef generate ${config} --lang ${arg_LANGUAGE} -o "${arg_OUTPUT_DIR}" ${search}
+      COMMAND robdef::robdef generate ${config} ${maker} -o "${arg_OUTPUT_DIR}" ${search}
               --depfile "${stamp}.d" --depfile-target "${stamp}.stamp" "${file}"
       COMMAND ${CMAKE_COMMAND} -E touch "${stamp}.stamp"
-      DEPENDS "${file}" robdef::robdef
+      DEPENDS "${file}" ${maker_files} robdef::robdef
       DEPFILE "${stamp}.d"
-      COMMENT "Generating ${arg_LANGUAGE} from ${name}"
+      COMMENT "Generating ${made_by} from ${name}"
       VERBATIM)
     list(APPEND stamps "${stamp}.stamp")
-    if(NOT arg_LANGUAGE STREQUAL "typescript")
+    if(NOT arg_PLUGIN AND NOT arg_LANGUAGE STREQUAL "typescript")
       target_sources(${target} PRIVATE ${outputs})
     endif()
   endforeach()
@@ -131,7 +164,7 @@ function(robdef_generate target)
   add_custom_target(${target}_robdef_${count} DEPENDS ${stamps})
   add_dependencies(${target} ${target}_robdef_${count})
 
-  if(arg_LANGUAGE STREQUAL "typescript")
+  if(arg_PLUGIN OR arg_LANGUAGE STREQUAL "typescript")
     return()
   endif()
   target_include_directories(${target} PUBLIC "$<BUILD_INTERFACE:${arg_OUTPUT_DIR}>")

@@ -42,7 +42,7 @@ const std::vector<WarningGroup>& warning_groups() {
        "what other tools refuse, or read in another way",
        {Code::R0221, Code::R0222, Code::R0223, Code::R0327, Code::R0621, Code::R0622, Code::R0623,
         Code::R0624}},
-      {"target", "what a language changes or leaves out", {Code::R0903, Code::R0904}},
+      {"target", "what a language changes or leaves out", {Code::R0903, Code::R0904, Code::R1002}},
   };
   return groups;
 }

@@ -25,7 +25,7 @@ TEST(Codes, EachHasANameTextsAndItsRangeOfNumbers) {
   std::set<std::string_view> names;
   for (const CodeEntry& entry : code_entries()) {
     EXPECT_TRUE(names.insert(entry.name).second) << entry.name;
-    EXPECT_THAT(std::string(entry.name), MatchesRegex("R0[1-9][0-9][0-9]"));
+    EXPECT_THAT(std::string(entry.name), MatchesRegex("R(0[1-9]|10)[0-9][0-9]"));
     EXPECT_THAT(std::string(entry.rule), MatchesRegex("([LPSVTWQ][0-9]+)?")) << entry.name;
     EXPECT_FALSE(entry.summary.empty() || entry.summary.ends_with('.')) << entry.name;
     EXPECT_FALSE(entry.explanation.empty() || entry.explanation.starts_with('\n')) << entry.name;

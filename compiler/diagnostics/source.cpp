@@ -32,6 +32,13 @@ Position Source::position(std::uint32_t offset) const {
   return {line, column};
 }
 
+std::optional<std::uint32_t> Source::offset(Position position) const {
+  if (position.line == 0 || position.line > line_starts_.size()) return std::nullopt;
+  const std::string_view text = line(position.line);
+  if (position.column == 0 || position.column - 1 > text.size()) return std::nullopt;
+  return static_cast<std::uint32_t>(text.data() - text_.data()) + position.column - 1;
+}
+
 std::string_view Source::line(std::uint32_t number) const {
   if (number == 0 || number > line_starts_.size()) return {};
   std::string_view text = std::string_view(text_).substr(line_starts_[number - 1]);

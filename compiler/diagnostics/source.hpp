@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,6 +46,9 @@ class Source {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const std::string& text() const { return text_; }
   [[nodiscard]] Position position(std::uint32_t offset) const;
+  /// The byte at a position, the reverse of position(). At the end of a line its column may be one
+  /// past the text. Nothing for a place that the text does not have.
+  [[nodiscard]] std::optional<std::uint32_t> offset(Position position) const;
   /// The text of a line (from 1) without its line end; empty past the end.
   [[nodiscard]] std::string_view line(std::uint32_t number) const;
   [[nodiscard]] std::uint32_t line_count() const;

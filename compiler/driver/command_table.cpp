@@ -12,7 +12,8 @@ namespace robdef {
 namespace {
 
 constexpr std::array commands = {
-    CommandRow{Command::generate, "generate", "[--lang LANG] [-o DIR] [OPTION...] [FILE...]",
+    CommandRow{Command::generate, "generate",
+               "[--lang LANG | --plugin PROGRAM] [OPTION...] [FILE...]",
                "make the source files of a language",
                "Checks the definitions, and everything they import, and writes the code for the\n"
                "given files below the output folder. Nothing is generated for imports. Without\n"
@@ -163,6 +164,19 @@ constexpr std::array options = {
               "take templates from here: those of the same\nname replace the language's own; with"
               " a file\noutputs.txt they are all that is generated",
               take_text<&Options::template_folder>},
+    OptionRow{"--plugin",
+              "",
+              "PROGRAM",
+              {Command::generate},
+              "let this program make the files, instead of a\nlanguage; or the plug-in of this name"
+              " in\nrobdef.toml; docs/plugins.md describes them",
+              take_text<&Options::plugin>},
+    OptionRow{"--plugin-option",
+              "",
+              "KEY=VALUE",
+              {Command::generate},
+              "tell the plug-in this; may be repeated",
+              take_plugin_option},
     OptionRow{"--rename",
               "",
               "PATH=NAME",

@@ -108,8 +108,11 @@ std::vector<std::string> input_paths(const Sources& sources, const std::vector<T
     const std::string& name = sources[SourceId{index}].name();
     if (name != ast::shown_name("-")) paths.push_back(name);
   }
-  std::set<std::string> templates;
+  std::set<std::string> templates;  // and plug-ins
   for (const Target& target : targets) {
+    if (target.plugin && target.plugin->program.find('/') != std::string::npos) {
+      templates.insert(target.plugin->program);
+    }
     if (target.template_folder.empty()) continue;
     for (const auto& entry :
          std::filesystem::recursive_directory_iterator(target.template_folder)) {
@@ -191,6 +194,9 @@ class Run {
   }
 
   FileSet generate(const Target& target) {
+    if (target.plugin) {
+      return plugin::generate(*target.plugin, model_, sources_, target.folder, report_, err_);
+    }
     if (target.backend == nullptr) return docs::make_pages(model_, options_.docs_form);
     try {
       return target.backend->generate(model_, {.template_folder = target.template_folder}, report_);
@@ -282,7 +288,7 @@ class Run {
   static std::string prepare_manifest(const Output& output, const std::set<std::string>& made,
                                       std::vector<Stale>& stale, PendingFiles& pending) {
     const std::string& folder = output.target->folder;
-    const std::string_view language = output.target->backend->name();
+    const std::string& language = output.target->name;
     const std::string name = Manifest::file_name(language);
     const Manifest before = Manifest::read(std::filesystem::path(folder) / name);
     Manifest now(output.files);
@@ -332,6 +338,9 @@ ExitStatus compile(const Options& options, std::ostream& out, std::ostream& err)
     return Run(options, out, err).run();
   } catch (const UserTemplateError& error) {
     err << "robdef: " << error.what() << '\n';
+    return exit_errors;
+  } catch (const plugin::PluginError& error) {
+    err << "robdef: " << shortened(error.what()) << '\n';
     return exit_errors;
   }
 }

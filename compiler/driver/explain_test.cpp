@@ -66,7 +66,7 @@ TEST(Explain, GroupsOfWarningsStandBelowTheList) {
   EXPECT_THAT(run({"explain", "--list"}).out,
               AllOf(HasSubstr("\n\nwarnings     all warnings\n"),
                     HasSubstr("\ntarget       what a language changes or leaves out: R0903, "
-                              "R0904\n")));
+                              "R0904, R1002\n")));
   EXPECT_THAT(run({"explain", "target"}).out,
               AllOf(StartsWith("warning[R0903]"), HasSubstr("\nwarning[R0904]")));
   EXPECT_THAT(run({"explain", "warnings"}).out,

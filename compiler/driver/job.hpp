@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "compiler/backends/backend.hpp"
 #include "compiler/driver/options.hpp"
+#include "compiler/plugin/plugin.hpp"
 #include "compiler/project/project.hpp"
 
 namespace robdef {
 
-/// A language that is generated or checked, or the pages of `robdef docs`.
+/// A language that is generated or checked, what a plug-in makes, or the pages of `robdef docs`.
 struct Target {
-  const Backend* backend = nullptr;  ///< null: pages
-  std::string folder = ".";          ///< to write below
-  std::string template_folder;       ///< empty: the templates of the backend
+  const Backend* backend = nullptr;  ///< null: a plug-in or pages
+  std::optional<plugin::Plugin> plugin;
+  std::string name;             ///< of the language, or `plugin-NAME`; empty: pages
+  std::string folder = ".";     ///< to write below
+  std::string template_folder;  ///< empty: the templates of the backend
   std::vector<model::Rename> renames;
 };
 

@@ -139,6 +139,13 @@ std::string take_rename(Options& options, const std::string& value) {
   return "";
 }
 
+std::string take_plugin_option(Options& options, const std::string& value) {
+  const std::size_t sign = value.find('=');
+  if (sign == std::string::npos || sign == 0) return "`" + value + "` is not KEY=VALUE";
+  options.plugin_options[value.substr(0, sign)] = value.substr(sign + 1);
+  return "";
+}
+
 std::string take_entry_types(Options& options, const std::string& value) {
   std::size_t begin = 0;
   while (begin <= value.size()) {

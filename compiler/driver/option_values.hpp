@@ -19,6 +19,8 @@ std::string take_breaking_form(Options& options, const std::string& value);
 std::string take_categories(Options& options, const std::string& value);
 std::string take_allowed(Options& options, const std::string& value);
 std::string take_import_folder(Options& options, const std::string& value);
+/// KEY=VALUE; of two with one key the later counts.
+std::string take_plugin_option(Options& options, const std::string& value);
 std::string take_rename(Options& options, const std::string& value);
 std::string take_entry_types(Options& options, const std::string& value);
 std::string take_connection(Options& options, const std::string& value);

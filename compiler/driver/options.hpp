@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -62,7 +63,9 @@ struct Options {
   std::vector<std::string> languages;  ///< generate, view: one at most
   std::string output_folder;           ///< empty: not given
   std::string template_folder;         ///< empty: the templates of the backend
-  std::string config_file;             ///< empty: the one that is found
+  std::string plugin;                  ///< generate: a program, or one of the project file
+  std::map<std::string, std::string> plugin_options;
+  std::string config_file;  ///< empty: the one that is found
   bool ignores_config = false;
   std::vector<model::Rename> renames;
   std::string depfile;         ///< empty: none

@@ -52,7 +52,7 @@ _robdef() {
     --allow | --warn | --deny)
       if [ "$command" != breaking ]; then
         mapfile -t COMPREPLY < <(compgen -W \
-          "$(robdef explain --list 2>/dev/null | awk '$3 == "warning" || $2 == "warning" || !/^R0/ {print $1}')" \
+          "$(robdef explain --list 2>/dev/null | awk '$3 == "warning" || $2 == "warning" || !/^R[01]/ {print $1}')" \
           -- "$word")
         return
       fi
@@ -82,6 +82,10 @@ _robdef() {
         CallbackCallRet WirePacket MemoryRead MemoryReadRet MemoryWrite' -- "$word")
       return
       ;;
+    --plugin)
+      mapfile -t COMPREPLY < <(compgen -f -- "$word"; compgen -c -- "$word")
+      return
+      ;;
     --config | --depfile | --password-file | --passphrase-file | --tls-authority | --tls-revocation | --tls-certificate | --tls-key)
       mapfile -t COMPREPLY < <(compgen -f -- "$word")
       return
@@ -93,7 +97,7 @@ _robdef() {
     local options
     case $command in
       generate)
-        options="--lang --output -o --templates --rename --list-outputs --depfile --depfile-target $reading" ;;
+        options="--lang --plugin --plugin-option --output -o --templates --rename --list-outputs --depfile --depfile-target $reading" ;;
       check) options="--strict --lang $reading" ;;
       format) options="--check --help" ;;
       breaking) options="--import-path -I --format --category --allow $live --help" ;;

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "compiler/model/rename.hpp"
 #include "compiler/output/json.hpp"
 #include "compiler/syntax/parse.hpp"
 
@@ -100,16 +101,16 @@ struct BaseKind {
 
 class Dump {
  public:
-  Dump(const Sources& sources, Detail detail)
-      : sources_(sources),
+  Dump(JsonWriter& json, const Sources& sources, Detail detail)
+      : json_(json),
+        sources_(sources),
         is_full_(detail == Detail::full),
         is_documented_(detail != Detail::shape) {}
+  Dump(JsonWriter& json, const Sources& sources, const DumpAdditions& additions)
+      : json_(json), sources_(sources), additions_(&additions) {}
 
-  std::string run(const Model& model) {
-    json_.begin_object().member("model_version", model_version);
+  void definitions(const Model& model) {
     list("definitions", model.definitions(), [this](const auto& one) { definition(*one); });
-    json_.end_object();
-    return std::move(json_).text();
   }
 
  private:
@@ -124,6 +125,24 @@ class Dump {
     list(key, items, [this](const std::string& text) { json_.value(text); });
   }
 
+  /// Begins the object of something that can be renamed.
+  template <class Named>
+  void name(const Named& named) {
+    json_.begin_object();
+    name_only(named);
+  }
+
+  template <class Named>
+  void name_only(const Named& named) {
+    json_.member("name", named.name);
+    if (additions_ != nullptr) json_.member("code_name", code_name(named));
+  }
+
+  template <class Write>
+  void add(Write write) {
+    if (additions_ != nullptr) write(*additions_);
+  }
+
   void documentation(const std::string& text) {
     if (is_documented_) json_.member("documentation", text);
   }
@@ -132,8 +151,21 @@ class Dump {
     json_.begin_array().value(begin).value(end).end_array();
   }
 
+  /// Where programs find what the text has at `span`.
+  void place_in_file(std::string_view key, Span span) {
+    const Source& source = sources_[span.source];
+    const Position position = source.position(span.begin);
+    json_.key(key).begin_object().member("file", source.name());
+    json_.member("line", position.line).member("column", position.column);
+    json_.member("length", span.end - span.begin).end_object();
+  }
+
   void place(std::string_view key, Span span) {
     if (!is_full_) return;
+    if (additions_ != nullptr) {
+      place_in_file(key == "span" ? "at" : "version_at", span);
+      return;
+    }
     json_.key(key);
     offsets(span.begin, span.end);
   }
@@ -141,7 +173,8 @@ class Dump {
   void origin(const std::string& text, Span span) {
     documentation(text);
     if (!is_full_) return;
-    json_.member("line", sources_[span.source].position(span.begin).line);
+    if (additions_ == nullptr)
+      json_.member("line", sources_[span.source].position(span.begin).line);
     place("span", span);
   }
 
@@ -154,7 +187,7 @@ class Dump {
   void record(const Record& record);
   void field(const Field& field);
   void object(const Object& object);
-  void member(const Member& member);
+  void member(const Object& object, const Member& member);
   void parameter(const Parameter& parameter);
   void modifiers(const std::vector<Modifier>& modifiers);
   void access(const Access& access);
@@ -165,10 +198,11 @@ class Dump {
     list("constants", constants, [this](const Constant& one) { constant(one); });
   }
 
+  JsonWriter& json_;
   const Sources& sources_;
-  bool is_full_;
-  bool is_documented_;
-  JsonWriter json_;
+  const bool is_full_ = true;
+  const bool is_documented_ = true;
+  const DumpAdditions* const additions_ = nullptr;
 };
 
 void Dump::definition(const Definition& definition) {
@@ -192,8 +226,9 @@ void Dump::definition(const Definition& definition) {
   texts("options", definition.options);
   constants(definition.constants);
   list("exceptions", definition.exceptions, [this](const Exception& exception) {
-    json_.begin_object().member("name", exception.name);
+    name(exception);
     origin(exception.documentation, exception.span);
+    add([&](const auto& more) { more.exception(json_, exception); });
     json_.end_object();
   });
   list("enums", definition.enums, [this](const Enum& one) { enumeration(one); });
@@ -204,7 +239,7 @@ void Dump::definition(const Definition& definition) {
   if (is_documented_) declarations(definition);
   if (is_full_) {
     json_.member("text", definition.text);
-    lines(definition);
+    if (additions_ == nullptr) lines(definition);
   }
   json_.end_object();
 }
@@ -233,8 +268,16 @@ void Dump::declarations(const Definition& definition) {
 }
 
 void Dump::constant(const Constant& constant) {
-  json_.begin_object().member("name", constant.name);
+  name(constant);
   json_.member("type", constant.is_struct ? std::string("struct") : constant.type.text());
+  if (additions_ != nullptr) {
+    json_.key("value_type");
+    if (constant.is_struct) {
+      json_.null();
+    } else {
+      type(constant.type);
+    }
+  }
   json_.key("value");
   const auto number = [this](const Number& value) {
     std::visit([this](auto exact) { json_.value(exact); }, value);
@@ -262,15 +305,17 @@ void Dump::constant(const Constant& constant) {
 }
 
 void Dump::enumeration(const Enum& enumeration) {
-  json_.begin_object().member("name", enumeration.name);
+  name(enumeration);
   list("values", enumeration.values, [this](const EnumValue& value) {
-    json_.begin_object().member("name", value.name).member("value", value.value);
+    name(value);
+    json_.member("value", value.value);
     json_.member("is_hexadecimal", value.is_hexadecimal);
     documentation(value.documentation);
     place("span", value.span);
     json_.end_object();
   });
   origin(enumeration.documentation, enumeration.span);
+  add([&](const auto& more) { more.enumeration(json_, enumeration); });
   json_.end_object();
 }
 
@@ -281,7 +326,7 @@ void Dump::records(std::string_view key, const Definition& definition, RecordKin
 }
 
 void Dump::record(const Record& record) {
-  json_.begin_object().member("name", record.name);
+  name(record);
   constants(record.constants);
   list("fields", record.fields, [this](const Field& one) { field(one); });
   texts("options", record.options);
@@ -298,11 +343,13 @@ void Dump::record(const Record& record) {
       break;
   }
   origin(record.documentation, record.span);
+  add([&](const auto& more) { more.record(json_, record); });
   json_.end_object();
 }
 
 void Dump::field(const Field& field) {
-  json_.begin_object().member("name", field.name).key("type");
+  name(field);
+  json_.key("type");
   type(field.type);
   modifiers(field.modifiers);
   origin(field.documentation, field.span);
@@ -310,19 +357,21 @@ void Dump::field(const Field& field) {
 }
 
 void Dump::object(const Object& object) {
-  json_.begin_object().member("name", object.name);
+  name(object);
   list("implements", object.implements,
        [this](const Object* one) { json_.value(one->qualified_name()); });
   constants(object.constants);
-  list("members", object.members, [this](const Member& one) { member(one); });
+  list("members", object.members, [&](const Member& one) { member(object, one); });
   texts("options", object.options);
   origin(object.documentation, object.span);
+  add([&](const auto& more) { more.object(json_, object); });
   json_.end_object();
 }
 
-void Dump::member(const Member& member) {
+void Dump::member(const Object& object, const Member& member) {
   json_.begin_object().member("kind", model::name_of(member.kind));
-  json_.member("name", member.name).key("type");
+  name_only(member);
+  json_.key("type");
   type(member.type);
   json_.member("index", name_of(member.index));
   list("parameters", member.parameters, [this](const Parameter& one) { parameter(one); });
@@ -335,11 +384,13 @@ void Dump::member(const Member& member) {
   modifiers(member.modifiers);
   access(member.access);
   origin(member.documentation, member.span);
+  add([&](const auto& more) { more.member(json_, object, member); });
   json_.end_object();
 }
 
 void Dump::parameter(const Parameter& parameter) {
-  json_.begin_object().member("name", parameter.name).key("type");
+  name(parameter);
+  json_.key("type");
   type(parameter.type);
   place("span", parameter.span);
   json_.end_object();
@@ -376,13 +427,23 @@ void Dump::type(const Type& type) {
   for (const std::uint32_t dimension : type.dimensions) json_.value(dimension);
   json_.end_array().member("container", name_of(type.container));
   place("span", type.span);
+  add([&](const auto& more) { more.type(json_, type); });
   json_.end_object();
 }
 
 }  // namespace
 
 std::string dump(const Model& model, const Sources& sources, Detail detail) {
-  return Dump(sources, detail).run(model);
+  JsonWriter json;
+  json.begin_object().member("model_version", model_version);
+  Dump(json, sources, detail).definitions(model);
+  json.end_object();
+  return std::move(json).text();
+}
+
+void dump_definitions(JsonWriter& json, const Model& model, const Sources& sources,
+                      const DumpAdditions& additions) {
+  Dump(json, sources, additions).definitions(model);
 }
 
 }  // namespace robdef::model

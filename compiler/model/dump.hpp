@@ -6,6 +6,10 @@
 #include "compiler/diagnostics/source.hpp"
 #include "compiler/model/model.hpp"
 
+namespace robdef {
+class JsonWriter;
+}
+
 namespace robdef::model {
 
 /// How much of a model dump() writes.
@@ -57,5 +61,25 @@ enum class Detail {
 ///
 /// Version 1 had neither spans nor lines; all else is as it was.
 std::string dump(const Model& model, const Sources& sources, Detail detail = Detail::full);
+
+/// What dump_definitions() writes beyond the model, at the end of the JSON object of each subject.
+/// Each function writes whole members: a key and its value.
+class DumpAdditions {
+ public:
+  virtual ~DumpAdditions() = default;
+  virtual void exception(JsonWriter& json, const Exception& exception) const = 0;
+  virtual void enumeration(JsonWriter& json, const Enum& enumeration) const = 0;
+  virtual void record(JsonWriter& json, const Record& record) const = 0;
+  virtual void object(JsonWriter& json, const Object& object) const = 0;
+  virtual void member(JsonWriter& json, const Object& object, const Member& member) const = 0;
+  virtual void type(JsonWriter& json, const Type& type) const = 0;
+};
+
+/// Writes the member "definitions" as dump() has it for programs that never read the text: without
+/// lines; with `at` ({file, line, column, length}) in place of line and span, `version_at` for
+/// version_span, `code_name` (rename.hpp) beside each name that can be renamed, and `value_type` of
+/// constants, which is a type, or null for a struct. docs/plugins.md describes it for users.
+void dump_definitions(JsonWriter& json, const Model& model, const Sources& sources,
+                      const DumpAdditions& additions);
 
 }  // namespace robdef::model

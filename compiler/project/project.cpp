@@ -43,6 +43,7 @@ class Reader {
         {"import-path", [&](const auto& entry) { take_import_folders(entry); }},
         {"strict", [&](const auto& entry) { take_strict(entry); }},
         {"levels", [&](const auto& entry) { take_levels(entry); }},
+        {"plugin", [&](const auto& entry) { take_plugins(entry); }},
     };
     for (const std::string_view language : languages_) {
       keys.push_back({language, [&](const auto& entry) { take_language(entry); }});
@@ -174,13 +175,81 @@ class Reader {
     Language language;
     language.name = table.key;
     language.span = table.span;
-    const std::vector<Key> keys = {
-        {"output", [&](const auto& entry) { take_folder(entry, language.output_folder); }},
-        {"templates", [&](const auto& entry) { take_folder(entry, language.template_folder); }},
-        {"rename", [&](const auto& entry) { take_renames(entry, language); }},
-    };
+    std::vector<Key> keys = shared_keys(language);
+    keys.push_back(
+        {"templates", [&](const auto& entry) { take_folder(entry, language.template_folder); }});
     take_all(table.value, keys, table.key);
     project_.languages.push_back(std::move(language));
+  }
+
+  /// What languages and plug-ins have alike.
+  std::vector<Key> shared_keys(Language& language) {
+    return {
+        {"output", [&](const auto& entry) { take_folder(entry, language.output_folder); }},
+        {"rename", [&](const auto& entry) { take_renames(entry, language); }},
+    };
+  }
+
+  void take_plugins(const Value::Entry& plugins) {
+    if (!has_kind(plugins, Kind::table, "a table for each plug-in, `[plugin.NAME]`")) return;
+    for (const Value::Entry& entry : plugins.value.entries) take_plugin(entry);
+  }
+
+  void take_plugin(const Value::Entry& table) {
+    if (!has_kind(table, Kind::table, "a table")) return;
+    Plugin plugin;
+    plugin.name = table.key;
+    plugin.span = table.span;
+    if (!is_plain(table.key)) {
+      report_.add(Code::R0803, table.span, fmt::format("`{}` is no name of a plug-in", table.key))
+          .label("expected letters, digits, `_` and `-`");
+      return;
+    }
+    std::vector<Key> keys = shared_keys(plugin);
+    keys.push_back({"program", [&](const auto& entry) { take_program(entry, plugin); }});
+    keys.push_back({"options", [&](const auto& entry) { take_options(entry, plugin); }});
+    take_all(table.value, keys, fmt::format("plugin.{}", table.key));
+    const bool has_program = std::ranges::any_of(
+        table.value.entries, [](const auto& one) { return one.key == "program"; });
+    if (!has_program) {
+      report_.add(Code::R0803, table.span, fmt::format("`[plugin.{}]` has no `program`", table.key))
+          .label("which program makes the files?");
+    }
+    project_.plugins.push_back(std::move(plugin));
+  }
+
+  /// A name that files may have everywhere: the manifest has it.
+  static bool is_plain(std::string_view name) {
+    return !name.empty() && name.size() <= 64 && std::ranges::all_of(name, [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+             c == '_' || c == '-';
+    });
+  }
+
+  /// A path begins at the folder of the file, also without `/` if the file is there; another name
+  /// is one along PATH.
+  void take_program(const Value::Entry& entry, Plugin& plugin) {
+    if (!has_kind(entry, Kind::text, "the path of a program")) return;
+    const std::string& text = entry.value.text;
+    if (text.empty()) {
+      report_.add(Code::R0803, entry.value.span, "`program` is empty");
+      return;
+    }
+    plugin.program = placed(text);
+    std::error_code error;
+    const bool is_path = text.find('/') != std::string::npos;
+    if (!is_path && !fs::exists(plugin.program, error)) {
+      plugin.program = text;
+    } else if (plugin.program.find('/') == std::string::npos) {
+      plugin.program.insert(0, "./");
+    }
+  }
+
+  void take_options(const Value::Entry& options, Plugin& plugin) {
+    if (!has_kind(options, Kind::table, "a table of texts")) return;
+    for (const Value::Entry& entry : options.value.entries) {
+      if (has_kind(entry, Kind::text, "a text")) plugin.options[entry.key] = entry.value.text;
+    }
   }
 
   void take_folder(const Value::Entry& entry, std::string& folder) {
@@ -219,6 +288,11 @@ class Reader {
 const Language* Project::find(std::string_view language) const {
   const auto found = std::ranges::find(languages, language, &Language::name);
   return found == languages.end() ? nullptr : &*found;
+}
+
+const Plugin* Project::find_plugin(std::string_view name) const {
+  const auto found = std::ranges::find(plugins, name, &Plugin::name);
+  return found == plugins.end() ? nullptr : &*found;
 }
 
 std::string find_file() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,12 @@ struct Language {
   Span span;  ///< of its table's name
 };
 
+/// `[plugin.NAME]`: generated like a language, by a program (docs/plugins.md).
+struct Plugin : Language {
+  std::string program;  ///< never empty; a name without `/` is one along PATH
+  std::map<std::string, std::string> options;
+};
+
 struct Project {
   std::string path;  ///< of the file
   bool has_inputs = false;
@@ -34,8 +41,12 @@ struct Project {
   Levels levels;
   std::vector<Language> languages;  ///< in the order of the languages that are known
 
+  std::vector<Plugin> plugins;  ///< in the order of the file
+
   /// nullptr when the file says nothing about it.
   [[nodiscard]] const Language* find(std::string_view language) const;
+  /// The same for a plug-in.
+  [[nodiscard]] const Plugin* find_plugin(std::string_view name) const;
 };
 
 /// The project file of the current folder, else of the nearest folder above it, as seen from the
