@@ -41,6 +41,7 @@ enum class Command {
   bridge,
   ca,
   discover,
+  lsp,
   get,
   set,
   call,
