@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <future>
 #include <sstream>
+#include <streambuf>
+#include <utility>
 
 #include "compiler/diagnostics/mutations.hpp"
 #include "compiler/lsp/framing.hpp"
@@ -85,6 +88,63 @@ TEST(Session, LeavesOutAMessageThatIsTooLarge) {
   EXPECT_EQ(read_message(in).kind, Framed::Kind::lost);
   std::istringstream larger("Content-Length: 99999999999999999999999\r\n\r\n{}");
   EXPECT_EQ(read_message(larger).kind, Framed::Kind::lost);
+}
+
+/// Gives its bytes one by one, and says when a place is reached.
+class Noticed : public std::streambuf {
+ public:
+  Noticed(std::string text, std::size_t place) : text_(std::move(text)), place_(place) {}
+  std::future<void> reached() { return reached_.get_future(); }
+
+ protected:
+  int_type underflow() override {
+    if (next_ == place_) reached_.set_value();
+    if (next_ == text_.size()) return traits_type::eof();
+    setg(&text_[next_], &text_[next_], &text_[next_] + 1);
+    return traits_type::to_int_type(text_[next_++]);
+  }
+
+ private:
+  std::string text_;
+  const std::size_t place_;
+  std::size_t next_ = 0;
+  std::promise<void> reached_;
+};
+
+/// Takes nothing until something has happened.
+class Held : public std::stringbuf {
+ public:
+  explicit Held(std::future<void> until) : until_(std::move(until)) {}
+
+ protected:
+  std::streamsize xsputn(const char* text, std::streamsize size) override {
+    if (until_.valid()) until_.get();
+    return std::stringbuf::xsputn(text, size);
+  }
+
+ private:
+  std::future<void> until_;
+};
+
+TEST(Session, ARequestThatWaitsCanBeCancelled) {
+  const std::string before =
+      framed(R"({"jsonrpc":"2.0","id":1,"method":"initialize","params":{"capabilities":{}}})") +
+      framed(R"({"jsonrpc":"2.0","id":2,"method":"workspace/symbol","params":{"query":""}})") +
+      framed(R"({"jsonrpc":"2.0","id":3,"method":"workspace/symbol","params":{"query":""}})") +
+      framed(R"({"jsonrpc":"2.0","method":"$/cancelRequest","params":{"id":2}})");
+  Noticed input(before + exit_message, before.size());
+  // The first answer is held back until the cancellation has been read.
+  Held output(input.reached());
+  std::istream in(&input);
+  std::ostream out(&output);
+  serve({}, in, out);
+  std::istringstream answers(output.str());
+  std::vector<Json> sent;
+  for (int i = 0; i < 3; ++i) sent.push_back(Json::parse(read_message(answers).body));
+  EXPECT_TRUE(sent[0].contains("result"));
+  EXPECT_EQ(sent[1]["error"]["code"], -32800);
+  EXPECT_EQ(sent[1]["id"], 2);
+  EXPECT_EQ(sent[2]["result"], Json::array());
 }
 
 TEST(Session, AHeaderMayHaveOtherFields) {
