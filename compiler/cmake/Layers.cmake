@@ -24,6 +24,7 @@ set(robdef_layers
   "compiler/plugin: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/implements.hpp compiler/backends/member_facts.hpp"
   "compiler/output: compiler/diagnostics"
   "compiler/docs: compiler/diagnostics compiler/model compiler/output"
+  "compiler/lsp: compiler/diagnostics compiler/syntax compiler/format compiler/model compiler/project compiler/output"
   "compiler/backends: compiler/diagnostics compiler/model compiler/output"
   # A sketch is C++ too: words and literals are the same.
   "compiler/backends/arduino: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/check_values.hpp compiler/backends/implements.hpp compiler/backends/literals.hpp compiler/backends/member_facts.hpp compiler/backends/name_set.hpp compiler/backends/print.hpp compiler/backends/words.hpp compiler/backends/cpp/constants.hpp compiler/backends/cpp/literal_text.hpp compiler/backends/cpp/names.hpp"
@@ -36,7 +37,7 @@ set(robdef_layers
   # Uses generated code, which stands on the runtime.
   "compiler/backends/cpp/generated_test.cpp: compiler/model runtime/cpp/include/rr"
   "compiler/backends/cpp/generated_members_test.cpp: runtime/cpp/include/rr"
-  "compiler/driver: compiler/plugin compiler/breaking compiler/diagnostics compiler/docs compiler/project compiler/syntax compiler/format compiler/model compiler/output compiler/backends runtime/cpp/include/rr runtime/cpp/src/replay"
+  "compiler/driver: compiler/plugin compiler/breaking compiler/diagnostics compiler/docs compiler/lsp compiler/project compiler/syntax compiler/format compiler/model compiler/output compiler/backends runtime/cpp/include/rr runtime/cpp/src/replay"
   "compiler/driver/live/members_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
   "compiler/driver/live/hostile_service_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
   "compiler/driver/live/session_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
@@ -109,7 +110,7 @@ set(robdef_outside_headers
   "^rr/async(\\.hpp$|/)| runtime/cpp/include/rr/async.hpp runtime/cpp/include/rr/async runtime/cpp/src runtime/cpp/fuzz runtime/cpp/stress examples conformance benchmarks compiler/backends"
   "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| compiler/plugin/program.cpp runtime/cpp/src/serial runtime/arduino/bench/tcp runtime/cpp/src/channel runtime/cpp/src/discovery runtime/cpp/src/endpoint runtime/cpp/src/realtime/udp_socket.cpp runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp conformance benchmarks"
   "^fmt/| compiler benchmarks"
-  "^nlohmann/| compiler/plugin/answer.cpp runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"
+  "^nlohmann/| compiler/lsp compiler/plugin/answer.cpp runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"
   "^toml\\+\\+/| compiler/project/toml_file.cpp"
   "^(mex\\.h|octave/)| runtime/matlab conformance/runners/matlab"
   "^histedit\\.h$| compiler/driver/live/line_reader.cpp"

@@ -96,6 +96,19 @@ Diagnostic& Diagnostic::help(std::string text) {
   return *this;
 }
 
+Diagnostic& Diagnostic::edit(Span span, std::string replacement) {
+  if (!helps_.empty()) edits_.push_back({helps_.size() - 1, {span, std::move(replacement)}});
+  return *this;
+}
+
+std::vector<Replacement> Diagnostic::edits_of(std::size_t help) const {
+  std::vector<Replacement> result;
+  for (const HelpEdit& edit : edits_) {
+    if (edit.help == help) result.push_back(edit.replacement);
+  }
+  return result;
+}
+
 Diagnostic& Diagnostic::note(std::string text) {
   notes_.push_back(shortened(std::move(text)));
   return *this;

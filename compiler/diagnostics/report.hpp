@@ -48,6 +48,12 @@ struct Label {
   std::string text;
 };
 
+/// A change of a text: what replaces a span. An empty span inserts.
+struct Replacement {
+  Span span;
+  std::string text;
+};
+
 /// One finding. Built in place by the pass that found it:
 ///   report.add(Code::R0203, span, "unknown type `Angle`").label("no struct ... has this name")
 ///       .help("`Angles`, declared on line 7, is close");
@@ -61,6 +67,9 @@ class Diagnostic {
   Diagnostic& also(Span span, std::string text);
   /// What to do about it.
   Diagnostic& help(std::string text);
+  /// A change that the last help() asks for; all changes of a help belong together. A change for
+  /// each place: they do not overlap.
+  Diagnostic& edit(Span span, std::string replacement);
   /// Why it is so.
   Diagnostic& note(std::string text);
 
@@ -71,9 +80,16 @@ class Diagnostic {
   [[nodiscard]] const Label& primary() const { return primary_; }
   [[nodiscard]] const std::vector<Label>& secondary() const { return secondary_; }
   [[nodiscard]] const std::vector<std::string>& helps() const { return helps_; }
+  /// The changes that a help, by its index in helps(), asks for; empty where only a person can
+  /// tell.
+  [[nodiscard]] std::vector<Replacement> edits_of(std::size_t help) const;
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
  private:
+  struct HelpEdit {
+    std::size_t help = 0;
+    Replacement replacement;
+  };
   friend class Report;
 
   Code code_;
@@ -82,6 +98,7 @@ class Diagnostic {
   Label primary_;
   std::vector<Label> secondary_;
   std::vector<std::string> helps_;
+  std::vector<HelpEdit> edits_;
   std::vector<std::string> notes_;
 };
 

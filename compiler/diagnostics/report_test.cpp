@@ -178,5 +178,17 @@ TEST(Report, AWordOfAMegabyteIsNotPrintedWhole) {
   EXPECT_EQ(shortened("a  b "), "a  b ");
 }
 
+TEST(Report, AChangeBelongsToTheHelpBeforeIt) {
+  Report report;
+  Diagnostic& found = report.add(Code::R0203, {SourceId{}, 4, 7}, "unknown");
+  found.edit({SourceId{}, 0, 1}, "no help asks for it");
+  found.help("first").edit({SourceId{}, 4, 7}, "one").edit({SourceId{}, 0, 0}, "two");
+  found.help("second");
+  ASSERT_EQ(found.edits_of(0).size(), 2);
+  EXPECT_EQ(found.edits_of(0)[0].text, "one");
+  EXPECT_EQ(found.edits_of(0)[1].span, (Span{SourceId{}, 0, 0}));
+  EXPECT_TRUE(found.edits_of(1).empty());
+}
+
 }  // namespace
 }  // namespace robdef

@@ -99,6 +99,12 @@ constexpr std::array commands = {
                "A node is its id, or a file that has it. Nodes trust the authority that are\n"
                "given its ca.pem. Keep ca.key to yourself. Its passphrase is asked for at the\n"
                "terminal, unless --passphrase-file or ROBDEF_CA_PASSPHRASE has it.\n"},
+    CommandRow{Command::lsp, "lsp", "[--stdio] [-I DIR...]",
+               "serve an editor: the language server protocol",
+               "Speaks the language server protocol over standard input and output, for an\n"
+               "editor that starts it: diagnostics while typing, completion, hover,\n"
+               "definitions, references, rename, layout, quick fixes, colours. Imports are\n"
+               "found as robdef check finds them. docs/editors.md shows how to set up editors.\n"},
     CommandRow{Command::bridge, "bridge", "BOARD... --listen PORT [--everywhere]",
                "offer boards, at serial ports or over TCP, as services",
                "A BOARD is the path of a port, as /dev/ttyACM0, perhaps with the rate and the\n"
@@ -139,7 +145,7 @@ constexpr std::array options = {
               "-I",
               "DIR",
               {Command::generate, Command::check, Command::docs, Command::describe, Command::model,
-               Command::view, Command::breaking},
+               Command::view, Command::breaking, Command::lsp},
               "look here for imported definitions; may be\nrepeated. An import a.b is the file\n"
               "a.b.robdef: beside the importing file, in\nthese folders, then in those of the\n"
               "environment",
@@ -329,6 +335,12 @@ constexpr std::array options = {
               {Command::replay},
               "send as soon as the answers before have come,\nnot at the recorded times",
               take_recording_switch<&RecordingOptions::is_fast>},
+    OptionRow{"--stdio",
+              "",
+              "",
+              {Command::lsp},
+              "standard input and output, as without it: some\neditors add it",
+              [](Options&, const std::string&) { return std::string(); }},
     OptionRow{"--once",
               "",
               "",

@@ -144,6 +144,9 @@ class ArgumentReader {
     if (command_.command == Command::discover) {
       return options_.inputs.empty() ? "" : "`robdef discover` takes no files";
     }
+    if (command_.command == Command::lsp) {
+      return options_.inputs.empty() ? "" : "`robdef lsp` takes no files; the editor names them";
+    }
     if (command_.command >= Command::get ||
         (command_.command == Command::describe && !options_.inputs.empty() &&
          is_url(options_.inputs.front()))) {

@@ -42,6 +42,7 @@ enum class Command {
   bridge,
   ca,
   discover,
+  lsp,
   get,
   set,
   call,

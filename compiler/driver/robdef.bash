@@ -23,7 +23,7 @@ _robdef() {
   COMPREPLY=()
   if [ "$COMP_CWORD" = 1 ]; then
     mapfile -t COMPREPLY < <(compgen -W \
-      'generate check format breaking docs describe model view explain inspect record replay bridge ca discover get set call watch connect
+      'generate check format breaking docs describe model view explain inspect record replay bridge ca discover lsp get set call watch connect
       --help --version' -- "$word")
     return
   fi
@@ -114,6 +114,7 @@ _robdef() {
       inspect) options='--json --entries --path --connection --summary --help' ;;
       record) options='--connect --listen --everywhere --output -o --drop --keep-credentials --help' ;;
       discover) options="--once --type --format --wait --ipv4 --interface --port $tls --help" ;;
+      lsp) options='--stdio --import-path -I --help' ;;
       bridge) options="--listen --everywhere $tls --help" ;;
       replay) options='--connect --listen --everywhere --connection --fast --help' ;;
       ca)

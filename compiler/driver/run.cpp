@@ -12,6 +12,7 @@
 #include "compiler/driver/explain.hpp"
 #include "compiler/driver/format.hpp"
 #include "compiler/driver/live/commands.hpp"
+#include "compiler/driver/lsp.hpp"
 #include "compiler/driver/recordings.hpp"
 
 namespace robdef {
@@ -66,6 +67,8 @@ ExitStatus answer(std::span<const std::string> arguments, std::string_view impor
       return bridge(options, out, err);
     case Command::ca:
       return run_authority(options, out, err);
+    case Command::lsp:
+      return serve_editor(options, out);
     case Command::discover:
       return discover(options, out, err);
     case Command::get:

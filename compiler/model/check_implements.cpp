@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compiler/model/graph.hpp"
+#include "compiler/model/insertions.hpp"
 #include "compiler/model/phrases.hpp"
 #include "compiler/model/print.hpp"
 #include "compiler/model/rules.hpp"
@@ -122,12 +123,14 @@ bool ImplementsRules::is_within_reach(const Object& object, std::size_t line) {
         above->definition == object.definition ||
         std::find(imports.begin(), imports.end(), above->definition) != imports.end();
     if (is_nameable) continue;
+    const Replacement import = import_line(*object.definition, above->definition->name);
     report_
         .add(Code::R0606, object.implements_spans[line],
              quoted(base.name) + " implements an object of " + quoted(above->definition->name) +
                  ", which is not imported here")
         .label("implements " + quoted(above->qualified_name()))
-        .help("add " + quoted("import " + above->definition->name));
+        .help("add " + quoted("import " + above->definition->name))
+        .edit(import.span, import.text);
     return false;
   }
   return true;
@@ -149,7 +152,11 @@ void ImplementsRules::check_listed(const Object& object, std::size_t line,
                   "object " + quoted(object.name) + " implements " + listed(missing) +
                       " without listing " + (missing.size() == 1 ? "it" : "them"));
   diagnostic.label("implements " + listed(missing) + " in turn");
-  for (const std::string& name : missing) diagnostic.help("add " + quoted("implements " + name));
+  for (const std::string& name : missing) {
+    const Replacement added =
+        line_below(*object.definition, object.implements_spans[line], "implements " + name);
+    diagnostic.help("add " + quoted("implements " + name)).edit(added.span, added.text);
+  }
 }
 
 // What differs between a member and the one that it has to repeat.

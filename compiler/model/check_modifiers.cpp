@@ -78,7 +78,8 @@ void report_feature(Span span, const std::string& feature, const Definition& def
   report.add(Code::R0208, span, feature + " in a file of version " + text_of(definition.version))
       .label("came with version 0.9")
       .also(definition.version_span, "the version is declared here")
-      .help("declare `stdver 0.10`");
+      .help("declare `stdver 0.10`")
+      .edit(definition.version_span, "0.10");
 }
 
 void report_statement(Span name, std::string_view keyword, const Definition& definition,
@@ -98,7 +99,10 @@ void report_unknown(const Modifier& modifier, Report& report) {
   } else {
     report.add(Code::R0613, modifier.span, message)
         .label("would have no effect")
-        .help("write " + quoted(near));
+        .help("write " + quoted(near))
+        .edit({modifier.span.source, modifier.span.begin,
+               modifier.span.begin + static_cast<std::uint32_t>(modifier.name.size())},
+              std::string(near));
   }
 }
 
@@ -142,7 +146,8 @@ void modifiers_are_known(const Definition& definition, Report& report) {
         if (modifier.arguments.empty()) continue;
         report.add(Code::R0610, modifier.span, quoted(modifier.name) + " takes no arguments")
             .label("has no effect with arguments")
-            .help("write plain " + quoted(modifier.name));
+            .help("write plain " + quoted(modifier.name))
+            .edit(modifier.span, modifier.name);
       } else if (is_language_word(modifier.name)) {
         report.add(Code::R0610, modifier.span, quoted(modifier.name) + of_kind)
             .label("belongs to other kinds of members");

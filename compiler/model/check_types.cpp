@@ -156,7 +156,8 @@ void types_are_values(const Definition& definition, Report& report) {
           .add(Code::R0206, type.span,
                "an array of " + std::string(kind) + (kind == "string" ? "s" : " values"))
           .label("only numbers, pods and namedarrays form arrays")
-          .help("write " + quoted(written_base(type, definition) + "{list}"));
+          .help("write " + quoted(written_base(type, definition) + "{list}"))
+          .edit(type.span, written_base(type, definition) + "{list}");
     }
   });
 }

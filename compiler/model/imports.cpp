@@ -100,7 +100,9 @@ void ImportRules::report_missing_import(const ast::Import& import, const Definit
     return;
   }
   const std::string_view near = nearest(name, loaded);
-  if (!near.empty()) diagnostic.help(quoted(near) + " is close");
+  if (!near.empty()) {
+    diagnostic.help(quoted(near) + " is close").edit(import.name.span, std::string(near));
+  }
   diagnostic.help("name the file of the definition, or the folder of " + quoted(expected_file) +
                   " with -I");
 }
@@ -127,7 +129,8 @@ void ImportRules::check_import_version(const ast::Import& import, const Definiti
            quoted(imported.name) + " needs a higher version than this file declares")
       .label("declares version " + imported_version)
       .also(user.version_span, "this file declares " + version)
-      .help("write " + quoted("stdver " + imported_version));
+      .help("write " + quoted("stdver " + imported_version))
+      .edit(user.version_span, imported_version);
 }
 
 // V04

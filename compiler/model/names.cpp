@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "compiler/diagnostics/spelling.hpp"
+#include "compiler/model/insertions.hpp"
 #include "compiler/model/phrases.hpp"
 
 namespace robdef::model {
@@ -203,6 +204,7 @@ void Names::report_own(const Scope& scope, const ast::Name& name, const Wanted& 
       .label("this is " + quoted(last.text) + " of this very file")
       .also(found->second.span, "declared here")
       .help("write " + quoted(last.text))
+      .edit(name.span, last.text)
       .note("only what is imported is named with its service");
 }
 
@@ -227,13 +229,18 @@ bool Names::suggest_elsewhere(Diagnostic& diagnostic, const Scope& scope, std::s
   for (const std::string_view service : scope.import_order) {
     if (!declares(scope.imports.at(service))) continue;
     const std::string qualified = std::string(service) + '.' + std::string(name);
-    diagnostic.help("write " + quoted(qualified) + ", or add " + quoted("using " + qualified));
+    diagnostic.help("write " + quoted(qualified) + ", or add " + quoted("using " + qualified))
+        .edit(diagnostic.primary().span, qualified);
     return true;
   }
   for (const Definition* definition : order_) {
     if (definition == scope.definition || !declares(definition)) continue;
-    diagnostic.help("add " + quoted("import " + definition->name) + " and write " +
-                    quoted(definition->name + '.' + std::string(name)));
+    const std::string qualified = definition->name + '.' + std::string(name);
+    const Replacement import = import_line(*scope.definition, definition->name);
+    diagnostic
+        .help("add " + quoted("import " + definition->name) + " and write " + quoted(qualified))
+        .edit(import.span, import.text)
+        .edit(diagnostic.primary().span, qualified);
     return true;
   }
   return false;
@@ -244,7 +251,7 @@ void Names::suggest_near(Diagnostic& diagnostic, const Scope& scope, std::string
   const bool any_type = wanted.noun == "type";
   for (const auto& [habit, word] : habits) {
     if (any_type && habit == name) {
-      diagnostic.help("write " + quoted(word));
+      diagnostic.help("write " + quoted(word)).edit(diagnostic.primary().span, std::string(word));
       return;
     }
   }
@@ -266,6 +273,7 @@ void Names::suggest_near(Diagnostic& diagnostic, const Scope& scope, std::string
   } else {
     diagnostic.help(quoted(near) + " is close");
   }
+  diagnostic.edit(diagnostic.primary().span, std::string(near));
 }
 
 void Names::suggest_declared(Diagnostic& diagnostic, const Scope& scope, std::string_view name,
@@ -276,7 +284,8 @@ void Names::suggest_declared(Diagnostic& diagnostic, const Scope& scope, std::st
     if (fits(scope.declared.at(candidate))) candidates.push_back(candidate);
   }
   const std::string_view near = nearest(name, candidates);
-  if (!near.empty()) diagnostic.help(quoted(near) + " is close");
+  if (near.empty()) return;
+  diagnostic.help(quoted(near) + " is close").edit(diagnostic.primary().span, std::string(near));
 }
 
 void Names::suggest_import(Diagnostic& diagnostic, const Scope& scope,
@@ -285,7 +294,9 @@ void Names::suggest_import(Diagnostic& diagnostic, const Scope& scope,
   if (!report_.may_suggest(count, comparisons(service))) return;
   for (const Definition* definition : order_) {
     if (definition->name != service) continue;
-    diagnostic.help("add " + quoted("import " + std::string(service)));
+    const Replacement import = import_line(*scope.definition, std::string(service));
+    diagnostic.help("add " + quoted("import " + std::string(service)))
+        .edit(import.span, import.text);
     for (const std::string_view name : scope.import_order) {
       const Definition* imported = scope.imports.at(name);
       if (imported == nullptr || !scopes_.at(imported).imports.contains(service)) continue;
@@ -295,7 +306,10 @@ void Names::suggest_import(Diagnostic& diagnostic, const Scope& scope,
     return;
   }
   const std::string_view near = nearest(service, scope.import_order);
-  if (!near.empty()) diagnostic.help("the import " + quoted(near) + " is close");
+  if (near.empty()) return;
+  Span written = diagnostic.primary().span;
+  written.end = written.begin + static_cast<std::uint32_t>(service.size());
+  diagnostic.help("the import " + quoted(near) + " is close").edit(written, std::string(near));
 }
 
 std::string Names::line_of(Span span) const {

@@ -308,6 +308,15 @@ std::string find_file() {
   return "";
 }
 
+std::string find_file(const std::string& folder) {
+  std::error_code error;
+  for (fs::path at(folder);; at = at.parent_path()) {
+    const fs::path path = at / file_name;
+    if (fs::is_regular_file(path, error)) return path.generic_string();
+    if (at == at.parent_path()) return "";
+  }
+}
+
 Project read(const std::string& path, const std::vector<std::string_view>& languages,
              Sources& sources, Report& report) {
   Project project;

@@ -53,6 +53,9 @@ struct Project {
 /// current folder: `../robdef.toml`. Empty when there is none.
 std::string find_file();
 
+/// The same for another folder, whose path is absolute; so is what it gives.
+std::string find_file(const std::string& folder);
+
 /// Reads a project file, and looks for its inputs. `languages` are the names that tables may have.
 /// Reports R0510 (unreadable) and R0801 to R0804.
 Project read(const std::string& path, const std::vector<std::string_view>& languages,

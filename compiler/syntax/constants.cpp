@@ -155,7 +155,8 @@ class ConstantCheck {
     if (type.container != ast::ContainerForm::none) {
       report_.add(Code::R0321, type.container_span, "a string constant with a container")
           .label("has no effect")
-          .help("write `string`");
+          .help("write `string`")
+          .edit(type.container_span, "");
     }
     return true;
   }
@@ -174,7 +175,8 @@ class ConstantCheck {
       report_
           .add(Code::R0324, type.base.span,
                fmt::format("`{}` as the type of a struct constant", type.base.text))
-          .help("write `struct`");
+          .help("write `struct`")
+          .edit(type.base.span, "struct");
     }
     doubt_fields(*literal);
     return true;
@@ -189,7 +191,9 @@ class ConstantCheck {
                                                           "int16",  "uint16", "int32",  "uint32",
                                                           "int64",  "uint64", "string", "struct"};
       const std::string_view near = nearest(base.text, types);
-      if (!near.empty()) diagnostic.help(fmt::format("`{}` is close", near));
+      if (!near.empty()) {
+        diagnostic.help(fmt::format("`{}` is close", near)).edit(base.span, std::string(near));
+      }
     }
     return false;
   }

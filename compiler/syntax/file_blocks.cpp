@@ -179,14 +179,16 @@ void FileParser::end() {
              fmt::format("`end {}` closes {}", end->kind->text, with_article(block_.keyword)))
         .label("another kind of block")
         .also(block_.header, "the block")
-        .help("write `end`");
+        .help("write `end`")
+        .edit(line_.span(), "end");
   } else if (end && end->kind && forbids_options()) {
     report()
         .add(Code::R0120, end->kind->span,
              fmt::format("`end {}` in a file of version {}", end->kind->text,
                          text_of(file_.version)))
         .label("from version 0.9.2 on `end` stands alone")
-        .help("write `end`");
+        .help("write `end`")
+        .edit(line_.span(), "end");
   }
   if (!block_.has_content && !block_.name.empty() && block_.keyword != Keyword::namedarray) {
     report()

@@ -142,7 +142,8 @@ void FileParser::stdver() {
         .add(Code::R0111, version->span,
              fmt::format("`stdver` cannot name version {}", text_of(version->version)))
         .label("the first version with `stdver` is 0.9")
-        .help("write `stdver 0.10`");
+        .help("write `stdver 0.10`")
+        .edit(version->span, "0.10");
   }
   if (file_.version_spelling == ast::VersionSpelling::stdver) {
     report()
@@ -281,7 +282,8 @@ void FileParser::finish() {
         .add(Code::R0134, file_.version_span,
              fmt::format("version {} is newer than this compiler", text_of(file_.version)))
         .label("the newest that can be read is 1.2.8")
-        .help("write `stdver 0.10` unless the file needs more");
+        .help("write `stdver 0.10` unless the file needs more")
+        .edit(file_.version_span, "0.10");
   }
 }
 

@@ -125,9 +125,10 @@ void FileParser::unknown_statement() {
   if (!habit.empty()) {
     diagnostic.help(std::string(habit));
   } else if (keyword_of(lower) != Keyword::none) {
-    diagnostic.help(fmt::format("keywords are written in lower case: `{}`", lower));
+    diagnostic.help(fmt::format("keywords are written in lower case: `{}`", lower))
+        .edit(first_word_span(), lower);
   } else if (!near.empty()) {
-    diagnostic.help(fmt::format("`{}` is close", near));
+    diagnostic.help(fmt::format("`{}` is close", near)).edit(first_word_span(), std::string(near));
   }
 }
 
@@ -157,9 +158,13 @@ void FileParser::misplaced(Keyword keyword) {
                fmt::format("`{}` inside {}", text_of(keyword), with_article(block_.keyword)))
           .also(block_.header, fmt::format("the {}", text_of(block_.keyword)));
   if (keyword == Keyword::field) {
-    diagnostic.label("an object has members, not fields").help("write `property`");
+    diagnostic.label("an object has members, not fields")
+        .help("write `property`")
+        .edit(first_word_span(), "property");
   } else if (keyword == Keyword::property) {
-    diagnostic.label(fmt::format("a {} has fields", text_of(block_.keyword))).help("write `field`");
+    diagnostic.label(fmt::format("a {} has fields", text_of(block_.keyword)))
+        .help("write `field`")
+        .edit(first_word_span(), "field");
   } else {
     diagnostic.label("belongs into an object");
   }

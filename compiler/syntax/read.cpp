@@ -162,13 +162,8 @@ class Loader {
 
   // Empty when there is none.
   [[nodiscard]] std::string find(const Name& name) const {
-    const std::string file = name.text + ".robdef";
-    const fs::path importing(sources_[name.span.source].name());
-    std::string beside = (importing.parent_path() / file).string();
-    if (exists(beside)) return beside;
-    for (const std::string& folder : path_.folders) {
-      std::string candidate = (fs::path(folder) / file).string();
-      if (exists(candidate)) return candidate;
+    for (std::string& place : import_places(name.text, sources_[name.span.source].name(), path_)) {
+      if (exists(place)) return std::move(place);
     }
     return {};
   }
@@ -224,6 +219,16 @@ SearchPath make_search_path(std::vector<std::string> folders, std::string_view v
     variable.remove_prefix(std::min(end + 1, variable.size()));
   }
   return path;
+}
+
+std::vector<std::string> import_places(const std::string& service, const std::string& importing,
+                                       const SearchPath& path) {
+  const std::string file = service + ".robdef";
+  std::vector<std::string> places{(fs::path(importing).parent_path() / file).string()};
+  for (const std::string& folder : path.folders) {
+    places.push_back((fs::path(folder) / file).string());
+  }
+  return places;
 }
 
 Program read(const std::vector<std::string>& inputs, const SearchPath& path, Sources& sources,

@@ -43,6 +43,11 @@ struct SearchPath {
 /// out.
 SearchPath make_search_path(std::vector<std::string> folders, std::string_view variable);
 
+/// Where the definition of a service may be, the first place that exists counts: `<service>.robdef`
+/// in the folder of the importing file, then in those of the path.
+std::vector<std::string> import_places(const std::string& service, const std::string& importing,
+                                       const SearchPath& path);
+
 /// Reads the named files, `-` for standard input, and everything they import, over any number of
 /// steps. An import is found among the files loaded, else as `<service name>.robdef` in the folder
 /// of the importing file, else along the path. One that is not found is left out; the model reports

@@ -52,7 +52,8 @@ class TypeDoubts {
         type.container == ast::ContainerForm::string_map) {
       report_.add(Code::R0624, type.container_span, "a memory in a list or map")
           .label("has no meaning on the wire")
-          .help("remove the container");
+          .help("remove the container")
+          .edit(type.container_span, "");
     }
   }
 
