@@ -112,7 +112,8 @@ std::string_view fault_of(const std::string& path) {
 /// A link in the output folder may lead anywhere.
 bool is_below(const fs::path& folder, const std::string& path) {
   std::error_code error;
-  const fs::path root = fs::weakly_canonical(fs::absolute(folder, error), error);
+  fs::path root = fs::weakly_canonical(fs::absolute(folder, error), error);
+  if (!root.has_filename()) root = root.parent_path();  // spelled with `/` at its end
   const fs::path file = fs::weakly_canonical(root / path, error);
   if (error) return false;
   return std::mismatch(root.begin(), root.end(), file.begin(), file.end()).first == root.end();

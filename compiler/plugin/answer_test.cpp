@@ -104,6 +104,14 @@ TEST_F(PluginAnswer, PathsStayBelowTheFolder) {
             "it makes `a` a file and a folder");
 }
 
+TEST_F(PluginAnswer, TheFolderMayBeSpelledInAnyWay) {
+  for (const char* folder : {"nowhere/", "nowhere//", "./nowhere/.", "a/../nowhere/", ".", "./"}) {
+    const Answer answer =
+        read_answer(R"({"files":[{"path":"b/c.md","content":""}]})", sources_, folder);
+    EXPECT_THAT(answer.files.files(), ElementsAre(Key("b/c.md"))) << folder;
+  }
+}
+
 TEST_F(PluginAnswer, ALinkDoesNotLeadOut) {
   std::string pattern = (std::filesystem::temp_directory_path() / "answer-XXXXXX").string();
   const std::filesystem::path folder = ::mkdtemp(pattern.data());
