@@ -130,9 +130,8 @@ bool is_special(EntryType type) { return static_cast<std::uint16_t>(type) < 500;
 // A request that waits for its answer is open from now on.
 Session::Numbers Session::draw(endpoint::Pending& call, const Outgoing& request) {
   using endpoint::Asked;
-  Asked asked = request.opens_generator
-                    ? Asked::opening(request.type, request.path, request.member)
-                    : Asked(request.type, request.path, request.member);
+  Asked asked = request.opens_generator ? Asked::opening(request.type, request.path, request.member)
+                                        : Asked(request.type, request.path, request.member);
   const std::lock_guard lock(mutex_);
   Numbers numbers = draw_numbers(is_special(request.type));
   numbers.request = pending_.add(call, std::move(asked));
