@@ -136,7 +136,7 @@ TEST(BreakingRules, CategoriesHaveNames) {
   EXPECT_EQ(Categories::all().text(), "wire, source, behaviour");
 }
 
-// The table of rules in docs/breaking.md.
+// The table of rules in docs/reference/breaking.md.
 std::string table() {
   std::string text;
   for (const Rule& rule : rules()) {

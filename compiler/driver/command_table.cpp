@@ -37,7 +37,7 @@ constexpr std::array commands = {
                "anew (source), and what works but means something else (behaviour). Each of OLD\n"
                "and NEW is a file, - for standard input, or a folder of definitions; a revision\n"
                "of git and a path in it, such as HEAD~1:definitions; a recording; or the URL of\n"
-               "a running service. docs/breaking.md has all rules.\n"},
+               "a running service. docs/reference/breaking.md has all rules.\n"},
     CommandRow{Command::docs, "docs", "[--format html|markdown] -o DIR [OPTION...] [FILE...]",
                "write reference pages of definitions, for browsers or as Markdown",
                "Writes a page for each definition and everything it imports, and an index, below\n"
@@ -99,12 +99,13 @@ constexpr std::array commands = {
                "A node is its id, or a file that has it. Nodes trust the authority that are\n"
                "given its ca.pem. Keep ca.key to yourself. Its passphrase is asked for at the\n"
                "terminal, unless --passphrase-file or ROBDEF_CA_PASSPHRASE has it.\n"},
-    CommandRow{Command::lsp, "lsp", "[--stdio] [-I DIR...]",
-               "serve an editor: the language server protocol",
-               "Speaks the language server protocol over standard input and output, for an\n"
-               "editor that starts it: diagnostics while typing, completion, hover,\n"
-               "definitions, references, rename, layout, quick fixes, colours. Imports are\n"
-               "found as robdef check finds them. docs/editors.md shows how to set up editors.\n"},
+    CommandRow{
+        Command::lsp, "lsp", "[--stdio] [-I DIR...]",
+        "serve an editor: the language server protocol",
+        "Speaks the language server protocol over standard input and output, for an\n"
+        "editor that starts it: diagnostics while typing, completion, hover,\n"
+        "definitions, references, rename, layout, quick fixes, colours. Imports are\n"
+        "found as robdef check finds them. docs/howto/editors.md shows how to set up editors.\n"},
     CommandRow{Command::bridge, "bridge", "BOARD... --listen PORT [--everywhere]",
                "offer boards, at serial ports or over TCP, as services",
                "A BOARD is the path of a port, as /dev/ttyACM0, perhaps with the rate and the\n"
@@ -175,7 +176,7 @@ constexpr std::array options = {
               "PROGRAM",
               {Command::generate},
               "let this program make the files, instead of a\nlanguage; or the plug-in of this name"
-              " in\nrobdef.toml; docs/plugins.md describes them",
+              " in\nrobdef.toml; docs/howto/plugins.md describes them",
               take_text<&Options::plugin>},
     OptionRow{"--plugin-option",
               "",

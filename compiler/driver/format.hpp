@@ -8,10 +8,10 @@
 
 namespace robdef {
 
-/// Lays out the given definitions (docs/format.md) in their places, all or none; `-` is laid out
-/// from standard input to `out`. With `--check` nothing is written: what would change goes to
-/// `out`, one place a line, and the status is exit_errors when there is any. Names lines that could
-/// not be read on `err`.
+/// Lays out the given definitions (docs/reference/format.md) in their places, all or none; `-` is
+/// laid out from standard input to `out`. With `--check` nothing is written: what would change goes
+/// to `out`, one place a line, and the status is exit_errors when there is any. Names lines that
+/// could not be read on `err`.
 ExitStatus format_files(const Options& options, std::ostream& out, std::ostream& err);
 
 }  // namespace robdef

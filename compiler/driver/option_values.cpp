@@ -121,7 +121,7 @@ std::string take_categories(Options& options, const std::string& value) {
 std::string take_allowed(Options& options, const std::string& value) {
   const CodeEntry* const entry = find_code(upper_case(value));
   if (entry == nullptr || breaking::find_rule(entry->code) == nullptr) {
-    return "`" + value + "` is no code of a breaking change; see docs/breaking.md";
+    return "`" + value + "` is no code of a breaking change; see docs/reference/breaking.md";
   }
   options.breaking.wanted.allowed.insert(entry->code);
   return "";

@@ -10,7 +10,7 @@
 
 namespace robdef {
 
-/// What a recording begins with (docs/recording.md).
+/// What a recording begins with (docs/howto/recording.md).
 inline constexpr std::string_view recording_mark = "RRTAPE";
 
 /// The service definitions that a recording holds, each text once. Says on `err` when the file is

@@ -7,7 +7,7 @@
 #include "compiler/driver/compile.hpp"
 #include "compiler/driver/options.hpp"
 
-/// The commands about recordings (docs/recording.md).
+/// The commands about recordings (docs/howto/recording.md).
 namespace robdef {
 
 /// Prints a recording: a line or a JSON object for each record, or the summary.
@@ -17,7 +17,7 @@ ExitStatus record(const Options& options, std::ostream& out, std::ostream& err);
 /// Plays one side of a recording and prints what differs.
 ExitStatus replay(const Options& options, std::ostream& out, std::ostream& err);
 
-/// Offers the boards of `inputs` as services, until SIGINT or SIGTERM (docs/serial.md).
+/// Offers the boards of `inputs` as services, until SIGINT or SIGTERM (docs/howto/serial.md).
 ExitStatus bridge(const Options& options, std::ostream& out, std::ostream& err);
 
 }  // namespace robdef

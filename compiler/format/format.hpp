@@ -8,8 +8,8 @@
 
 #include "compiler/syntax/lossless.hpp"
 
-/// The one layout of definitions (docs/format.md). Blanks and blank lines are all that changes: no
-/// token, comment or continuation, and no line that the parser could not read.
+/// The one layout of definitions (docs/reference/format.md). Blanks and blank lines are all that
+/// changes: no token, comment or continuation, and no line that the parser could not read.
 namespace robdef::format {
 
 enum class Reason : std::uint8_t {

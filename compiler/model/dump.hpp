@@ -78,7 +78,7 @@ class DumpAdditions {
 /// Writes the member "definitions" as dump() has it for programs that never read the text: without
 /// lines; with `at` ({file, line, column, length}) in place of line and span, `version_at` for
 /// version_span, `code_name` (rename.hpp) beside each name that can be renamed, and `value_type` of
-/// constants, which is a type, or null for a struct. docs/plugins.md describes it for users.
+/// constants, which is a type, or null for a struct. docs/howto/plugins.md describes it for users.
 void dump_definitions(JsonWriter& json, const Model& model, const Sources& sources,
                       const DumpAdditions& additions);
 

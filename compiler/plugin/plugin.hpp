@@ -13,8 +13,8 @@
 #include "compiler/model/model.hpp"
 #include "compiler/output/file_set.hpp"
 
-/// Backends that are programs of their own (docs/plugins.md): definitions go in as JSON, files and
-/// findings come out.
+/// Backends that are programs of their own (docs/howto/plugins.md): definitions go in as JSON,
+/// files and findings come out.
 namespace robdef::plugin {
 
 /// A plug-in that does not keep to the rules. The message names it.

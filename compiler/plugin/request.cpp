@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Model -> the document that a plug-in reads; docs/plugins.md describes it.
+// Model -> the document that a plug-in reads; docs/howto/plugins.md describes it.
 #include <cstddef>
 #include <string>
 #include <utility>

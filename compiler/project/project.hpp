@@ -11,7 +11,8 @@
 #include "compiler/diagnostics/source.hpp"
 #include "compiler/model/rename.hpp"
 
-/// The project file, `robdef.toml`: what is read and what is made of it (docs/configuration.md).
+/// The project file, `robdef.toml`: what is read and what is made of it
+/// (docs/reference/configuration.md).
 namespace robdef::project {
 
 /// What the file of a project is called.
@@ -26,7 +27,7 @@ struct Language {
   Span span;  ///< of its table's name
 };
 
-/// `[plugin.NAME]`: generated like a language, by a program (docs/plugins.md).
+/// `[plugin.NAME]`: generated like a language, by a program (docs/howto/plugins.md).
 struct Plugin : Language {
   std::string program;  ///< never empty; a name without `/` is one along PATH
   std::map<std::string, std::string> options;

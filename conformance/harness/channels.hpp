@@ -14,8 +14,8 @@
 #include "conformance/harness/stream.hpp"
 #include "rr/authority.hpp"
 
-/// The channels over which scenarios are played (docs/channels.md). What is compared is the same
-/// over all of them: messages.
+/// The channels over which scenarios are played (docs/howto/channels.md). What is compared is the
+/// same over all of them: messages.
 namespace rr::channel {
 class Tls;
 class WebSockets;

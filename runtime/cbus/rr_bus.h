@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * What the C99 of `robdef generate --lang cbus` stands on: numbers to bytes and back, and the frame that
- * real-time nodes exchange by UDP (docs/realtime.md). No heap, no globals that change, no floating point
- * but what is converted; any thread may call anything.
+ * What the C99 of `robdef generate --lang cbus` stands on: numbers to bytes and back, and the frame
+ * that real-time nodes exchange by UDP (docs/howto/realtime.md). No heap, no globals that change,
+ * no floating point but what is converted; any thread may call anything.
  *
- * Bytes are little-endian and without gaps on every machine. Where a double has four bytes (AVR), it
- * still has eight on the wire: it is widened exactly, and rounded to the nearest when it comes back.
+ * Bytes are little-endian and without gaps on every machine. Where a double has four bytes (AVR),
+ * it still has eight on the wire: it is widened exactly, and rounded to the nearest when it comes
+ * back.
  */
 #ifndef RR_BUS_H
 #define RR_BUS_H
@@ -124,8 +125,8 @@ typedef struct {
 uint32_t rr_bus_crc32(const uint8_t* bytes, uint32_t size);
 /* Writes header and checksum around `size` packed bytes that stand at frame + RR_BUS_HEADER. */
 void rr_bus_seal(const rr_bus_frame* header, uint8_t* frame, uint32_t size);
-/* 1 for a sound frame of this size with `size` packed bytes of the bus whose hash is `schema`; these
- * stand at frame + RR_BUS_HEADER then. 0, with `header` untouched, for anything else. */
+/* 1 for a sound frame of this size with `size` packed bytes of the bus whose hash is `schema`;
+ * these stand at frame + RR_BUS_HEADER then. 0, with `header` untouched, for anything else. */
 int rr_bus_open(const uint8_t* frame, uint32_t frame_size, uint64_t schema, uint32_t size,
                 rr_bus_frame* header);
 

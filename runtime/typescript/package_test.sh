@@ -16,7 +16,7 @@ fi
 cp "$here"/package_test/* "$project"
 "$2" generate --lang typescript -o "$project" "$project/experimental.counter.robdef"
 # What the page for users says is compiled, too.
-node --input-type=module - "$here/../../docs/typescript.md" "$project/page" <<'END'
+node --input-type=module - "$here/../../docs/howto/typescript.md" "$project/page" <<'END'
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 const [, , page, folder] = process.argv;
 const text = readFileSync(page, "utf8");

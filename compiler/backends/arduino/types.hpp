@@ -11,7 +11,7 @@
 /// How types are written in a sketch, and how many bytes their values have in a frame.
 namespace robdef::arduino {
 
-/// Bytes of values in one message: docs/serial-protocol.md.
+/// Bytes of values in one message: docs/reference/serial-protocol.md.
 inline constexpr std::uint64_t message_limit = 246;
 
 struct BoardType {

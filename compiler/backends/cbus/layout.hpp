@@ -9,7 +9,7 @@
 #include "compiler/diagnostics/report.hpp"
 #include "compiler/model/model.hpp"
 
-/// Where the fields of a record lie in C, and its signals in a frame (docs/realtime.md).
+/// Where the fields of a record lie in C, and its signals in a frame (docs/howto/realtime.md).
 namespace robdef::cbus {
 
 /// Most bytes of a bus in one frame, and most rows of its table.

@@ -8,7 +8,8 @@
 #include "compiler/driver/compile.hpp"
 #include "compiler/driver/options.hpp"
 
-/// The commands that use a running service, known by its URL alone (docs/command_line.md).
+/// The commands that use a running service, known by its URL alone
+/// (docs/reference/command_line.md).
 namespace robdef {
 
 /// How much of an error's text is printed: a service has written it.

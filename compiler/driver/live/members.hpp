@@ -12,7 +12,7 @@
 
 #include "compiler/driver/live_options.hpp"
 
-/// What is asked of members once, values as JSON (docs/dynamic.md). All throw rr::Error.
+/// What is asked of members once, values as JSON (docs/howto/dynamic.md). All throw rr::Error.
 namespace robdef::live {
 
 /// `property`, `pipe`, ... as its declaration says.

@@ -169,7 +169,7 @@ constexpr std::array option_rows = {
 
 const std::string_view environment_help =
     "\nMEMBER begins at the service's root object and goes through objrefs:\n"
-    "lights[0].lamp.color. Values are JSON (docs/dynamic.md), so a string is\n"
+    "lights[0].lamp.color. Values are JSON (docs/howto/dynamic.md), so a string is\n"
     "'\"text\"'.\n"
     "\nEnvironment:\n"
     "  ROBDEF_PASSWORD  password of --user\n";

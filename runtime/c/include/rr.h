@@ -3,7 +3,8 @@
 #define RR_H
 
 /*
- * The runtime for other languages: C, ABI version 1. docs/c-abi.md says more and has an example.
+ * The runtime for other languages: C, ABI version 1. docs/reference/c-abi.md says more and has an
+ * example.
  *
  * Handles. Everything that is made is an opaque handle, released once with rr_<noun>_release. NULL
  * is allowed there, and any thread may do it in any state of the thing, in functions that the
@@ -32,7 +33,8 @@
  * NULL, as may all functions of which it is not said that they are needed. drop is also called when
  * the function that was given the struct fails, unless it does for the struct's size.
  *
- * Threads. All functions may be called from any thread at once. docs/threads.md says who runs what.
+ * Threads. All functions may be called from any thread at once. docs/explanation/threads.md says
+ * who runs what.
  */
 
 #include "rr_c/client.h"

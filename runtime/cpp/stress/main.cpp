@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // All members of a service, used at random by many clients that come and go in every way, for a
-// while: see docs/stress.md.
+// while: see docs/project/stress.md.
 //   stress [--seconds S] [--clients N] [--seed N] [--no-kill]
 #include <signal.h>
 

@@ -10,8 +10,8 @@
 #include "rr/matlab/containers.hpp"
 #include "runtime/matlab/src/plans.hpp"
 
-/// Values of the protocol in the interpreter: the table of docs/matlab.md. For the interpreter's
-/// thread.
+/// Values of the protocol in the interpreter: the table of docs/howto/matlab.md. For the
+/// interpreter's thread.
 namespace rr::matlab {
 
 /// A value as the interpreter's users expect it. `plan` is of the declared type; what is in a

@@ -1,4 +1,4 @@
-% The table of types in docs/matlab.md, each row in both directions.
+% The table of types in docs/howto/matlab.md, each row in both directions.
 
 %!function c = bench()
 %!  persistent kept

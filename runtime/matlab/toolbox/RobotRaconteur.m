@@ -233,7 +233,7 @@ classdef RobotRaconteur
       port = rrmex('listen_tcp', port, address);
     end
     function Listen(url)
-      %LISTEN Listen by another channel, as Listen('rr+local:///path'); see docs/channels.md.
+      %LISTEN Listen by another channel, as Listen('rr+local:///path'); see docs/howto/channels.md.
       rrmex('listen_url', url);
     end
     function count = ServeFor(seconds)
@@ -297,7 +297,7 @@ classdef RobotRaconteur
     function name = ErrorName(err)
       %ERRORNAME The full name of a caught error: 'experimental.arm.Jam' of experimental:arm:Jam.
       %   '' for an error that is not one of Robot Raconteur's. An identifier has other characters
-      %   than a name: see docs/matlab.md, Errors.
+      %   than a name: see docs/howto/matlab.md, Errors.
       name = rrmex('error_name', err.identifier);
     end
     function Shutdown()

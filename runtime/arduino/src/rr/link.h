@@ -71,7 +71,7 @@ Status answer(Writer& reply, Status status, const Value& value) {
   return status;
 }
 
-/// The board's end of the serial protocol (docs/serial-protocol.md). Nothing here waits: what
+/// The board's end of the serial protocol (docs/reference/serial-protocol.md). Nothing here waits: what
 /// cannot be sent now is sent by a later poll().
 class Link {
  public:

@@ -3,7 +3,7 @@
 
 #include <stdint.h>
 
-/// Numbers of the serial protocol, docs/serial-protocol.md. Read by the board and by the host.
+/// Numbers of the serial protocol, docs/reference/serial-protocol.md. Read by the board and by the host.
 namespace rr {
 namespace serial {
 

@@ -3,7 +3,7 @@
 #define RR_C_DISCOVERY_H
 
 /* Finding other nodes and their services, and being found (minor version 3). Included by rr.h.
- * docs/discovery.md says how nodes find each other. */
+ * docs/howto/discovery.md says how nodes find each other. */
 
 #include "node.h"
 

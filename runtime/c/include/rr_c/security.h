@@ -16,7 +16,8 @@ typedef struct rr_pin {
   rr_str sha256; /* of the certificate, 64 hexadecimal digits */
 } rr_pin;
 
-/* As rr::TlsOptions (docs/security.md). Files are looked at again while the node runs. */
+/* As rr::TlsOptions (docs/explanation/security.md). Files are looked at again while the node runs.
+ */
 typedef struct rr_tls_options {
   size_t size;
   rr_str certificate_file; /* PEM or .p12, of which the node takes its id; empty: none */
@@ -41,7 +42,7 @@ enum {
   RR_AUTHORITIES_GIVEN = 2 /* never those of the system */
 };
 
-/* Who connects, logs in, and is refused (docs/access.md), as lines of JSON: to a file, to a
+/* Who connects, logs in, and is refused (docs/howto/access.md), as lines of JSON: to a file, to a
  * function, or to both. */
 typedef struct rr_audit_options {
   size_t size;

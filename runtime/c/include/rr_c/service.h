@@ -225,7 +225,8 @@ RR_API rr_status rr_served_memory_set(rr_served_object* object, uint32_t member,
 
 /* Who may use services. Counted, as definitions. */
 typedef struct rr_users rr_users;
-/* Users with passwords, one a line: docs/c-abi.md. RR_INVALID_CONFIGURATION names the line. */
+/* Users with passwords, one a line: docs/reference/c-abi.md. RR_INVALID_CONFIGURATION names the
+ * line. */
 RR_API rr_status rr_users_from_text(rr_str text, rr_users** out_users, rr_error** error);
 RR_API rr_status rr_users_from_file(rr_str path, rr_users** out_users, rr_error** error);
 typedef struct rr_users_handler {
@@ -271,7 +272,7 @@ typedef struct rr_service_options {
    * broken off. On a thread of the node or that of rr_service_close or _disconnect, before
    * on_client_disconnected (minor version 2). */
   void (*on_client_leaving)(void* context, const rr_client_info* client);
-  /* What each user may do, as docs/access.md has it (minor version 4, as the next). NULL:
+  /* What each user may do, as docs/howto/access.md has it (minor version 4, as the next). NULL:
    * everything; a text without rules allows nothing. */
   const rr_str* rights;
   /* The same in a file, instead of `rights`; empty: none. It is looked at every second. */

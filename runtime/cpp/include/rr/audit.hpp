@@ -12,7 +12,7 @@
 
 #include "rr/node_id.hpp"
 
-/// Who did what with the services of a node (docs/access.md).
+/// Who did what with the services of a node (docs/howto/access.md).
 namespace rr {
 
 enum class AuditKind : std::uint8_t {

@@ -33,9 +33,9 @@
 ///   double x = pose["position"]["x"].as<double>();
 ///
 /// Threads, time-outs, cancelling and what handlers may do are as with generated stubs
-/// (docs/threads.md). Everything throws rr::Error: member_not_found and member_format_mismatch for
-/// a name that is no such member, data_type_mismatch for a value that does not fit, all naming the
-/// member and the type that is expected, before anything is sent.
+/// (docs/explanation/threads.md). Everything throws rr::Error: member_not_found and
+/// member_format_mismatch for a name that is no such member, data_type_mismatch for a value that
+/// does not fit, all naming the member and the type that is expected, before anything is sent.
 namespace rr::dynamic {
 
 class DynamicStub;

@@ -26,11 +26,12 @@
 ///   rr::dynamic::register_service(node, "arm", arm);
 ///   arm.fire("stopped", {"at the end"});
 ///
-/// Threads are those of generated skeletons (rr/skeleton.hpp, docs/threads.md); functions may be
-/// set and members used on any thread. What a function gives is converted to the declared type
-/// (docs/dynamic.md); what does not fit is the client's data_type_mismatch, and says which member
-/// expected what. What it throws is sent: an exception of the definition is an rr::Error
-/// (remote_error) of its qualified name. A member without a function is not_implemented_error.
+/// Threads are those of generated skeletons (rr/skeleton.hpp, docs/explanation/threads.md);
+/// functions may be set and members used on any thread. What a function gives is converted to the
+/// declared type (docs/howto/dynamic.md); what does not fit is the client's data_type_mismatch, and
+/// says which member expected what. What it throws is sent: an exception of the definition is an
+/// rr::Error (remote_error) of its qualified name. A member without a function is
+/// not_implemented_error.
 ///
 /// All throw rr::Error: member_not_found and member_format_mismatch for a name that is no such
 /// member, data_type_mismatch for a value that does not fit.

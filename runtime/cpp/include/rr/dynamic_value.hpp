@@ -18,8 +18,8 @@
 #include "rr/complex.hpp"
 #include "rr/type.hpp"
 
-/// Values whose types are known at run time only (03), and those types. docs/dynamic.md shows how
-/// they are used.
+/// Values whose types are known at run time only (03), and those types. docs/howto/dynamic.md shows
+/// how they are used.
 namespace rr::dynamic {
 
 class Value;
@@ -77,7 +77,7 @@ class ValueType {
   /// maps for records. Throws rr::Error (data_type_mismatch), which names the place in the value:
   /// `member pose, field q[2]: expected double, got string`.
   [[nodiscard]] Value convert(const Value& value, std::string_view subject = {}) const;
-  /// Reads a value of this type from its JSON form (docs/dynamic.md). Throws rr::Error
+  /// Reads a value of this type from its JSON form (docs/howto/dynamic.md). Throws rr::Error
   /// (invalid_argument for what is no JSON, else as convert).
   [[nodiscard]] Value from_json(std::string_view json, std::string_view subject = {}) const;
   /// Writes a value of this type, so that from_json gives the same value again.
@@ -190,7 +190,7 @@ class Value {
   /// Each item of an array, list or record in its order.
   [[nodiscard]] List items() const;
 
-  /// JSON without a type (docs/dynamic.md): what is written can be read back by a type only.
+  /// JSON without a type (docs/howto/dynamic.md): what is written can be read back by a type only.
   [[nodiscard]] std::string to_json() const;
   /// Numbers, strings, lists and maps as JSON has them. Throws rr::Error (invalid_argument).
   static Value from_json(std::string_view json);

@@ -32,8 +32,9 @@ struct Offer {
   bool combined_connect = true;  ///< connecting to a service in one step instead of four
 };
 
-/// TLS of a node (04, section 6; docs/security.md). Files are read when the node is made, and again
-/// when they have changed; one that cannot be used then leaves in use what was read before.
+/// TLS of a node (04, section 6; docs/explanation/security.md). Files are read when the node is
+/// made, and again when they have changed; one that cannot be used then leaves in use what was read
+/// before.
 struct TlsOptions {
   /// The node's certificate with those between it and its authority: PEM, or `.p12` without a
   /// password, which holds the key too. Empty for none; the node's id must be the certificate's.
@@ -73,7 +74,8 @@ struct WebSocketOptions {
   /// browsers send no origin, and are not asked for one.
   std::vector<std::string> origins{"https://robotraconteur.com", "https://*.robotraconteur.com"};
   /// Pages without an origin may connect too (`null`, `file://`): files that the user opens, but
-  /// also any page of the web, which needs only a sandboxed frame for it (docs/security.md).
+  /// also any page of the web, which needs only a sandboxed frame for it
+  /// (docs/explanation/security.md).
   bool allow_local_pages = false;
 };
 
@@ -86,8 +88,9 @@ struct LocalOptions {
   std::chrono::milliseconds receive_timeout{600'000};
 };
 
-/// How many bytes the peers of a node may make it hold, all connections together (docs/limits.md).
-/// One connection gets at most two thirds of a pool, and many get equal shares.
+/// How many bytes the peers of a node may make it hold, all connections together
+/// (docs/reference/limits.md). One connection gets at most two thirds of a pool, and many get equal
+/// shares.
 struct Budget {
   /// Before a client has connected to a service and, where users are needed, logged in.
   std::size_t before_session = 8 * 1024 * 1024;
@@ -107,12 +110,12 @@ struct Budget {
   /// time.
   std::chrono::milliseconds patience{2'000};
   /// Whether the first connection that is accepted fixes two thresholds of glibc's malloc for the
-  /// process (docs/limits.md), so that memory that peers have used returns to the system.
+  /// process (docs/reference/limits.md), so that memory that peers have used returns to the system.
   bool fixes_heap_thresholds = true;
 };
 
-/// Logging in to the services of a node (docs/access.md). Passwords are checked on threads that do
-/// nothing else.
+/// Logging in to the services of a node (docs/howto/access.md). Passwords are checked on threads
+/// that do nothing else.
 struct LoginOptions {
   /// So many at a time; 0: one, or two on a machine with more than two processors.
   unsigned threads = 0;

@@ -12,7 +12,7 @@
 
 #include "rr/tap.hpp"
 
-/// Reads what a Recorder has written (docs/recording.md).
+/// Reads what a Recorder has written (docs/howto/recording.md).
 namespace rr {
 
 struct RecordedMessage {

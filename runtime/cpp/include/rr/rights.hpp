@@ -10,7 +10,7 @@
 
 #include "rr/users.hpp"
 
-/// What each user may do with a service (docs/access.md).
+/// What each user may do with a service (docs/howto/access.md).
 namespace rr {
 
 /// What can be done with a member or an object. Each is a bit of a RightSet.

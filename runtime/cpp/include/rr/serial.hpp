@@ -37,10 +37,10 @@ struct BoardPlace {
 /// port cannot be opened, when another program has it, and when no board answers in time.
 std::shared_ptr<MessageChannel> serial_channel();
 
-/// Offers boards, at serial ports or over TCP, as services of a node (docs/serial.md). A board's
-/// service is offered when the board is met for the first time, and stays: while the board is away,
-/// or is being reset, calls fail with connection_error. When it comes back with another definition,
-/// the service is closed and offered anew.
+/// Offers boards, at serial ports or over TCP, as services of a node (docs/howto/serial.md). A
+/// board's service is offered when the board is met for the first time, and stays: while the board
+/// is away, or is being reset, calls fail with connection_error. When it comes back with another
+/// definition, the service is closed and offered anew.
 class BoardBridge {
  public:
   /// Told of what happens, on the board's thread: `light: connected`.

@@ -31,8 +31,8 @@ struct ServiceClient {
   std::uint64_t session = 0;
 };
 
-/// How much of each kind clients may make a service keep (docs/limits.md). What is more fails with
-/// OutOfSystemResource.
+/// How much of each kind clients may make a service keep (docs/reference/limits.md). What is more
+/// fails with OutOfSystemResource.
 struct ServiceLimits {
   /// Objects besides the root, those of clients' own included.
   std::size_t objects = 8'192;

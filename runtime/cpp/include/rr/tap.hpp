@@ -20,7 +20,7 @@
 ///   rr::Node node({.name = "camera.host", .tap = recorder});
 ///
 /// What is written is read again with rr/recording.hpp, `robdef inspect` and `robdef replay`. The
-/// file is described in docs/recording.md.
+/// file is described in docs/howto/recording.md.
 namespace rr {
 
 /// Which way a message went: from who opened the connection to who accepted it, or back.

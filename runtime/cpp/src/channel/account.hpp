@@ -74,7 +74,8 @@ class Pool {
 inline constexpr std::size_t no_limit = static_cast<std::size_t>(-1);
 
 /// What one connection makes this node hold, in bytes: messages that arrive, wait or are handled,
-/// answers and packets that wait to be sent, what a session keeps (docs/limits.md). Any thread.
+/// answers and packets that wait to be sent, what a session keeps (docs/reference/limits.md). Any
+/// thread.
 class Account {
  public:
   /// `limit` bytes at most, whatever the pool has.

@@ -12,8 +12,8 @@ namespace rr::codec {
 /// The heap of the C library would keep it: once a program has freed a large block, blocks of that
 /// size come from the heaps of its threads, and what is free at the end of each such heap stays
 /// there. What peers made a node hold would stay with it after they have left
-/// (docs/limits.md). A few blocks that were given back are spare for the next ones, since fresh
-/// pages cost as much as the copy into them.
+/// (docs/reference/limits.md). A few blocks that were given back are spare for the next ones, since
+/// fresh pages cost as much as the copy into them.
 struct LargeBlock {
   std::byte* bytes = nullptr;
   std::size_t size = 0;

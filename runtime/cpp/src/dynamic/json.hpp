@@ -6,7 +6,7 @@
 
 #include "runtime/cpp/src/dynamic/nodes.hpp"
 
-/// Values as JSON: docs/dynamic.md says how each kind looks.
+/// Values as JSON: docs/howto/dynamic.md says how each kind looks.
 namespace rr::dynamic {
 
 /// What JSON has, as it stands there: null, bool, numbers (int64, uint64, double), strings, lists,

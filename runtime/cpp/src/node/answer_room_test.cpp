@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What handlers make before they answer counts before they make it (docs/limits.md).
+// What handlers make before they answer counts before they make it (docs/reference/limits.md).
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -96,8 +96,8 @@ TEST(Connections, CarryLargeMessagesOfThoseWhoAreLoggedInOnly) {
   const ConnectOptions as_bob{.username = "bob", .credentials = {{"password", "builder-2"}}};
   Pair pair({.size_before_connect = 64 * 1024}, {.client_offer = {.combined_connect = false}},
             std::make_shared<Counter>(), service);
-  // Local sockets have no lower limit (docs/limits.md): the request is refused, the connection
-  // stays.
+  // Local sockets have no lower limit (docs/reference/limits.md): the request is refused, the
+  // connection stays.
   const bool has_limit = test_channel() != "local";
   auto stranger = pair.connect();
   EXPECT_FALSE(takes_much(stranger));

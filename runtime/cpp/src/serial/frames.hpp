@@ -9,7 +9,8 @@
 
 #include "runtime/arduino/src/rr/protocol.h"
 
-/// The frames of the serial protocol, docs/serial-protocol.md. Bytes in, bytes out; no port.
+/// The frames of the serial protocol, docs/reference/serial-protocol.md. Bytes in, bytes out; no
+/// port.
 namespace rr::serial {
 
 struct Frame {

@@ -7,7 +7,7 @@
 
 #include "runtime/cpp/src/dynamic/nodes.hpp"
 
-/// Values as boards pack them, docs/serial-protocol.md, "Values".
+/// Values as boards pack them, docs/reference/serial-protocol.md, "Values".
 namespace rr::serial {
 
 /// Appends a value of exactly this type. Throws rr::Error: null_value for a struct that is null,

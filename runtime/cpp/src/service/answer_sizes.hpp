@@ -11,7 +11,7 @@
 namespace rr::service {
 
 /// How large the answers of the members of a service are, for those that have given large ones:
-/// what a handler makes counts before it is made (docs/limits.md). Any thread.
+/// what a handler makes counts before it is made (docs/reference/limits.md). Any thread.
 class AnswerSizes {
  public:
   /// Answers below this are not counted, in bytes.

@@ -13,9 +13,9 @@ class ServerEndpoint;
 struct Question;
 
 /// What the handler of a request makes before it answers, drawn from the account of the connection
-/// (docs/limits.md): the bytes that are expected of it before it runs, and large arrays that it
-/// makes beyond them when it makes them. A quarter of the pool at most: one that makes more is not
-/// refused for it. With the dispatch turn.
+/// (docs/reference/limits.md): the bytes that are expected of it before it runs, and large arrays
+/// that it makes beyond them when it makes them. A quarter of the pool at most: one that makes more
+/// is not refused for it. With the dispatch turn.
 class HandlerMemory final : private codec::LargeAllocations {
  public:
   /// Draws nothing yet, but for arrays that are made meanwhile.

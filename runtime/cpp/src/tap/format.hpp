@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-/// The layout of a recording (docs/recording.md), for its writer and its reader.
+/// The layout of a recording (docs/howto/recording.md), for its writer and its reader.
 namespace rr::tap {
 
 inline constexpr std::string_view magic("RRTAPE\x1a\n", 8);

@@ -8,7 +8,7 @@ using Robdef.Runtime.Native;
 namespace Robdef.Runtime;
 
 /// <summary>
-/// Certificates of a node, and whom it trusts (docs/security.md). Files are looked at again while the node runs.
+/// Certificates of a node, and whom it trusts (docs/explanation/security.md). Files are looked at again while the node runs.
 /// </summary>
 public sealed record TlsOptions
 {
@@ -43,7 +43,7 @@ public sealed record TlsOptions
     public TimeSpan? LookAgainPeriod { get; init; }
 }
 
-/// <summary>A record of who connects, logs in and is refused, as lines of JSON (docs/access.md).</summary>
+/// <summary>A record of who connects, logs in and is refused, as lines of JSON (docs/howto/access.md).</summary>
 public sealed record AuditOptions
 {
     /// <summary>Gets the lines; nobody but its owner may read it. Empty: no file.</summary>

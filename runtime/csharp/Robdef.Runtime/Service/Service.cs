@@ -13,13 +13,13 @@ public sealed record ServiceOptions
     /// <summary>What clients may ask about the service.</summary>
     public Dictionary<string, VarValue?>? Attributes { get; init; }
 
-    /// <summary>Users with passwords, one a line, as docs/c-abi.md says; empty: anybody, and no object can be locked.</summary>
+    /// <summary>Users with passwords, one a line, as docs/reference/c-abi.md says; empty: anybody, and no object can be locked.</summary>
     public string Users { get; init; } = "";
 
     /// <summary>With users: clients may connect without one.</summary>
     public bool UserIsOptional { get; init; }
 
-    /// <summary>What each user may do, as rules (docs/access.md). Null: everything; a text without rules allows nothing.</summary>
+    /// <summary>What each user may do, as rules (docs/howto/access.md). Null: everything; a text without rules allows nothing.</summary>
     public string? Rights { get; init; }
 
     /// <summary>The same in a file, instead of <see cref="Rights"/>; it is looked at every second. Empty: none.</summary>

@@ -9,7 +9,8 @@
 
 /// Names of errors as identifiers of the interpreter, and back. MATLAB documents an identifier as
 /// two or more fields with colons between them; each begins with a letter and continues with
-/// letters, digits and underscores (`MException`). The rule, which docs/matlab.md states for users:
+/// letters, digits and underscores (`MException`). The rule, which docs/howto/matlab.md states for
+/// users:
 ///
 /// - each dot of the name becomes a colon: `experimental.docs.Stuck` is `experimental:docs:Stuck`;
 /// - any other character that a field cannot have becomes `_`;

@@ -22,9 +22,9 @@
 #include "rr/type.hpp"
 
 /// Values of the C++ types that are generated for a definition, in the interpreter: the table of
-/// docs/matlab.md for types that are known when the MEX file is built. What is made is what the
-/// dynamic object makes. What is read are the forms that a program writes when speed counts: the
-/// right shape, fields without gaps. For other forms Misfit is thrown, and the dynamic object
+/// docs/howto/matlab.md for types that are known when the MEX file is built. What is made is what
+/// the dynamic object makes. What is read are the forms that a program writes when speed counts:
+/// the right shape, fields without gaps. For other forms Misfit is thrown, and the dynamic object
 /// decides. Varvalues are left to it, too. For the interpreter's thread.
 namespace rr::matlab {
 
