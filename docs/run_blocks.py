@@ -171,7 +171,8 @@ class Shell:
         log = os.path.join(self.folder, f".output{self.count}")
         with open(log, "w", encoding="utf-8"):
             pass  # before the command makes it
-        self.run(f"{{ {command[:-1].rstrip()}\n}} >{log} 2>&1 &", 10)
+        # `exec`, so that `kill %1` reaches the program itself.
+        self.run(f"exec {command[:-1].rstrip()} >{log} 2>&1 &", 10)
         end = time.monotonic() + seconds
         while True:
             with open(log, encoding="utf-8", errors="replace") as file:
@@ -213,6 +214,8 @@ def run_block(block, shell, folder, arguments):
                 raise Failure(*difference)
             continue
         status, output = shell.run(command, arguments.seconds)
+        if re.fullmatch(r"kill %\d+", command):
+            shell.run("wait " + command.split()[1], arguments.seconds)  # its port is free then
         shown = "\n".join(f"  {line}" for line in output[-40:])
         if status is None:
             raise Failure(number, f"`{command}` did not end\n{shown}")
@@ -275,7 +278,8 @@ def main():
             shutil.rmtree(path, ignore_errors=True)
             os.makedirs(path)
         # Build servers of .NET would outlive the page.
-        environment = dict(os.environ, HOME=home, LC_ALL="C.UTF-8", MSBUILDDISABLENODEREUSE="1",
+        environment = dict(os.environ, HOME=home, LC_ALL="C.UTF-8", ROBOTRACONTEUR_USER_RUN_DIR=home + "/run",
+                           ROBOTRACONTEUR_USER_CONFIG_DIR=home + "/config", MSBUILDDISABLENODEREUSE="1",
                            UseSharedCompilation="false", DOTNET_CLI_USE_MSBUILD_SERVER="0",
                            DOTNET_CLI_TELEMETRY_OPTOUT="1", DOTNET_NOLOGO="1")
         if arguments.build:
