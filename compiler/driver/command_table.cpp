@@ -99,13 +99,13 @@ constexpr std::array commands = {
                "A node is its id, or a file that has it. Nodes trust the authority that are\n"
                "given its ca.pem. Keep ca.key to yourself. Its passphrase is asked for at the\n"
                "terminal, unless --passphrase-file or ROBDEF_CA_PASSPHRASE has it.\n"},
-    CommandRow{
-        Command::lsp, "lsp", "[--stdio] [-I DIR...]",
-        "serve an editor: the language server protocol",
-        "Speaks the language server protocol over standard input and output, for an\n"
-        "editor that starts it: diagnostics while typing, completion, hover,\n"
-        "definitions, references, rename, layout, quick fixes, colours. Imports are\n"
-        "found as robdef check finds them. docs/howto/editors.md shows how to set up editors.\n"},
+    CommandRow{Command::lsp, "lsp", "[--stdio] [-I DIR...]",
+               "serve an editor: the language server protocol",
+               "Speaks the language server protocol over standard input and output, for an\n"
+               "editor that starts it: diagnostics while typing, completion, hover,\n"
+               "definitions, references, rename, layout, quick fixes, colours. Imports are\n"
+               "found as robdef check finds them. docs/howto/editors.md shows how to set up\n"
+               "editors.\n"},
     CommandRow{Command::bridge, "bridge", "BOARD... --listen PORT [--everywhere]",
                "offer boards, at serial ports or over TCP, as services",
                "A BOARD is the path of a port, as /dev/ttyACM0, perhaps with the rate and the\n"
