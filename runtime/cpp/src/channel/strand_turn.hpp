@@ -2,25 +2,28 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <utility>
 
 #include "runtime/cpp/src/channel/scratch.hpp"
-#include "runtime/cpp/src/channel/stream_connection.hpp"
+#include "runtime/cpp/src/channel/strand.hpp"
+#include "runtime/cpp/src/channel/time.hpp"
 
 namespace rr::channel {
 
-/// A thread's part in dispatching a connection's messages, while it has one. The messages that are
-/// still to come are in the scratch.
-class StreamConnection::Turn {
+/// A thread's part in a strand, on its stack. The messages that it has read and not handled yet are
+/// in the scratch.
+class StrandTurn {
  public:
-  Turn(StreamConnection& connection, Scratch& scratch);
-  ~Turn();
-  Turn(const Turn&) = delete;
-  Turn& operator=(const Turn&) = delete;
-  /// The calling thread's for a connection; null when it has none, or not as its innermost.
-  static Turn* current(const StreamConnection& connection);
+  /// `longest`: it lets others go first after this time.
+  StrandTurn(const Strand& strand, Scratch& scratch, std::chrono::microseconds longest);
+  ~StrandTurn();
+  StrandTurn(const StrandTurn&) = delete;
+  StrandTurn& operator=(const StrandTurn&) = delete;
+  /// The calling thread's in a strand; null when it has none, or not as its innermost.
+  static StrandTurn* current(const Strand& strand) {
+    return innermost != nullptr && innermost->strand_ == &strand ? innermost : nullptr;
+  }
 
   [[nodiscard]] Scratch& scratch() { return scratch_; }
   /// The message that is handled now is to be handled again; by this thread.
@@ -34,7 +37,7 @@ class StreamConnection::Turn {
     scratch_.waiting.pop_back();
     return frame;
   }
-  /// False while others have the turn; changed under the connection's lock, by this thread.
+  /// False while the thread is outside; changed under the connection's lock, by this thread.
   [[nodiscard]] bool is_held() const { return is_held_; }
   void set_held(bool is_held) { is_held_ = is_held; }
   /// Whether it is time to let others go first. Asked between messages, from the first one on.
@@ -44,7 +47,7 @@ class StreamConnection::Turn {
       return false;
     }
     const Time now = Clock::now();
-    if (until_ == Time::min()) until_ = now + longest();
+    if (until_ == Time::min()) until_ = now + longest_;
     // Short messages cost hardly more than the clock.
     if (now - asked_ < quick) unasked_ = most_unasked;
     asked_ = now;
@@ -52,7 +55,7 @@ class StreamConnection::Turn {
   }
   /// Nobody else waits.
   void go_on() {
-    until_ = asked_ + longest();
+    until_ = asked_ + longest_;
     has_gone_on_ = true;
   }
   /// Whether it has since this was asked last.
@@ -62,13 +65,11 @@ class StreamConnection::Turn {
   [[nodiscard]] bool is_slow() const { return requests_ < many_requests && coarse_now() != begin_; }
 
  private:
-  // What a client receives at once is handled in that time: it need not be copied to wait.
-  [[nodiscard]] std::chrono::microseconds longest() const {
-    return connection_.role_ == Role::client ? 4 * longest_turn : longest_turn;
-  }
+  static constinit thread_local StrandTurn* innermost;
 
-  StreamConnection& connection_;
+  const Strand* const strand_;
   Scratch& scratch_;
+  const std::chrono::microseconds longest_;
   std::size_t next_ = 0;
   bool is_held_ = true;
   bool is_put_off_ = false;
@@ -81,13 +82,7 @@ class StreamConnection::Turn {
   int unasked_ = 0;
   bool has_gone_on_ = false;
   std::size_t requests_ = 0;
-  Turn* const outer_;
-};
-
-/// A thread that wants the turn back, on its stack.
-struct StreamConnection::Returning {
-  std::condition_variable wake;
-  Returning* next = nullptr;
+  StrandTurn* const outer_;
 };
 
 }  // namespace rr::channel
