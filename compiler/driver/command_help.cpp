@@ -2,9 +2,9 @@
 // What --help prints of the tables.
 #include <utility>
 
+#include "cli/live/table.hpp"
 #include "compiler/backends/backend.hpp"
 #include "compiler/driver/command_table.hpp"
-#include "compiler/driver/live/table.hpp"
 
 namespace robdef {
 namespace {

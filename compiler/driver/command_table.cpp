@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "compiler/driver/live/table.hpp"
+#include "cli/live/table.hpp"
 #include "compiler/driver/option_values.hpp"
 
 namespace robdef {

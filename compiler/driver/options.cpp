@@ -5,11 +5,11 @@
 #include <optional>
 #include <utility>
 
+#include "cli/authority_verbs.hpp"
+#include "cli/live/commands.hpp"
+#include "cli/live/table.hpp"
 #include "compiler/diagnostics/spelling.hpp"
-#include "compiler/driver/authority_verbs.hpp"
 #include "compiler/driver/command_table.hpp"
-#include "compiler/driver/live/commands.hpp"
-#include "compiler/driver/live/table.hpp"
 
 namespace robdef {
 

@@ -10,15 +10,15 @@
 #include <variant>
 #include <vector>
 
+#include "cli/authority_options.hpp"
+#include "cli/discover_options.hpp"
+#include "cli/live_options.hpp"
+#include "cli/recording_options.hpp"
 #include "compiler/diagnostics/levels.hpp"
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/diagnostics/report.hpp"
 #include "compiler/docs/docs.hpp"
-#include "compiler/driver/authority_options.hpp"
 #include "compiler/driver/breaking_options.hpp"
-#include "compiler/driver/discover_options.hpp"
-#include "compiler/driver/live_options.hpp"
-#include "compiler/driver/recording_options.hpp"
 #include "compiler/model/rename.hpp"
 #include "compiler/syntax/read.hpp"
 

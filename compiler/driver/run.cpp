@@ -6,14 +6,14 @@
 #include <variant>
 #include <vector>
 
-#include "compiler/driver/authority.hpp"
+#include "cli/authority.hpp"
+#include "cli/discover.hpp"
+#include "cli/live/commands.hpp"
+#include "cli/recordings.hpp"
 #include "compiler/driver/breaking.hpp"
-#include "compiler/driver/discover.hpp"
 #include "compiler/driver/explain.hpp"
 #include "compiler/driver/format.hpp"
-#include "compiler/driver/live/commands.hpp"
 #include "compiler/driver/lsp.hpp"
-#include "compiler/driver/recordings.hpp"
 
 namespace robdef {
 

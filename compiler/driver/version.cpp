@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "cli/live/commands.hpp"
+#include "cli/live/pulled_definitions.hpp"
+#include "cli/recorded_definitions.hpp"
 #include "compiler/diagnostics/render.hpp"
-#include "compiler/driver/live/commands.hpp"
-#include "compiler/driver/live/pulled_definitions.hpp"
-#include "compiler/driver/recorded_definitions.hpp"
 #include "compiler/driver/revision.hpp"
 #include "compiler/driver/version_error.hpp"
 #include "compiler/model/check.hpp"
