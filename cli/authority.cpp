@@ -15,6 +15,7 @@
 #include <string>
 
 #include "cli/authority_verbs.hpp"
+#include "cli/options.hpp"
 #include "cli/secret_words.hpp"
 #include "compiler/output/json.hpp"
 
@@ -94,7 +95,7 @@ class AuthorityRun {
  public:
   AuthorityRun(const Options& options, std::ostream& out, std::ostream& err)
       : options_(options),
-        wanted_(options.authority),
+        wanted_(more(options).authority),
         object_(options.inputs.size() > 1 ? options.inputs[1] : std::string()),
         out_(out),
         err_(err) {}
@@ -110,9 +111,9 @@ class AuthorityRun {
     if (passphrase.empty() && is_empty_wanted) {
       throw rr::Error(rr::ErrorCode::invalid_argument, "the passphrase is empty");
     }
-    rr::Authority made =
-        rr::Authority::create(object_, wanted_.name.empty() ? "Robdef nodes" : wanted_.name,
-                              Days(options_.authority.days.value_or(authority_days)), passphrase);
+    rr::Authority made = rr::Authority::create(
+        object_, wanted_.name.empty() ? "Robdef nodes" : wanted_.name,
+        Days(more(options_).authority.days.value_or(authority_days)), passphrase);
     if (wanted_.list_days) made.refresh(Days(*wanted_.list_days));
     out_ << made.certificate_file() << '\n';
     if (passphrase.empty()) hint(object_);

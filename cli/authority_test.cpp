@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/commands.hpp"
 #include "compiler/driver/program.hpp"
 #include "compiler/driver/run.hpp"
 
@@ -44,7 +45,7 @@ class AuthorityCommand : public ::testing::Test {
   ExitStatus call(const std::vector<std::string>& arguments) {
     out.str("");
     err.str("");
-    return run(arguments, "", out, err);
+    return run(arguments, "", all_commands(), out, err);
   }
   // `robdef ca` with the authority of the test.
   ExitStatus ca(std::vector<std::string> arguments) {

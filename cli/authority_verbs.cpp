@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "cli/options.hpp"
+
 namespace robdef {
 namespace {
 
@@ -81,7 +83,7 @@ std::string missing_for_authority(const Options& options) {
            (row->needs_object || row->object.empty() ? "`" : "]`");
   }
   if (options.is_json && row->verb != Verb::list) return "`--json` belongs to `ca list`";
-  return misplaced(*row, options.authority);
+  return misplaced(*row, more(options).authority);
 }
 
 }  // namespace robdef

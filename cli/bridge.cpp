@@ -7,16 +7,17 @@
 #include <rr/serial.hpp>
 
 #include "cli/end_signals.hpp"
+#include "cli/options.hpp"
 #include "cli/recordings.hpp"
 
 namespace robdef {
 
 ExitStatus bridge(const Options& options, std::ostream& out, std::ostream& err) {
-  const RecordingOptions& wanted = options.recording;
+  const RecordingOptions& wanted = more(options).recording;
   const EndSignals signals;
   std::mutex printing;
   try {
-    rr::Node node({.name = "robdef.bridge", .tls = options.live.tls.options()});
+    rr::Node node({.name = "robdef.bridge", .tls = more(options).live.tls.options()});
     rr::BoardBridge boards(node, [&](const std::string& text) {
       const std::lock_guard lock(printing);
       err << "robdef: " << rr::printable(text) << std::endl;

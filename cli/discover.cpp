@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cli/end_signals.hpp"
+#include "cli/options.hpp"
 #include "compiler/output/json.hpp"
 
 namespace robdef {
@@ -60,7 +61,7 @@ Services services_of(const rr::Discovery& discovery, const DiscoverOptions& want
 
 void print_once(const rr::Discovery& discovery, const Options& options, std::ostream& out) {
   std::map<rr::NodeId, Services> by_node;
-  for (rr::FoundService& service : services_of(discovery, options.discover)) {
+  for (rr::FoundService& service : services_of(discovery, more(options).discover)) {
     by_node[service.node].push_back(std::move(service));
   }
   const bool is_json = options.format == Format::json;
@@ -69,7 +70,7 @@ void print_once(const rr::Discovery& discovery, const Options& options, std::ost
   for (const rr::DetectedNode& node : discovery.detected_nodes()) {
     const Services& services = by_node[node.id];
     // Who looks for a type is not shown nodes that have none of it.
-    if (services.empty() && !options.discover.type.empty()) continue;
+    if (services.empty() && !more(options).discover.type.empty()) continue;
     json.begin_object().member("id", node.id.text()).member("name", node.name);
     write_urls(json, node.urls);
     json.key("services").begin_array();
@@ -131,7 +132,7 @@ void print_live(rr::Node& node, const Options& options, const EndSignals& signal
                 std::ostream& out) {
   Live live(options, out);
   const rr::Discovery discovery = node.discovery();
-  const std::string& type = options.discover.type;
+  const std::string& type = more(options).discover.type;
   rr::Subscription came;
   rr::Subscription went;
   if (type.empty()) {
@@ -155,10 +156,10 @@ void print_live(rr::Node& node, const Options& options, const EndSignals& signal
 }  // namespace
 
 ExitStatus discover(const Options& options, std::ostream& out, std::ostream& err) {
-  const DiscoverOptions& wanted = options.discover;
+  const DiscoverOptions& wanted = more(options).discover;
   const EndSignals signals;
   try {
-    rr::Node node({.tls = options.live.tls.options()});
+    rr::Node node({.tls = more(options).live.tls.options()});
     node.discovery().listen({.network = {.ipv4_broadcast = wanted.uses_ipv4,
                                          .interfaces = wanted.interfaces,
                                          .port = wanted.port}});

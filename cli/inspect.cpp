@@ -14,6 +14,7 @@
 #include "cli/inspect_json.hpp"
 #include "cli/inspect_summary.hpp"
 #include "cli/inspect_text.hpp"
+#include "cli/options.hpp"
 #include "cli/recordings.hpp"
 #include "compiler/syntax/read.hpp"
 
@@ -97,11 +98,11 @@ ExitStatus inspect_file(const std::string& path, const Options& options, std::os
   std::optional<SpooledInput> spooled;
   if (ast::is_standard_input(path)) spooled.emplace();
   rr::Recording recording(spooled ? spooled->path() : path);
-  const Filter filter(options.recording);
+  const Filter filter(more(options).recording);
   Summary summary;
   for (rr::Record record; recording.next(record);) {
     if (!filter.takes(record)) continue;
-    if (options.recording.is_summary) {
+    if (more(options).recording.is_summary) {
       summary.add(record);
     } else {
       out << (options.is_json ? rr::printable_json(json_of(record))
@@ -110,7 +111,7 @@ ExitStatus inspect_file(const std::string& path, const Options& options, std::os
       if (!out) break;
     }
   }
-  if (options.recording.is_summary) {
+  if (more(options).recording.is_summary) {
     out << (options.is_json ? rr::printable_json(summary.json())
                             : rr::printable(summary.text(recording.start()), rr::printable_whole,
                                             rr::LineBreaks::kept));

@@ -7,13 +7,14 @@
 #include <rr/tap.hpp>
 
 #include "cli/end_signals.hpp"
+#include "cli/options.hpp"
 #include "cli/recordings.hpp"
 #include "runtime/cpp/src/replay/proxy.hpp"
 
 namespace robdef {
 
 ExitStatus record(const Options& options, std::ostream& out, std::ostream& err) {
-  const RecordingOptions& wanted = options.recording;
+  const RecordingOptions& wanted = more(options).recording;
   const EndSignals signals;
   std::mutex printing;
   try {

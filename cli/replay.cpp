@@ -5,13 +5,14 @@
 #include <rr/error.hpp>
 
 #include "cli/inspect_text.hpp"
+#include "cli/options.hpp"
 #include "cli/recordings.hpp"
 #include "runtime/cpp/src/replay/player.hpp"
 
 namespace robdef {
 
 ExitStatus replay(const Options& options, std::ostream& out, std::ostream& err) {
-  const RecordingOptions& wanted = options.recording;
+  const RecordingOptions& wanted = more(options).recording;
   try {
     rr::replay::PlayOptions how;
     if (!wanted.connect.empty()) how.service = rr::replay::host_port_of(wanted.connect);

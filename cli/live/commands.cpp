@@ -15,6 +15,7 @@
 #include "cli/live/members.hpp"
 #include "cli/live/prompt.hpp"
 #include "cli/live/watch.hpp"
+#include "cli/options.hpp"
 
 namespace robdef {
 namespace {
@@ -26,7 +27,7 @@ std::optional<std::string> next_line() {
 }
 
 void describe(const Options& options, std::ostream& out) {
-  const live::Connection connection(options.live, options.inputs[0]);
+  const live::Connection connection(more(options).live, options.inputs[0]);
   const std::string path = options.inputs.size() > 1 ? options.inputs[1] : "";
   if (options.format == Format::json) {
     live::describe_json(connection.root(), path, out);
@@ -36,7 +37,7 @@ void describe(const Options& options, std::ostream& out) {
 }
 
 void complete(const Options& options, std::ostream& out) {
-  const live::Connection connection(options.live, options.inputs[1]);
+  const live::Connection connection(more(options).live, options.inputs[1]);
   const std::string word = options.inputs.size() > 2 ? options.inputs[2] : "";
   for (const std::string& each :
        live::completions(connection.root(), {}, options.inputs[0], word)) {
@@ -51,24 +52,24 @@ ExitStatus answer(const Options& options, std::ostream& out, std::ostream& err) 
       describe(options, out);
       break;
     case Command::get: {
-      const live::Connection connection(options.live, inputs[0]);
+      const live::Connection connection(more(options).live, inputs[0]);
       for (const std::string& member : inputs.subspan(1)) {
-        live::get(connection.root(), member, options.live, out);
+        live::get(connection.root(), member, more(options).live, out);
       }
       break;
     }
     case Command::set:
-      live::set(live::Connection(options.live, inputs[0]).root(), inputs[1], inputs[2],
-                options.live);
+      live::set(live::Connection(more(options).live, inputs[0]).root(), inputs[1], inputs[2],
+                more(options).live);
       break;
     case Command::call:
-      live::call(live::Connection(options.live, inputs[0]).root(), inputs[1], inputs.subspan(2),
-                 options.live, next_line, out);
+      live::call(live::Connection(more(options).live, inputs[0]).root(), inputs[1],
+                 inputs.subspan(2), more(options).live, next_line, out);
       break;
     case Command::watch:
-      return live::watch_service(inputs[0], inputs.subspan(1), options.live, out, err);
+      return live::watch_service(inputs[0], inputs.subspan(1), more(options).live, out, err);
     case Command::connect:
-      return live::prompt(inputs[0], options.live, out, err);
+      return live::prompt(inputs[0], more(options).live, out, err);
     case Command::complete:
       complete(options, out);
       break;

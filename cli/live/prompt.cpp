@@ -15,6 +15,7 @@
 #include <variant>
 #include <vector>
 
+#include "cli/commands.hpp"
 #include "cli/live/commands.hpp"
 #include "cli/live/complete.hpp"
 #include "cli/live/connection.hpp"
@@ -24,8 +25,8 @@
 #include "cli/live/members.hpp"
 #include "cli/live/object_path.hpp"
 #include "cli/live/watch.hpp"
+#include "cli/options.hpp"
 #include "compiler/diagnostics/spelling.hpp"
-#include "compiler/driver/options.hpp"
 
 namespace robdef::live {
 namespace {
@@ -118,7 +119,7 @@ class Prompt {
   static Options understand(Words words) {
     std::vector<std::string> arguments(words.begin(), words.end());
     arguments.insert(arguments.begin() + 1, "rr+tcp://");
-    auto parsed = parse_options(arguments, "");
+    auto parsed = parse_options(arguments, "", all_commands());
     if (const auto* error = std::get_if<UsageError>(&parsed)) refuse(error->text);
     if (auto* answer = std::get_if<Answer>(&parsed)) refuse(answer->text);
     Options options = std::get<Options>(std::move(parsed));
@@ -147,23 +148,24 @@ class Prompt {
 
   void get(Words words) {
     const Options options = understand(words);
-    for (const std::string& member : options.inputs) live::get(here(), member, options.live, out_);
+    for (const std::string& member : options.inputs)
+      live::get(here(), member, more(options).live, out_);
   }
   void set(Words words) {
     const Options options = understand(words);
-    live::set(here(), options.inputs[0], options.inputs[1], options.live);
+    live::set(here(), options.inputs[0], options.inputs[1], more(options).live);
   }
   void call(Words words) {
     const Options options = understand(words);
     const auto no_lines = []() -> std::optional<std::string> {
       refuse("write the values of the steps behind the arguments");
     };
-    live::call(here(), options.inputs.front(), Words(options.inputs).subspan(1), options.live,
+    live::call(here(), options.inputs.front(), Words(options.inputs).subspan(1), more(options).live,
                no_lines, out_);
   }
   void watch(Words words) {
     const Options options = understand(words);
-    Watch watch(options.inputs, options.live);
+    Watch watch(options.inputs, more(options).live);
     while (signals_.has_come()) continue;  // what came before is not meant
     const Watching watching(*this, watch);
     watch.attach(here());

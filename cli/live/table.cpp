@@ -11,25 +11,26 @@
 #include <vector>
 
 #include "cli/live/commands.hpp"
+#include "cli/options.hpp"
 
 namespace robdef::live {
 namespace {
 
 template <std::string LiveOptions::*member>
 std::string take_text(Options& options, const std::string& value) {
-  options.live.*member = value;
+  more(options).live.*member = value;
   return value.empty() ? "the value is empty" : "";
 }
 
 template <std::string TlsFiles::*member>
 std::string take_tls_text(Options& options, const std::string& value) {
-  options.live.tls.*member = value;
+  more(options).live.tls.*member = value;
   return value.empty() ? "the value is empty" : "";
 }
 
 template <std::vector<std::string> TlsFiles::*member>
 std::string take_file(Options& options, const std::string& value) {
-  (options.live.tls.*member).push_back(value);
+  (more(options).live.tls.*member).push_back(value);
   return value.empty() ? "the value is empty" : "";
 }
 
@@ -44,7 +45,7 @@ std::string take_seconds(Options& options, const std::string& value) {
     return "`" + value + "` is no number of seconds";
   }
   const auto milliseconds = static_cast<std::int64_t>(seconds * 1000);
-  options.live.*member = std::chrono::milliseconds(std::max<std::int64_t>(milliseconds, 1));
+  more(options).live.*member = std::chrono::milliseconds(std::max<std::int64_t>(milliseconds, 1));
   return "";
 }
 
@@ -63,14 +64,14 @@ std::optional<std::vector<std::uint64_t>> numbers_in(std::string_view text) {
 
 template <std::optional<std::vector<std::uint64_t>> LiveOptions::*member>
 std::string take_numbers(Options& options, const std::string& value) {
-  options.live.*member = numbers_in(value);
-  return options.live.*member ? "" : "`" + value + "` is no list of numbers such as 0,2";
+  more(options).live.*member = numbers_in(value);
+  return more(options).live.*member ? "" : "`" + value + "` is no list of numbers such as 0,2";
 }
 
 std::string take_limit(Options& options, const std::string& value) {
   const auto numbers = numbers_in(value);
   if (!numbers || numbers->size() != 1) return "`" + value + "` is no number";
-  options.live.limit = numbers->front();
+  more(options).live.limit = numbers->front();
   return "";
 }
 
@@ -136,7 +137,7 @@ constexpr std::array option_rows = {
     OptionRow{"--require-tls", "", "", using_tls,
               "connect to nobody, and let nobody in, without\nTLS",
               [](Options& taken, const std::string&) {
-                taken.live.tls.is_required = true;
+                more(taken).live.tls.is_required = true;
                 return std::string();
               }},
     OptionRow{"--at",
@@ -167,22 +168,23 @@ constexpr std::array option_rows = {
 
 }  // namespace
 
-const std::string_view environment_help =
+const std::string_view help_notes =
     "\nMEMBER begins at the service's root object and goes through objrefs:\n"
     "lights[0].lamp.color. Values are JSON (docs/dynamic.md), so a string is\n"
     "'\"text\"'.\n"
     "\nEnvironment:\n"
-    "  ROBDEF_PASSWORD  password of --user\n";
+    "  ROBDEF_PASSWORD  password of --user\n"
+    "\nExit status: 0 fine, 1 errors, 2 used wrongly, 3 a fault of robdef itself.\n";
 
 std::span<const CommandRow> commands() { return command_rows; }
 std::span<const OptionRow> options() { return option_rows; }
 const CommandRow& completing_command() { return completing_row; }
 
 std::string missing_to_connect(const Options& options) {
-  if (!options.live.password_file.empty() && options.live.user.empty()) {
+  if (!more(options).live.password_file.empty() && more(options).live.user.empty()) {
     return "`--password-file` needs `--user`";
   }
-  if (!options.live.tls.key.empty() && options.live.tls.certificate.empty()) {
+  if (!more(options).live.tls.key.empty() && more(options).live.tls.certificate.empty()) {
     return "`--tls-key` needs `--tls-certificate`";
   }
   return "";

@@ -194,7 +194,7 @@ TEST_F(BreakingCommand, NamesInARevisionAreNoCommands) {
   git("commit -m line");
   const Ended line = run({"HEAD:odd", "odd"});
   EXPECT_EQ(line.status, 2);
-  EXPECT_THAT(line.err, HasSubstr("the name `a\\n::error::b.robdef` holds a control character"));
+  EXPECT_THAT(line.err, HasSubstr("the name `a ::error::b.robdef` holds a control character"));
 }
 
 TEST_F(BreakingCommand, AFileThatIsThereComesBeforeARevision) {

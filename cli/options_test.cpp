@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/driver/options.hpp"
+#include "cli/options.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "cli/commands.hpp"
 #include "compiler/driver/command_table.hpp"
 #include "compiler/driver/program.hpp"
 
@@ -16,18 +17,18 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 Options understood(const std::vector<std::string>& arguments, std::string_view variable = "") {
-  const auto parsed = parse_options(arguments, variable);
+  const auto parsed = parse_options(arguments, variable, all_commands());
   if (const auto* error = std::get_if<UsageError>(&parsed)) ADD_FAILURE() << error->text;
   return std::holds_alternative<Options>(parsed) ? std::get<Options>(parsed) : Options{};
 }
 
 std::string complaint(const std::vector<std::string>& arguments) {
-  const auto parsed = parse_options(arguments, "");
+  const auto parsed = parse_options(arguments, "", all_commands());
   return std::holds_alternative<UsageError>(parsed) ? std::get<UsageError>(parsed).text : "";
 }
 
 std::string answer(const std::vector<std::string>& arguments) {
-  const auto parsed = parse_options(arguments, "");
+  const auto parsed = parse_options(arguments, "", all_commands());
   return std::holds_alternative<Answer>(parsed) ? std::get<Answer>(parsed).text : "";
 }
 
@@ -94,16 +95,17 @@ TEST(Options, ASwitchTakesNoValueAndAFormatOnlyKnownOnes) {
 }
 
 TEST(Options, HelpOfACommandShowsEachOfItsOptions) {
-  for (const CommandRow& command : command_rows()) {
+  for (const CommandRow& command : all_commands().commands) {
     const std::string text = answer({std::string(command.name), "--help"});
     EXPECT_EQ(text, answer({"help", std::string(command.name)}));
-    for (const OptionRow& option : option_rows()) {
+    for (const OptionRow& option : all_commands().options) {
       const bool is_shown =
           text.find("  " + std::string(option.title()) + " ") != std::string::npos ||
           text.find(", " + std::string(option.title()) + " ") != std::string::npos;
       // Two commands may have options of one name, each in a row of its own.
-      const bool is_expected =
-          std::any_of(option_rows().begin(), option_rows().end(), [&](const OptionRow& other) {
+      const bool is_expected = std::any_of(
+          all_commands().options.begin(), all_commands().options.end(),
+          [&](const OptionRow& other) {
             return other.title() == option.title() && other.commands.contains(command.command);
           });
       EXPECT_EQ(is_shown, is_expected) << command.name << " " << option.title();
@@ -113,7 +115,8 @@ TEST(Options, HelpOfACommandShowsEachOfItsOptions) {
 
 TEST(Options, HelpFitsAnEightyColumnTerminal) {
   std::string text = answer({"--help"});
-  for (const CommandRow& command : command_rows()) text += help_of(command);
+  for (const CommandRow& command : all_commands().commands)
+    text += help_of(command, all_commands());
   std::size_t begin = 0;
   while (begin < text.size()) {
     const std::size_t end = text.find('\n', begin);
@@ -124,7 +127,7 @@ TEST(Options, HelpFitsAnEightyColumnTerminal) {
 
 TEST(Options, GeneralHelpNamesCommandsLanguagesAndExitStatus) {
   const std::string text = answer({"--help"});
-  for (const CommandRow& command : command_rows()) {
+  for (const CommandRow& command : all_commands().commands) {
     EXPECT_THAT(text, HasSubstr("\n  " + std::string(command.name) + " "));
   }
   EXPECT_THAT(text, HasSubstr("\n  cpp "));
@@ -138,11 +141,11 @@ TEST(Options, ManualAndCompletionKnowEachCommandAndOption) {
     if (letter != '\\') manual += letter;
   }
   const std::string completion = read_text(ROBDEF_COMPLETION);
-  for (const CommandRow& command : command_rows()) {
+  for (const CommandRow& command : all_commands().commands) {
     EXPECT_THAT(manual, HasSubstr(".B " + std::string(command.name) + "\n"));
     EXPECT_THAT(completion, HasSubstr(std::string(command.name)));
   }
-  for (const OptionRow& option : option_rows()) {
+  for (const OptionRow& option : all_commands().options) {
     EXPECT_THAT(manual, HasSubstr(std::string(option.name)));
     EXPECT_THAT(completion, HasSubstr(std::string(option.name)));
   }
