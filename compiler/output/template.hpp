@@ -17,6 +17,8 @@
 ///                         whose names are then seen first; for each item of a list
 ///   {{^name}}...{{/name}} when there is none of that
 ///   {{#@first}} {{#@last}} (or ^) where in the innermost list this is
+///   {{#@c++}} alone on its line: lines of C++ inside that are longer than 100 columns are broken
+///                         (cpp_lines.hpp)
 ///   {{> partial}}         another template, with the blanks before it put before each of its lines
 ///   {{! comment}}
 ///

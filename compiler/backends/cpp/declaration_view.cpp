@@ -3,10 +3,10 @@
 #include <utility>
 
 #include "compiler/backends/cpp/constants.hpp"
-#include "compiler/backends/cpp/layout.hpp"
 #include "compiler/backends/cpp/view_parts.hpp"
 #include "compiler/backends/literals.hpp"
 #include "compiler/backends/words.hpp"
+#include "compiler/output/cpp_layout.hpp"
 
 namespace robdef::cpp {
 namespace {

@@ -7,12 +7,12 @@
 #include <variant>
 
 #include "compiler/backends/cpp/backend.hpp"
-#include "compiler/backends/cpp/layout.hpp"
 #include "compiler/backends/cpp/member_lines.hpp"
 #include "compiler/backends/cpp/view_parts.hpp"
 #include "compiler/backends/implements.hpp"
 #include "compiler/backends/member_facts.hpp"
 #include "compiler/backends/words.hpp"
+#include "compiler/output/cpp_layout.hpp"
 
 namespace robdef::cpp {
 namespace {
@@ -102,6 +102,7 @@ class MemberMaker {
     describe(view, parameter, context_.names.local(code_name(parameter), taken));
     view.type = type.text;
     view.passed = type.passed();
+    view.is_by_value = view.passed == view.type;
     view.local = variable(type, view.name, 6);
     view.descriptor = type.descriptor;
     return view;
@@ -156,29 +157,7 @@ class MemberMaker {
     const std::string tables = table_name("parameters", object_.name);
     rows_.push_back(member_row(view, tables, access_text(member.access)));
     if (view.has_parameters) view.parameter_table = parameter_table(view);
-    lay_out(view, member);
-  }
-
-  void lay_out(MemberView& view, const Member& member) {
-    switch (member.kind) {
-      case MemberKind::property:
-        return lay_out_property(view, context_.names);
-      case MemberKind::function:
-        return view.is_generator ? lay_out_generator(view, context_.names)
-                                 : lay_out_function(view, context_.names);
-      case MemberKind::event:
-        return lay_out_event(view);
-      case MemberKind::objref:
-        return lay_out_objref(view, context_.names, stub_name(object_));
-      case MemberKind::pipe:
-        return lay_out_pipe(view);
-      case MemberKind::callback:
-        return lay_out_callback(view, context_.names);
-      case MemberKind::wire:
-        return lay_out_wire(view);
-      case MemberKind::memory:
-        return lay_out_memory(view);
-    }
+    make_forms(view, context_.names);
   }
 
   const Object& object_;

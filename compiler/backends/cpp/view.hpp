@@ -86,6 +86,7 @@ struct ParameterView : ParameterFacts {
   std::string passed;  ///< `double`, `const ::std::string&`
   std::string local;   ///< a variable for it: `double pan = 0;`
   std::string descriptor;
+  bool is_by_value = false;  ///< passed is type
 };
 
 /// A member of an object. What does not apply to its kind is empty or false.
@@ -118,36 +119,15 @@ struct MemberView : MemberFacts {
   std::string setter;  ///< `set_pan`
   std::string token;   ///< name of the template parameter of async_ forms
 
-  // Laid out, for the inside of a class.
-  std::string stub_get;
-  std::string stub_set;
-  std::string stub_call;             ///< function
-  std::string stub_handle;           ///< event, pipe, callback, wire, memory
-  std::string stub_find;             ///< objref: declared in the class
-  std::string stub_find_definition;  ///< objref: outside of it
-  // Asynchronous forms take the terms of the call; the plain ones do not.
-  std::string async_get;
-  std::string plain_async_get;
-  std::string async_set;
-  std::string plain_async_set;
-  std::string async_call;
-  std::string plain_async_call;  ///< function, callback
-  std::string async_find;
-  std::string plain_async_find;
-  std::string skeleton_get;
-  std::string skeleton_set;
-  std::string skeleton_handle;  ///< pipe, wire, memory
-  std::string skeleton_call;    ///< function, callback
-  std::string skeleton_async;   ///< function without generators, callback
-  std::string skeleton_fire;
-  std::string skeleton_find;
-  std::string dispatch_read;  ///< function: reads its parameters in rr_dispatch
-  std::string dispatch_call;  ///< function: the call there
-  std::string dispatch_find;  ///< objref: the case in rr_child; memory: in rr_memory
-  std::string default_get;
-  std::string default_set;
-  std::string default_call;
-  std::string default_find;  ///< objref, memory
+  // Names for parameters beside those of the member.
+  std::string token_name;   ///< of the completion token
+  std::string options;      ///< of the terms of a call
+  std::string answer;       ///< function: of what takes the result
+  std::string client;       ///< callback: of the endpoint that is called
+  std::string index;        ///< objref
+  std::string called;       ///< function: how it is called where a parameter may have its name
+  std::string taken;        ///< generator: the type that each step takes, or `void`
+  bool has_handle = false;  ///< event, pipe, callback, wire, memory
 };
 
 struct BaseView {
@@ -164,6 +144,7 @@ struct ObjectView {
   std::vector<std::string> skeleton_doc;
   std::vector<std::string> default_doc;
   std::string stub;
+  std::string stub_class;  ///< the same, where a member has a `stub`
   std::string skeleton;
   std::string default_class;
   std::string qualified_stub;
@@ -182,6 +163,7 @@ struct ObjectView {
   bool has_parameters = false;  ///< one of them has parameters
   bool has_calls = false;       ///< properties or functions
   bool has_objrefs = false;
+  bool uses_index = false;  ///< one of them has an index
   bool has_memories = false;
   bool has_stored = false;  ///< the Default class stores something
   std::string member_count;
@@ -190,11 +172,6 @@ struct ObjectView {
   std::vector<std::string> member_rows;  ///< what the array holds
   std::string implements_table;
   std::string parameter_tables;  ///< of the struct with its parameters' tables
-  std::string stub_type;         ///< definitions of rr_object_type
-  std::string skeleton_type;
-  std::string dispatch_head;
-  std::string child_head;
-  std::string memory_head;
 };
 
 /// A declaration in the order of the generated header: one of these is there.

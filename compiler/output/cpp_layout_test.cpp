@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/backends/cpp/layout.hpp"
+#include "compiler/output/cpp_layout.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include "compiler/backends/words.hpp"
 
 namespace robdef::cpp {
 namespace {
@@ -57,8 +55,8 @@ TEST(Layout, BreaksACallBehindItsBracketOnlyToSaveALine) {
   const std::string head = std::string(70, 'c') + "(";
   const std::string other = long_name(20);
   EXPECT_EQ(list({head, {other, other, other, other, other}, ");"}, 4),
-            head + "\n        " + join({other, other, other, other}, ", ") + ",\n        " + other +
-                ");");
+            head + "\n        " + other + ", " + other + ", " + other + ", " + other +
+                ",\n        " + other + ");");
 }
 
 TEST(Layout, PutsTablesOfManyShortItemsIntoColumns) {

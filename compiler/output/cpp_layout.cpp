@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compiler/backends/cpp/layout.hpp"
+#include "compiler/output/cpp_layout.hpp"
 
 #include <algorithm>
 #include <optional>
 #include <utility>
 
-#include "compiler/backends/words.hpp"
-
 namespace robdef::cpp {
 namespace {
 
 constexpr std::size_t continuation = 4;
+
+std::string join(const std::vector<std::string>& pieces, std::string_view separator) {
+  std::string result;
+  for (const std::string& piece : pieces) {
+    if (&piece != &pieces.front()) result += separator;
+    result += piece;
+  }
+  return result;
+}
 
 std::size_t lines_of(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count(text, '\n')) + 1;
