@@ -6,8 +6,8 @@
 namespace robdef::cpp {
 namespace {
 
-const std::string a_name(37, 'a');
-const std::string b_name(37, 'b');
+const std::string a_name(36, 'a');
+const std::string b_name(36, 'b');
 
 TEST(CppLines, WhatFitsStays) {
   const std::string text = "  int f(int a) { return g(a); }\n\n// " + std::string(97, 'x');
