@@ -71,20 +71,20 @@ std::string stored_name(const MemberView& view) {
 }
 
 void make_forms(MemberView& view, const Names& names) {
-  // The names of parameters and of the value, which a further parameter may not have.
+  // What stands behind a name so that it is none of those taken, which it joins.
+  const auto mark = [&names](std::string_view name, std::set<std::string>& taken) {
+    return names.local(name, taken).substr(name.size());
+  };
   std::set<std::string> taken;
   for (const ParameterView& parameter : view.parameters) taken.insert(parameter.name);
   std::set<std::string> of_answer = taken;
-  view.answer = names.local("answer", of_answer);
-  if (!view.value.empty()) taken.insert(view.value);
-  std::set<std::string> of_token = taken;
-  view.token_name = names.local("token", of_token);
-  taken.insert(view.token_name);
-  view.options = names.local("options", taken);
-  taken.insert(view.options);
+  view.answer_mark = mark("answer", of_answer);
+  if (!view.is_objref && !view.is_event) taken.insert("value" + view.value_mark);
+  view.token_mark = mark("token", taken);
+  view.options_mark = mark("options", taken);
   std::set<std::string> of_client = taken;
-  view.client = names.local("client", of_client);
-  view.index = names.local("index", taken);
+  view.client_mark = mark("client", of_client);
+  view.index_mark = mark("index", taken);
   view.called = called(view);
   make_types(view);
 }

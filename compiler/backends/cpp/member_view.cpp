@@ -33,10 +33,7 @@ std::string access_text(const model::Access& access) {
 class MemberMaker {
  public:
   MemberMaker(const Object& object, const Context& context)
-      : object_(object),
-        context_(context),
-        hidden_(names_inside(object)),
-        member_table_(table_name("members", object.name)) {}
+      : object_(object), context_(context), hidden_(names_inside(object)) {}
 
   void make(ObjectView& object) {
     std::vector<MemberView>& views = object.members;
@@ -45,7 +42,6 @@ class MemberMaker {
       MemberView view = common(member);
       if (view.is_served) {
         view.number = std::to_string(served++);
-        view.entry = member_table_ + "[" + view.number + "]";
       } else {
         report_unserved(member, "C++", context_.report);
       }
@@ -78,17 +74,22 @@ class MemberMaker {
     std::vector<std::string> names;
     for (const ParameterView& parameter : view.parameters) names.push_back(parameter.name);
     view.arguments = join(names, ", ");
-    view.token = context_.names.local("Token", taken);
-    view.getter = "get_" + code_name(member);
-    view.setter = "set_" + code_name(member);
+    constexpr std::string_view token = "Token";
+    view.type_mark = context_.names.local(token, taken).substr(token.size());
+    view.code = code_name(member);
+    view.getter = "get_" + view.code;
+    view.setter = "set_" + view.code;
     if (member.kind == MemberKind::objref) {
       make_reference(view, member);
     } else if (member.kind != MemberKind::event) {
       const CppType type = spell(member.type);
       view.type = type.text;
       view.passed = type.passed();
+      view.is_by_value = type.is_by_value;
       view.descriptor = type.descriptor;
-      view.value = context_.names.local("value", taken);
+      constexpr std::string_view value = "value";
+      view.value = context_.names.local(value, taken);
+      view.value_mark = view.value.substr(value.size());
       if (view.has_result) view.local = variable(type, view.value, 8);
       if (view.is_property) make_stored(view, type);
       if (view.is_memory) make_item(view, member);
@@ -102,7 +103,7 @@ class MemberMaker {
     describe(view, parameter, context_.names.local(code_name(parameter), taken));
     view.type = type.text;
     view.passed = type.passed();
-    view.is_by_value = view.passed == view.type;
+    view.is_by_value = type.is_by_value;
     view.local = variable(type, view.name, 6);
     view.descriptor = type.descriptor;
     return view;
@@ -163,7 +164,6 @@ class MemberMaker {
   const Object& object_;
   const Context& context_;
   std::set<std::string> hidden_;
-  std::string member_table_;
   std::vector<std::string> rows_;  // of that table
 };
 

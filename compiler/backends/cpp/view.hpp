@@ -83,24 +83,24 @@ struct RecordView : RecordFacts {
 
 struct ParameterView : ParameterFacts {
   std::string type;
-  std::string passed;  ///< `double`, `const ::std::string&`
-  std::string local;   ///< a variable for it: `double pan = 0;`
+  std::string passed;        ///< `double`, `const ::std::string&`
+  bool is_by_value = false;  ///< passed as it is, and not as a reference to a constant
+  std::string local;         ///< a variable for it: `double pan = 0;`
   std::string descriptor;
-  bool is_by_value = false;  ///< passed is type
 };
 
 /// A member of an object. What does not apply to its kind is empty or false.
 struct MemberView : MemberFacts {
   std::string name;
   std::vector<std::string> doc;
-  std::string entry;  ///< the table's entry: `rr_members_PanTilt[3]`
 
   std::string type;    ///< property, pipe, wire, memory: the value; function, callback: the result
   std::string passed;  ///< the value as a parameter
-  std::string descriptor;  ///< what rr::type_of is asked for
-  std::string value;       ///< a name for a variable that holds it
-  std::string local;       ///< the variable: `double value = 0;`
-  std::string item;        ///< memory: one of its items, `double`
+  bool is_by_value = false;  ///< which is a `type` then, otherwise a reference to one
+  std::string value;         ///< a name for a variable that holds it
+  std::string descriptor;    ///< what rr::type_of is asked for
+  std::string local;         ///< the variable: `double value = 0;`
+  std::string item;          ///< memory: one of its items, `double`
   std::string handle;  ///< what the stub's method gives: `::rr::Pipe<Frame>`, `::rr::Event<double>`
   std::string served;  ///< what the skeleton's gives: `::rr::PipeServer<Frame>`
   std::string stored;  ///< property, memory: what a Default class keeps
@@ -115,16 +115,19 @@ struct MemberView : MemberFacts {
   std::string qualified_stub;
   std::string qualified_skeleton;
 
+  std::string code;    ///< property, objref: what `get_` and `set_` stand before
   std::string getter;  ///< `get_pan`: properties and objrefs
   std::string setter;  ///< `set_pan`
-  std::string token;   ///< name of the template parameter of async_ forms
 
-  // Names for parameters beside those of the member.
-  std::string token_name;   ///< of the completion token
-  std::string options;      ///< of the terms of a call
-  std::string answer;       ///< function: of what takes the result
-  std::string client;       ///< callback: of the endpoint that is called
-  std::string index;        ///< objref
+  // What is behind the names of further parameters where a parameter of the member has the name:
+  // usually nothing.
+  std::string token_mark;  ///< `token`, of a completion token
+  std::string type_mark;   ///< `Token`, its type
+  std::string options_mark;
+  std::string answer_mark;  ///< function: `answer`, of what takes the result
+  std::string client_mark;  ///< callback: `client`, of the endpoint that is called
+  std::string index_mark;   ///< objref
+  std::string value_mark;
   std::string called;       ///< function: how it is called where a parameter may have its name
   std::string taken;        ///< generator: the type that each step takes, or `void`
   bool has_handle = false;  ///< event, pipe, callback, wire, memory

@@ -16,11 +16,11 @@ ROBDEF_VIEW_TYPE(FieldView, wire_name, name, doc, type, descriptor, robdef_type,
 ROBDEF_VIEW_TYPE(RecordView, name, qualified, doc, number_type, constants, fields, table,
                  field_table, field_rows, table_definition, specialization);
 ROBDEF_VIEW_TYPE(ParameterView, type, passed, local, descriptor, is_by_value);
-ROBDEF_VIEW_TYPE(MemberView, name, doc, entry, type, passed, descriptor, value, local, item, handle,
-                 served, stored, parameters, arguments, parameter_table, yields,
-                 generator_parameter, stub, skeleton, qualified_stub, qualified_skeleton, getter,
-                 setter, token, token_name, options, answer, client, index, called, taken,
-                 has_handle);
+ROBDEF_VIEW_TYPE(MemberView, name, doc, type, descriptor, local, item, handle, served, stored,
+                 parameters, arguments, parameter_table, yields, generator_parameter, stub,
+                 skeleton, qualified_stub, qualified_skeleton, called, taken, has_handle,
+                 is_by_value, passed, value, code, getter, setter, token_mark, type_mark,
+                 options_mark, answer_mark, client_mark, index_mark, value_mark);
 ROBDEF_VIEW_TYPE(BaseView, wire_name, stub, skeleton);
 ROBDEF_VIEW_TYPE(ObjectView, wire_name, short_name, name, stub_doc, skeleton_doc, default_doc, stub,
                  stub_class, skeleton, default_class, qualified_stub, qualified_skeleton,
