@@ -230,4 +230,19 @@ std::string broken_lines(std::string_view text) {
   return result;
 }
 
+std::string columns(std::string_view text) {
+  const std::size_t indent = std::min(text.find_first_not_of(' '), text.size());
+  std::vector<std::string> items;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    items.push_back(broken(text.substr(0, end)).substr(indent));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  std::string result;
+  for (const std::string& row : table_rows(items, indent)) {
+    result.append(blanks(indent)).append(row).append("\n");
+  }
+  return result;
+}
+
 }  // namespace robdef::cpp

@@ -18,4 +18,7 @@ bool has_long_line(std::string_view text);
 /// Breaks each line of a text.
 std::string broken_lines(std::string_view text);
 
+/// The lines of a text, rows of a table with one indentation, in as many columns as are worth it.
+std::string columns(std::string_view text);
+
 }  // namespace robdef::cpp

@@ -17,14 +17,14 @@ TemplateError::TemplateError(std::string_view name, std::size_t line, std::strin
 
 /// A bound piece: names have become places in views.
 struct Template::Node {
-  enum class Kind { text, value, item, section, first, last, lines };
+  enum class Kind { text, value, item, section, first, last, lines, columns };
 
   Kind kind = Kind::text;
   bool is_inverted = false;                 ///< section, first, last
   std::string text = {};                    ///< of text
   std::size_t depth = 0;                    ///< value, item, section: which of the views in scope
   std::vector<const ViewField*> path = {};  ///< value, section: the field, and the fields around it
-  std::vector<Node> children = {};          ///< section, first, last, lines
+  std::vector<Node> children = {};          ///< all but text, value, item
 };
 
 namespace {
@@ -145,12 +145,12 @@ class Binder {
     const Token& opened = *token++;
     Node node;
     bool has_scope = false;
-    if (opened.text == "@c++") {
-      // What it breaks are whole lines.
+    if (opened.text == "@c++" || opened.text == "@columns") {
+      // They work on whole lines.
       if (!opened.is_alone || opened.kind == Token::Kind::inverted) {
-        fail(name, opened, "`{{#@c++}}` stands alone on its line");
+        fail(name, opened, "`{{#" + std::string(opened.text) + "}}` stands alone on its line");
       }
-      node.kind = Node::Kind::lines;
+      node.kind = opened.text == "@c++" ? Node::Kind::lines : Node::Kind::columns;
     } else if (opened.text == "@first" || opened.text == "@last") {
       node.kind = opened.text == "@first" ? Node::Kind::first : Node::Kind::last;
     } else {
@@ -266,6 +266,9 @@ class Printer {
       case Node::Kind::lines:
         print_lines(node);
         return;
+      case Node::Kind::columns:
+        print_columns(node);
+        return;
     }
   }
 
@@ -276,6 +279,13 @@ class Printer {
     if (!cpp::has_long_line(printed)) return;
     std::string lines = cpp::broken_lines(printed);
     text_.replace(begin, text_.size() - begin, lines);
+  }
+
+  void print_columns(const Node& node) {
+    const std::size_t begin = text_.size();
+    print(node.children);
+    std::string columns = cpp::columns(std::string_view(text_).substr(begin));
+    text_.replace(begin, text_.size() - begin, columns);
   }
 
   void print_section(const Node& node) {

@@ -19,6 +19,7 @@
 ///   {{#@first}} {{#@last}} (or ^) where in the innermost list this is
 ///   {{#@c++}} alone on its line: lines of C++ inside that are longer than 100 columns are broken
 ///                         (cpp_lines.hpp)
+///   {{#@columns}}         likewise: the lines inside, of one indentation, are put into columns
 ///   {{> partial}}         another template, with the blanks before it put before each of its lines
 ///   {{! comment}}
 ///

@@ -89,31 +89,16 @@ void make_forms(MemberView& view, const Names& names) {
   make_types(view);
 }
 
-std::string member_row(const MemberView& view, const std::string& object_tables,
-                       const std::string& access) {
-  std::string head = "::rr::" + (view.is_generator ? "generator" : view.kind);
+void make_row(MemberView& view, const std::string& access) {
   Texts described;
   if (!view.descriptor.empty()) described.push_back(view.descriptor);
   if (view.is_generator) {
     described.push_back(view.generator_parameter ? view.generator_parameter->descriptor : "void");
   }
-  if (!described.empty()) head += "<" + join(described, ", ") + ">";
-  Texts items{quoted(view.wire_name)};
-  if (view.is_objref) {
-    items.push_back(quoted(view.object_type));
-    if (view.has_index) {
-      items.emplace_back(view.has_int32_index ? "::rr::IndexForm::int32"
-                                              : "::rr::IndexForm::string");
-    }
-  }
+  view.described = join(described, ", ");
+  if (!view.is_objref) view.access = access;
   const bool takes_parameters = view.is_function || view.is_event || view.is_callback;
-  if (view.has_parameters) {
-    items.push_back(object_tables + "::" + view.name);
-  } else if (!access.empty() && takes_parameters) {
-    items.emplace_back("{}");
-  }
-  if (!access.empty() && !view.is_objref) items.push_back(access);
-  return list({.before = head + "(", .items = items, .after = "),"}, 4);
+  view.has_no_table = takes_parameters && !view.has_parameters && !access.empty();
 }
 
 std::string parameter_table(const MemberView& view) {

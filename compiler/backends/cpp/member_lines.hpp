@@ -14,10 +14,9 @@ namespace robdef::cpp {
 /// Adds them to a view whose names, types and table entry are there already.
 void make_forms(MemberView& view, const Names& names);
 
-/// The row of a member in its object's table. `object_tables` is the struct with the tables of
-/// parameters, `access` as `::rr::readonly | ::rr::nolock` or empty.
-std::string member_row(const MemberView& view, const std::string& object_tables,
-                       const std::string& access);
+/// What the row of a member in its object's table has. `access` as `::rr::readonly | ::rr::nolock`
+/// or empty.
+void make_row(MemberView& view, const std::string& access);
 /// The table of its parameters.
 std::string parameter_table(const MemberView& view);
 

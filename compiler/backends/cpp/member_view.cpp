@@ -49,7 +49,6 @@ class MemberMaker {
       if (view.is_served) make_served(view, member);
       views.push_back(std::move(view));
     }
-    object.member_rows = table_rows(rows_, 4);
   }
 
  private:
@@ -155,8 +154,7 @@ class MemberMaker {
   CppType spell(const Type& type) { return context_.types.spell(type, {.hidden = &hidden_}); }
 
   void make_served(MemberView& view, const Member& member) {
-    const std::string tables = table_name("parameters", object_.name);
-    rows_.push_back(member_row(view, tables, access_text(member.access)));
+    make_row(view, access_text(member.access));
     if (view.has_parameters) view.parameter_table = parameter_table(view);
     make_forms(view, context_.names);
   }
@@ -164,7 +162,6 @@ class MemberMaker {
   const Object& object_;
   const Context& context_;
   std::set<std::string> hidden_;
-  std::vector<std::string> rows_;  // of that table
 };
 
 }  // namespace

@@ -69,16 +69,16 @@ struct FieldView {
 /// A struct, pod or namedarray.
 struct RecordView : RecordFacts {
   std::string name;
+  std::string class_name;  ///< the same, where a field has a `name`
   std::string qualified;
   std::vector<std::string> doc;
   std::string number_type;  ///< namedarray: of its numbers, `double`
   std::vector<ConstantView> constants;
   std::vector<FieldView> fields;
-  std::string table;                    ///< name of its RecordType
-  std::string field_table;              ///< name of the array of its fields
-  std::vector<std::string> field_rows;  ///< what the array holds
-  std::string table_definition;         ///< of the RecordType
-  std::string specialization;           ///< of rr::type_of
+  std::string table;             ///< name of its RecordType
+  std::string field_table;       ///< name of the array of its fields
+  std::string table_definition;  ///< of the RecordType
+  std::string specialization;    ///< of rr::type_of
 };
 
 struct ParameterView : ParameterFacts {
@@ -128,9 +128,12 @@ struct MemberView : MemberFacts {
   std::string client_mark;  ///< callback: `client`, of the endpoint that is called
   std::string index_mark;   ///< objref
   std::string value_mark;
-  std::string called;       ///< function: how it is called where a parameter may have its name
-  std::string taken;        ///< generator: the type that each step takes, or `void`
-  bool has_handle = false;  ///< event, pipe, callback, wire, memory
+  std::string described;      ///< types that its row in the table is given: `double, void`
+  std::string access;         ///< what the row says of modifiers: `::rr::readonly | ::rr::nolock`
+  bool has_no_table = false;  ///< it has none of parameters, but modifiers behind it
+  std::string called;         ///< function: how it is called where a parameter may have its name
+  std::string taken;          ///< generator: the type that each step takes, or `void`
+  bool has_handle = false;    ///< event, pipe, callback, wire, memory
 };
 
 struct BaseView {
@@ -170,9 +173,8 @@ struct ObjectView {
   bool has_memories = false;
   bool has_stored = false;  ///< the Default class stores something
   std::string member_count;
-  std::string table;                     ///< name of its ObjectType
-  std::string member_table;              ///< of the array of its members
-  std::vector<std::string> member_rows;  ///< what the array holds
+  std::string table;         ///< name of its ObjectType
+  std::string member_table;  ///< of the array of its members
   std::string implements_table;
   std::string parameter_tables;  ///< of the struct with its parameters' tables
 };

@@ -184,3 +184,30 @@ def broken(line):
 
 def broken_lines(text):
     return "\n".join(broken(line) for line in text.split("\n"))
+
+
+def widths_for(items, count, width):
+    """Of the columns when items are put into so many; None when that does not fit or is mostly blanks."""
+    sizes = [[len(item.encode()) for item in items[column::count]] for column in range(count)]
+    if any(max(column) - min(column) > 10 for column in sizes[:-1]):
+        return None
+    longest = [max(column) for column in sizes]
+    return longest if sum(longest) + count - 1 <= width else None
+
+
+def columns(text):
+    lines = text.split("\n")[:-1]
+    indent = len(lines[0]) - len(lines[0].lstrip(" "))
+    items = [broken(line)[indent:] for line in lines]
+    best, rows = [0], len(items)
+    if rows >= 5:
+        for count in range(2, min(rows, WIDTH // 3) + 1):
+            widths = widths_for(items, count, WIDTH - indent)
+            if widths and -(-len(items) // count) < rows:
+                best, rows = widths, -(-len(items) // count)
+    result = ""
+    for begin in range(0, len(items), len(best)):
+        row = items[begin:begin + len(best)]
+        padded = [item.ljust(width + 1) for item, width in zip(row[:-1], best)]
+        result += " " * indent + "".join(padded) + row[-1] + "\n"
+    return result

@@ -113,8 +113,9 @@ class Renderer:
                     self.begin(indent)
                 first = len(self.out)
                 self.section(sign, name, inside, indent)
-                if name == "@c++":
-                    self.out[first:] = [cpp_lines.broken_lines("".join(self.out[first:]))]
+                if name in ("@c++", "@columns"):
+                    change = cpp_lines.broken_lines if name == "@c++" else cpp_lines.columns
+                    self.out[first:] = [change("".join(self.out[first:]))]
 
     def section(self, sign, name, inside, indent):
         begins = self.line_begins
@@ -144,7 +145,7 @@ class Renderer:
 
     def repeats(self, sign, name):
         """For each time that a section is printed: a new frame, or None where names stay."""
-        if name == "@c++":
+        if name in ("@c++", "@columns"):
             return [None]
         if name in ("@first", "@last"):
             is_there = self.frames[-1][1 if name == "@first" else 2]
