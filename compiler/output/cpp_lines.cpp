@@ -179,6 +179,23 @@ std::optional<std::string> function(std::string_view text, std::size_t indent) {
          "\n" + blanks(indent) + "}";
 }
 
+/// The initial values of an array: `int a[] = {1, 2};`.
+std::optional<std::string> array(std::string_view text, std::size_t indent) {
+  constexpr std::string_view begin = " = {";
+  constexpr std::string_view end = "};";
+  const std::size_t open = text.find(begin);
+  if (open == nowhere || !text.ends_with(end)) return std::nullopt;
+  const std::size_t first = open + begin.size();
+  List values{.before = std::string(text.substr(0, first)),
+              .items = items_of(text.substr(first, text.size() - end.size() - first)),
+              .after = std::string(end)};
+  constexpr std::size_t deeper = 4;
+  for (std::string& item : values.items) {
+    if (indent + deeper + item.size() > line_width) item = call(item, indent + deeper);
+  }
+  return braced_list(values, indent);
+}
+
 }  // namespace
 
 std::string broken(std::string_view line) {
@@ -193,6 +210,7 @@ std::string broken(std::string_view line) {
     if (signature) return result + opening(*signature, indent) + "}";
   }
   if (const auto whole = function(text, indent)) return result + *whole;
+  if (const auto values = array(text, indent)) return result + *values;
   for (const std::string_view end : {" {", ";"}) {
     if (!text.ends_with(end)) continue;
     const auto signature = signature_of(text.substr(0, text.size() - end.size()), indent);

@@ -7,7 +7,8 @@
 namespace robdef::cpp {
 
 /// A line of C++ that a template has printed, broken into lines of 100 columns where it is longer:
-/// a function with one statement, a declaration, the first line of a function, or a call. What
+/// a function with one statement, a declaration, the first line of a function, an array with its
+/// values, or a call. What
 /// groups its parts are its own brackets, and it can be broken behind them and behind commas.
 /// Anything else stays as it is. `line` is without its line end, as is the result.
 std::string broken(std::string_view line);

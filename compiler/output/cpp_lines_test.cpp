@@ -43,6 +43,18 @@ TEST(CppLines, AResultThatIsTooLongGetsALineOfItsOwn) {
             "  " + result + "\n  get_it(int index);");
 }
 
+TEST(CppLines, TheValuesOfAnArrayAreItsItems) {
+  EXPECT_EQ(broken("  int array[] = {" + a_name + ", " + b_name + ", \"" + a_name + "\"};"),
+            "  int array[] = {" + a_name + ", " + b_name + ",\n" + std::string(17, ' ') + "\"" +
+                a_name + "\"};");
+}
+
+TEST(CppLines, RowsAreInColumns) {
+  EXPECT_EQ(columns("  a(1),\n  long_name(2),\n  b(3),\n  c(4),\n  d(5),\n  e(6),\n"),
+            "  a(1), long_name(2), b(3), c(4), d(5), e(6),\n");
+  EXPECT_EQ(columns("  a,\n  b,\n"), "  a,\n  b,\n");
+}
+
 TEST(CppLines, WhatHasNoListStays) {
   const std::string text = "  constexpr auto " + a_name + b_name + " = " + a_name + ";";
   EXPECT_EQ(broken(text), text);

@@ -14,8 +14,6 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-std::string quoted(const std::string& text) { return "\"" + text + "\""; }
-
 std::string types_of(const std::vector<ParameterView>& parameters) {
   Texts types;
   for (const ParameterView& parameter : parameters) types.push_back(parameter.type);
@@ -99,19 +97,6 @@ void make_row(MemberView& view, const std::string& access) {
   if (!view.is_objref) view.access = access;
   const bool takes_parameters = view.is_function || view.is_event || view.is_callback;
   view.has_no_table = takes_parameters && !view.has_parameters && !access.empty();
-}
-
-std::string parameter_table(const MemberView& view) {
-  List table{.before = "static constexpr ::rr::Parameter " + view.name + "[] = {",
-             .items = {},
-             .after = "};"};
-  for (const ParameterView& parameter : view.parameters) {
-    table.items.push_back(list({.before = "::rr::parameter<" + parameter.descriptor + ">(",
-                                .items = {quoted(parameter.wire_name)},
-                                .after = ")"},
-                               in_class + 4));
-  }
-  return braced_list(table, in_class);
 }
 
 }  // namespace robdef::cpp

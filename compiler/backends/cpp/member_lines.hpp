@@ -17,8 +17,6 @@ void make_forms(MemberView& view, const Names& names);
 /// What the row of a member in its object's table has. `access` as `::rr::readonly | ::rr::nolock`
 /// or empty.
 void make_row(MemberView& view, const std::string& access);
-/// The table of its parameters.
-std::string parameter_table(const MemberView& view);
 
 /// `rr_value_level`, `rr_memory_buffer`: what a Default class keeps.
 std::string stored_name(const MemberView& view);

@@ -155,7 +155,6 @@ class MemberMaker {
 
   void make_served(MemberView& view, const Member& member) {
     make_row(view, access_text(member.access));
-    if (view.has_parameters) view.parameter_table = parameter_table(view);
     make_forms(view, context_.names);
   }
 

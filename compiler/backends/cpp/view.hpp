@@ -106,7 +106,6 @@ struct MemberView : MemberFacts {
   std::string stored;  ///< property, memory: what a Default class keeps
   std::vector<ParameterView> parameters;
   std::string arguments;                             ///< names of the parameters: `pan, tilt`
-  std::string parameter_table;                       ///< its definition; empty without parameters
   bool yields = false;                               ///< generator: each step returns a `type`
   std::optional<ParameterView> generator_parameter;  ///< what each step takes
 

@@ -17,10 +17,10 @@ ROBDEF_VIEW_TYPE(RecordView, name, class_name, qualified, doc, number_type, cons
                  table, field_table, table_definition, specialization);
 ROBDEF_VIEW_TYPE(ParameterView, type, passed, local, descriptor, is_by_value);
 ROBDEF_VIEW_TYPE(MemberView, name, doc, type, descriptor, local, item, handle, served, stored,
-                 parameters, arguments, parameter_table, yields, generator_parameter, stub,
-                 skeleton, qualified_stub, qualified_skeleton, called, taken, has_handle, described,
-                 access, has_no_table, is_by_value, passed, value, code, getter, setter, token_mark,
-                 type_mark, options_mark, answer_mark, client_mark, index_mark, value_mark);
+                 parameters, arguments, yields, generator_parameter, stub, skeleton, qualified_stub,
+                 qualified_skeleton, called, taken, has_handle, described, access, has_no_table,
+                 is_by_value, passed, value, code, getter, setter, token_mark, type_mark,
+                 options_mark, answer_mark, client_mark, index_mark, value_mark);
 ROBDEF_VIEW_TYPE(BaseView, wire_name, stub, skeleton);
 ROBDEF_VIEW_TYPE(ObjectView, wire_name, short_name, name, stub_doc, skeleton_doc, default_doc, stub,
                  stub_class, skeleton, default_class, qualified_stub, qualified_skeleton,

@@ -165,6 +165,31 @@ def function(text, indent):
     return head + "\n" + " " * (indent + 2) + body + "\n" + " " * indent + "}"
 
 
+def table_rows(items, width):
+    """Items in as many columns as are worth it."""
+    best, rows = [0], len(items)
+    if rows >= 5:
+        for count in range(2, min(rows, WIDTH // 3) + 1):
+            widths = widths_for(items, count, width)
+            if widths and -(-len(items) // count) < rows:
+                best, rows = widths, -(-len(items) // count)
+    for begin in range(0, len(items), len(best)):
+        row = items[begin:begin + len(best)]
+        yield "".join(item.ljust(size + 1) for item, size in zip(row[:-1], best)) + row[-1]
+
+
+def array(text, indent):
+    before, begin, inside = text.partition(" = {")
+    if not begin or not inside.endswith("};"):
+        return None
+    deeper = indent + DEEPER
+    items = [item if deeper + len(item) <= WIDTH else call(item, deeper) for item in split_items(inside[:-2])]
+    if len(items) <= 5:
+        return break_list((before + begin, items, "};"), indent, False)
+    rows = table_rows([item + "," for item in items], WIDTH - deeper)
+    return before + begin + "".join("\n" + " " * deeper + row for row in rows) + "\n" + " " * indent + "};"
+
+
 def broken(line):
     text = line.lstrip(" ")
     indent = len(line) - len(text)
@@ -176,6 +201,8 @@ def broken(line):
         result = None if head is None else head + "}"
     if result is None:
         result = function(text, indent)
+    if result is None:
+        result = array(text, indent)
     for end in (" {", ";"):
         if result is None and text.endswith(end):
             result = signature(text[:-len(end)], end, indent)
@@ -199,15 +226,4 @@ def columns(text):
     lines = text.split("\n")[:-1]
     indent = len(lines[0]) - len(lines[0].lstrip(" "))
     items = [broken(line)[indent:] for line in lines]
-    best, rows = [0], len(items)
-    if rows >= 5:
-        for count in range(2, min(rows, WIDTH // 3) + 1):
-            widths = widths_for(items, count, WIDTH - indent)
-            if widths and -(-len(items) // count) < rows:
-                best, rows = widths, -(-len(items) // count)
-    result = ""
-    for begin in range(0, len(items), len(best)):
-        row = items[begin:begin + len(best)]
-        padded = [item.ljust(width + 1) for item, width in zip(row[:-1], best)]
-        result += " " * indent + "".join(padded) + row[-1] + "\n"
-    return result
+    return "".join(" " * indent + row + "\n" for row in table_rows(items, WIDTH - indent))

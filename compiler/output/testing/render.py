@@ -21,7 +21,7 @@ import tempfile
 import cpp_lines
 
 LANGUAGES = ["cpp", "csharp", "typescript", "matlab", "arduino", "cbus"]
-TAG = re.compile(r"\{\{([#^/>!]?)(.*?)\}\}", re.DOTALL)
+TAG = re.compile(r"\{\{(?!\{)([#^/>!]?)(.*?)\}\}", re.DOTALL)
 
 
 def tokens(source):
