@@ -23,9 +23,10 @@
 ///   {{> partial}}         another template, with the blanks before it put before each of its lines
 ///   {{! comment}}
 ///
-/// Of more than two braces the last two begin a tag. Nothing is escaped. A section, partial or comment that is alone on its line takes the whole line
-/// with it. Names are looked up in the view in scope and then in those around it, once, when the
-/// template is bound to a view's type: an unknown name is found even where nothing is printed.
+/// Of more than two braces the last two begin a tag. Nothing is escaped. A section, partial or
+/// comment that is alone on its line takes the whole line with it. Names are looked up in the view
+/// in scope and then in those around it, once, when the template is bound to a view's type: an
+/// unknown name is found even where nothing is printed.
 namespace robdef {
 
 /// A fault in a template: ours, or the author's of a template folder.
