@@ -5,7 +5,7 @@ set -euo pipefail
 root=$1
 shift
 cd "$root"
-tests=$(grep -rhozE 'TEST(_F|_P)?\(\s*\w+,\s*\w+\)' --include='*_test.cpp' compiler runtime conformance examples |
+tests=$(grep -rhozE 'TEST(_F|_P)?\(\s*\w+,\s*\w+\)' --include='*_test.cpp' cli compiler runtime conformance examples |
   tr '\n\0' ' \n' | sed -E 's/.*\(\s*(\w+),\s*(\w+)\)/\1.\2/' | sort -u)
 status=0
 complain() {
@@ -20,9 +20,9 @@ for page in "$@"; do
         program=$(basename "${name%% *}")
         # By its name, or as one of several: `smart_room_${program}`.
         grep -rqE "((add_executable|robdef_test)\(|OUTPUT_NAME )(${program}([ )]|$)|${program%_*}_[$])" --include=CMakeLists.txt \
-          compiler runtime conformance examples || complain "$page" "program $program"
+          cli compiler runtime conformance examples || complain "$page" "program $program"
         ;;
-      docs/* | runtime/* | examples/* | compiler/* | benchmarks/* | conformance/* | rr/*)  # a file
+      docs/* | runtime/* | examples/* | cli/* | compiler/* | benchmarks/* | conformance/* | rr/*)  # a file
         file=${name%% *}
         [ -e "$file" ] || [ -e "runtime/cpp/include/$file" ] || compgen -G "$file" >/dev/null ||
           compgen -G "runtime/cpp/include/$file" >/dev/null || complain "$page" "file $file"
