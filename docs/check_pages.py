@@ -183,7 +183,7 @@ def check_sentences(page, text, complain, list_long):
 
 def tests_of(root):
     names = set()
-    for folder in ("compiler", "runtime", "conformance", "examples"):
+    for folder in ("cli", "compiler", "runtime", "conformance", "examples"):
         for file in glob.glob(os.path.join(root, folder, "**", "*_test.cpp"), recursive=True):
             with open(file, encoding="utf-8") as source:
                 names.update(f"{a}.{b}" for a, b in re.findall(r"TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", source.read()))
@@ -192,7 +192,7 @@ def tests_of(root):
 
 def programs_of(root):
     text = ""
-    for folder in ("compiler", "runtime", "conformance", "examples"):
+    for folder in ("cli", "compiler", "runtime", "conformance", "examples"):
         for file in glob.glob(os.path.join(root, folder, "**", "CMakeLists.txt"), recursive=True):
             with open(file, encoding="utf-8") as source:
                 text += source.read()

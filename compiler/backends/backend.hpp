@@ -33,6 +33,24 @@ struct Abilities {
   [[nodiscard]] bool must_implement(const model::Object& object) const;
 };
 
+/// All members but memories in a list or map, which mean nothing on the wire.
+inline constexpr Abilities all_members{.properties = true,
+                                       .functions = true,
+                                       .generators = true,
+                                       .events = true,
+                                       .objrefs = true,
+                                       .pipes = true,
+                                       .callbacks = true,
+                                       .wires = true,
+                                       .memories = true};
+
+/// All, whatever they mean.
+inline constexpr Abilities everything = [] {
+  Abilities abilities = all_members;
+  abilities.contained_memories = true;
+  return abilities;
+}();
+
 /// What the user chose beyond the language.
 struct GenerateOptions {
   /// A folder of templates (its README: compiler/backends/README.md). With a file `outputs.json` in

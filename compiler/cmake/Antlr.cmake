@@ -6,15 +6,24 @@
 find_package(antlr4-runtime 4.9 REQUIRED CONFIG)
 find_path(ROBDEF_ANTLR_INCLUDE antlr4-runtime.h
   HINTS ${ANTLR4_INCLUDE_DIR} PATH_SUFFIXES antlr4-runtime REQUIRED)
-find_program(ROBDEF_ANTLR_TOOL NAMES antlr4 REQUIRED
+# Not asked for where a source package brings what it makes.
+find_program(ROBDEF_ANTLR_TOOL NAMES antlr4
   DOC "The ANTLR 4 tool, 4.7.2 or later but before 4.10, whose tables the runtime cannot read")
 
 # robdef_grammar(NAME LEXER file PARSER file NAMESPACE name)
 # A static library of the lexer and parser of a grammar. Its sources are C++17, since tool 4.7
-# writes u8"" where it means char; its headers can be included from C++20.
+# writes u8"" where it means char; its headers can be included from C++20. What is in the folder `generated` beside the
+# grammar is taken as it is, without the tool and its Java: source packages have it (tools/source_package).
 function(robdef_grammar name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "LEXER;PARSER;NAMESPACE" "")
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/generated)
+  set(is_there FALSE)
+  if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/generated)
+    set(folder ${CMAKE_CURRENT_SOURCE_DIR}/generated)
+    set(is_there TRUE)
+  elseif(NOT ROBDEF_ANTLR_TOOL)
+    message(FATAL_ERROR "the ANTLR tool `antlr4` is missing; a source package needs none")
+  endif()
   set(sources)
   set(others)
   foreach(grammar ${arg_LEXER} ${arg_PARSER})
@@ -22,15 +31,17 @@ function(robdef_grammar name)
     list(APPEND sources ${folder}/${stem}.cpp)
     list(APPEND others ${folder}/${stem}.h ${folder}/${stem}.tokens ${folder}/${stem}.interp)
   endforeach()
-  # Relative names, because the tool writes the name into what it generates.
-  add_custom_command(
-    OUTPUT ${sources} ${others}
-    COMMAND ${ROBDEF_ANTLR_TOOL} -Werror -Dlanguage=Cpp -no-visitor -no-listener
-      -package ${arg_NAMESPACE} -Xexact-output-dir -o ${folder} ${arg_LEXER} ${arg_PARSER}
-    WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
-    DEPENDS ${arg_LEXER} ${arg_PARSER}
-    COMMENT "Generating ${arg_PARSER}"
-    VERBATIM)
+  if(NOT is_there)
+    # Relative names, because the tool writes the name into what it generates.
+    add_custom_command(
+      OUTPUT ${sources} ${others}
+      COMMAND ${ROBDEF_ANTLR_TOOL} -Werror -Dlanguage=Cpp -no-visitor -no-listener
+        -package ${arg_NAMESPACE} -Xexact-output-dir -o ${folder} ${arg_LEXER} ${arg_PARSER}
+      WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
+      DEPENDS ${arg_LEXER} ${arg_PARSER}
+      COMMENT "Generating ${arg_PARSER}"
+      VERBATIM)
+  endif()
   add_library(${name} STATIC ${sources})
   set_target_properties(${name} PROPERTIES CXX_STANDARD 17)
   target_include_directories(${name} SYSTEM PUBLIC ${folder} ${ROBDEF_ANTLR_INCLUDE})

@@ -37,14 +37,15 @@ set(robdef_layers
   # Uses generated code, which stands on the runtime.
   "compiler/backends/cpp/generated_test.cpp: compiler/model runtime/cpp/include/rr"
   "compiler/backends/cpp/generated_members_test.cpp: runtime/cpp/include/rr"
-  "compiler/driver: compiler/plugin compiler/breaking compiler/diagnostics compiler/docs compiler/lsp compiler/project compiler/syntax compiler/format compiler/model compiler/output compiler/backends runtime/cpp/include/rr runtime/cpp/src/replay"
-  "compiler/driver/live/members_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
-  "compiler/driver/live/hostile_service_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
-  "compiler/driver/live/session_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
-  "compiler/driver/live/tls_commands_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
-  "compiler/driver/live/testing: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
-  "compiler/driver/discover_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing runtime/cpp/src/discovery/testing.hpp"
-  "compiler/driver/recordings_test.cpp: compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
+  "cli: compiler/driver compiler/breaking compiler/diagnostics compiler/model compiler/syntax compiler/output runtime/cpp/include/rr runtime/cpp/src/replay"
+  "compiler/driver: compiler/plugin compiler/breaking compiler/diagnostics compiler/docs compiler/lsp compiler/project compiler/syntax compiler/format compiler/model compiler/output compiler/backends"
+  "cli/live/members_test.cpp: cli compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
+  "cli/live/hostile_service_test.cpp: cli compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
+  "cli/live/session_test.cpp: cli compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
+  "cli/live/tls_commands_test.cpp: cli compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
+  "cli/live/testing: cli compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
+  "cli/discover_test.cpp: cli compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing runtime/cpp/src/discovery/testing.hpp"
+  "cli/recordings_test.cpp: cli compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
 
   "runtime/cpp/include/rr:"
   # Of the wire runtime, errors only; what binds the two has a header of its own.
@@ -84,7 +85,7 @@ set(robdef_layers
   "runtime/cpp/src/node/tls_identity_test.cpp: runtime/cpp/include/rr runtime/cpp/src/node runtime/cpp/src/channel runtime/cpp/src/replay"
   "runtime/cpp/src/node/tls_peer_test.cpp: runtime/cpp/include/rr runtime/cpp/src/node runtime/cpp/src/channel runtime/cpp/src/replay"
   "runtime/cpp/fuzz: runtime/cpp/include/rr runtime/cpp/src"
-  "runtime/cpp/fuzz/command_programs.cpp: runtime/cpp/fuzz runtime/cpp/include/rr compiler/driver"
+  "runtime/cpp/fuzz/command_programs.cpp: runtime/cpp/fuzz runtime/cpp/include/rr cli"
   "runtime/cpp/browser: runtime/cpp/include/rr runtime/cpp/src/node/testing"
   "runtime/cpp/bench: runtime/cpp/include/rr runtime/cpp/src"
   "runtime/cpp/stress: runtime/cpp/include/rr runtime/cpp/src/node/testing"
@@ -109,11 +110,11 @@ set(robdef_outside_headers
   "^openssl/| runtime/cpp/src/channel runtime/cpp/src/service/password_hash.cpp conformance/harness/web_socket_recording.cpp"
   "^rr/async(\\.hpp$|/)| runtime/cpp/include/rr/async.hpp runtime/cpp/include/rr/async runtime/cpp/src runtime/cpp/fuzz runtime/cpp/stress examples conformance benchmarks compiler/backends"
   "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| compiler/plugin/program.cpp runtime/cpp/src/serial runtime/arduino/bench/tcp runtime/cpp/src/channel runtime/cpp/src/discovery runtime/cpp/src/endpoint runtime/cpp/src/realtime/udp_socket.cpp runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp conformance benchmarks"
-  "^fmt/| compiler benchmarks"
+  "^fmt/| cli compiler benchmarks"
   "^nlohmann/| compiler/lsp compiler/plugin/answer.cpp runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"
   "^toml\\+\\+/| compiler/project/toml_file.cpp"
   "^(mex\\.h|octave/)| runtime/matlab conformance/runners/matlab"
-  "^histedit\\.h$| compiler/driver/live/line_reader.cpp"
+  "^histedit\\.h$| cli/live/line_reader.cpp"
   "^png\\.h$| examples")
 
 # A name of a folder or file that `path` is or lies below.
@@ -181,7 +182,7 @@ function(robdef_judge_include source folder allowed header result)
   if(header MATCHES "^rr/")
     set(target "runtime/cpp/include/${header}")
   endif()
-  robdef_is_below_any("${target}" "compiler;runtime;conformance;benchmarks;examples" is_ours)
+  robdef_is_below_any("${target}" "cli;compiler;runtime;conformance;benchmarks;examples" is_ours)
   if(NOT is_ours)
     return()
   endif()
@@ -195,6 +196,7 @@ endfunction()
 function(robdef_check_layers root result)
   set(findings "")
   file(GLOB_RECURSE sources RELATIVE "${root}"
+    "${root}/cli/*.cpp" "${root}/cli/*.hpp"
     "${root}/compiler/*.cpp" "${root}/compiler/*.hpp"
     "${root}/runtime/cpp/*.cpp" "${root}/runtime/cpp/*.hpp"
     "${root}/runtime/c/*.c" "${root}/runtime/c/*.cpp" "${root}/runtime/c/*.h" "${root}/runtime/c/*.hpp"

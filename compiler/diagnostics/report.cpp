@@ -115,6 +115,7 @@ Diagnostic& Diagnostic::note(std::string text) {
 }
 
 Diagnostic& Report::add(Code code, Span span, std::string message) {
+  ++remarks_;
   if (entry_of(code).severity == Severity::error) ++errors_;
   // Warnings of a text from the network are nobody's.
   constexpr std::size_t most = 100;
@@ -145,6 +146,7 @@ void Report::set_level(Code warning, Level level) {
 }
 
 void Report::allow_at(Code warning, Span place, Span comment) {
+  ++remarks_;
   if (origin_ == Origin::network) return;
   allows_[{place.source, warning}].push_back({place, comment});
 }

@@ -125,6 +125,9 @@ class Report {
   /// until the next one.
   Diagnostic& add(Code code, Span span, std::string message);
 
+  /// How often add() and allow_at() have been called.
+  [[nodiscard]] std::size_t remarks() const { return remarks_; }
+
   /// Whether to look for what was meant, among `count` things by comparing `letters` letters with
   /// each.
   [[nodiscard]] bool may_suggest(std::size_t count, std::size_t letters = 1);
@@ -168,6 +171,7 @@ class Report {
   std::map<Code, Level> levels_;
   std::map<AllowKey, std::vector<Allow>> allows_;  // by their places
   std::size_t errors_ = 0;
+  std::size_t remarks_ = 0;
   std::vector<const Diagnostic*> denied_;
 };
 

@@ -4,7 +4,6 @@
 
 #include "compiler/backends/backend.hpp"
 #include "compiler/driver/command_table.hpp"
-#include "compiler/driver/live/table.hpp"
 
 namespace robdef {
 namespace {
@@ -53,13 +52,12 @@ constexpr std::string_view breaking_exit =
     "\nEnvironment:\n"
     "  ROBOTRACONTEUR_ROBDEF_PATH  folders searched for imports after those of -I,\n"
     "                              separated by : or ;\n"
-    "  ROBDEF_PASSWORD             password of --user\n"
     "\nExit status: 0 nothing breaks, 1 something does, 2 used wrongly, or a version\n"
     "cannot be read, 3 a fault of robdef itself.\n";
 
 }  // namespace
 
-std::string general_help() {
+std::string general_help(const CommandTable& table) {
   std::string text =
       "usage: robdef COMMAND [OPTION...] FILE...\n"
       "\n"
@@ -67,7 +65,7 @@ std::string general_help() {
       "clients and services.\n"
       "\n"
       "Commands:\n";
-  for (const CommandRow& row : command_rows()) {
+  for (const CommandRow& row : table.commands) {
     text += "  " + padded(std::string(row.name), 12) + std::string(row.summary) + "\n";
   }
   text +=
@@ -84,26 +82,29 @@ std::string general_help() {
   return text;
 }
 
-std::string help_of(const CommandRow& command) {
+std::string help_of(const CommandRow& command, const CommandTable& table) {
   std::string text = "usage: robdef " + std::string(command.name) + " " +
                      std::string(command.arguments) + "\n\n" + std::string(command.description) +
                      "\nOptions:\n";
   bool has_language = false;
-  for (const OptionRow& row : option_rows()) {
+  for (const OptionRow& row : table.options) {
     if (!row.commands.contains(command.command)) continue;
     text += option_line(row.short_name, row.name, row.value, row.help);
     has_language = has_language || row.name == "--lang";
   }
   text += option_line("-h", "--help", "", "print this");
   if (has_language) text += languages();
-  if (reading_definitions.contains(command.command)) {
+  const std::string_view notes =
+      table.notes == nullptr ? std::string_view() : table.notes(command.command);
+  if (!notes.empty()) {
+    text += notes;
+  } else if (reading_definitions.contains(command.command)) {
     text += environment_and_exit;
   } else if (command.command == Command::breaking) {
     text += breaking_exit;
   } else if (command.command == Command::explain) {
     text += "\nExit status: 0 fine, 2 no such code.\n";
   } else {
-    if (command.command >= Command::get) text += live::environment_help;
     text += "\nExit status: 0 fine, 1 errors, 2 used wrongly, 3 a fault of robdef itself.\n";
   }
   return text;

@@ -2,13 +2,17 @@
 #pragma once
 
 #include <initializer_list>
-#include <span>
+#include <iosfwd>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "compiler/driver/compile.hpp"
 #include "compiler/driver/options.hpp"
+#include "compiler/syntax/read.hpp"
 
-/// The two tables of the command line.
+/// The tables of the command line.
 namespace robdef {
 
 struct CommandRow {
@@ -49,12 +53,36 @@ inline constexpr CommandSet reading_definitions = {Command::generate, Command::c
                                                    Command::docs,     Command::describe,
                                                    Command::model,    Command::view};
 
-std::span<const CommandRow> command_rows();
-std::span<const OptionRow> option_rows();
+/// The commands of a program, and what those do that are not the compiler's.
+struct CommandTable {
+  std::vector<CommandRow> commands{};
+  std::vector<OptionRow> options{};
+  /// Commands that are for shells and not for people: in no list.
+  std::vector<CommandRow> hidden{};
+
+  // Null where there are no such commands.
+
+  /// What is missing on a command line, or too much; empty when nothing is. Nothing for one of the
+  /// compiler.
+  std::optional<std::string> (*missing)(const Options& options) = nullptr;
+  /// Does a command; nothing for one of the compiler.
+  std::optional<ExitStatus> (*run)(const Options& options, std::ostream& out,
+                                   std::ostream& err) = nullptr;
+  /// What the help of a command says behind its options; empty: what that of the compiler says.
+  std::string_view (*notes)(Command command) = nullptr;
+  /// Whether a version of definitions is sent or recorded, and not in files.
+  bool (*is_sent)(const std::string& version) = nullptr;
+  /// Its definitions. Throws VersionError.
+  std::vector<ast::NamedText> (*read_sent)(const std::string& version, const Options& options,
+                                           std::ostream& err) = nullptr;
+};
+
+/// The compiler's commands.
+CommandTable compiler_commands();
 
 /// `robdef --help`.
-std::string general_help();
+std::string general_help(const CommandTable& table);
 /// `robdef COMMAND --help`.
-std::string help_of(const CommandRow& command);
+std::string help_of(const CommandRow& command, const CommandTable& table);
 
 }  // namespace robdef

@@ -38,8 +38,9 @@ class UserTemplateError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-std::string_view name_of(Command command) {
-  const auto row = std::ranges::find(command_rows(), command, &CommandRow::command);
+std::string_view command_name(const Options& options) {
+  const auto row =
+      std::ranges::find(options.table->commands, options.command, &CommandRow::command);
   return row->name;
 }
 
@@ -137,7 +138,7 @@ class Run {
     std::string complaint;
     job_ = make_job(options_, known, complaint);
     if (!complaint.empty()) {
-      err_ << "robdef: " << complaint << "\n`robdef " << name_of(options_.command)
+      err_ << "robdef: " << complaint << "\n`robdef " << command_name(options_)
            << " --help` shows the options\n";
       return exit_usage;
     }

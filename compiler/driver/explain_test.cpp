@@ -26,7 +26,7 @@ struct Outcome {
 Outcome run(const std::vector<std::string>& arguments) {
   std::ostringstream out;
   std::ostringstream err;
-  const ExitStatus status = robdef::run(arguments, "", out, err);
+  const ExitStatus status = robdef::run(arguments, "", compiler_commands(), out, err);
   return {status, out.str(), err.str()};
 }
 

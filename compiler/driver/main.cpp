@@ -1,18 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdlib>
-#include <iostream>
-#include <string>
-#include <vector>
-
+// The compiler alone: `robdef` of a build with ROBDEF_COMPILER_ONLY.
 #include "compiler/driver/run.hpp"
-#include "compiler/syntax/read.hpp"
 
 int main(int count, char** words) {
-  const std::vector<std::string> arguments(words + 1, words + count);
-  const char* variable = std::getenv(robdef::ast::search_path_variable);
-  return robdef::guard(
-      [&] {
-        return robdef::run(arguments, variable == nullptr ? "" : variable, std::cout, std::cerr);
-      },
-      std::cerr);
+  return robdef::run_main(count, words, robdef::compiler_commands());
 }

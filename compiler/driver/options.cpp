@@ -6,10 +6,7 @@
 #include <utility>
 
 #include "compiler/diagnostics/spelling.hpp"
-#include "compiler/driver/authority_verbs.hpp"
 #include "compiler/driver/command_table.hpp"
-#include "compiler/driver/live/commands.hpp"
-#include "compiler/driver/live/table.hpp"
 
 namespace robdef {
 
@@ -22,12 +19,12 @@ std::string suggestion(std::string_view written, const std::vector<std::string_v
   return near.empty() ? "" : "; did you mean " + in_quotes(near) + "?";
 }
 
-const CommandRow* find_command(std::string_view name) {
-  for (const CommandRow& row : command_rows()) {
-    if (row.name == name) return &row;
+const CommandRow* find_command(const CommandTable& table, std::string_view name) {
+  for (const std::vector<CommandRow>* rows : {&table.commands, &table.hidden}) {
+    const auto found = std::ranges::find(*rows, name, &CommandRow::name);
+    if (found != rows->end()) return &*found;
   }
-  const CommandRow& hidden = live::completing_command();
-  return hidden.name == name ? &hidden : nullptr;
+  return nullptr;
 }
 
 // A value, not an option: options do not begin with digits.
@@ -35,9 +32,9 @@ bool is_negative_number(std::string_view argument) {
   return argument.size() > 1 && argument[0] == '-' && argument[1] >= '0' && argument[1] <= '9';
 }
 
-UsageError unknown_command(std::string_view name) {
+UsageError unknown_command(const CommandTable& table, std::string_view name) {
   std::vector<std::string_view> names;
-  for (const CommandRow& row : command_rows()) names.push_back(row.name);
+  for (const CommandRow& row : table.commands) names.push_back(row.name);
   return {"unknown command " + in_quotes(name) + suggestion(name, names) +
           "\n`robdef --help` lists the commands"};
 }
@@ -61,9 +58,11 @@ Written take_apart(std::string_view argument) {
 /// Reads the arguments behind the name of a command.
 class ArgumentReader {
  public:
-  ArgumentReader(const CommandRow& command, std::span<const std::string> arguments)
-      : command_(command), arguments_(arguments) {
+  ArgumentReader(const CommandTable& table, const CommandRow& command,
+                 std::span<const std::string> arguments)
+      : table_(table), command_(command), arguments_(arguments) {
     options_.command = command.command;
+    options_.table = &table;
   }
 
   std::variant<Options, Answer, UsageError> read() {
@@ -77,7 +76,7 @@ class ArgumentReader {
       } else if (argument == "--") {
         options_end = true;
       } else if (argument == "--help" || argument == "-h") {
-        return Answer{help_of(command_)};
+        return Answer{help_of(command_, table_)};
       } else if (std::string complaint = take(argument); !complaint.empty()) {
         return usage_error(std::move(complaint));
       }
@@ -113,7 +112,7 @@ class ArgumentReader {
   }
 
   [[nodiscard]] const OptionRow* find(std::string_view name) const {
-    for (const OptionRow& row : option_rows()) {
+    for (const OptionRow& row : table_.options) {
       if (row.commands.contains(command_.command) && (row.name == name || row.short_name == name)) {
         return &row;
       }
@@ -123,7 +122,7 @@ class ArgumentReader {
 
   [[nodiscard]] std::string unknown(std::string_view name) const {
     std::vector<std::string_view> names = {"--help"};
-    for (const OptionRow& row : option_rows()) {
+    for (const OptionRow& row : table_.options) {
       if (row.commands.contains(command_.command)) {
         names.push_back(row.name);
       } else if (row.name == name || row.short_name == name) {
@@ -134,29 +133,22 @@ class ArgumentReader {
   }
 
   [[nodiscard]] std::string missing() const {
-    if (options_.inputs.empty() && command_.command == Command::explain && !options_.lists_codes) {
-      return "no code given";
+    if (table_.missing != nullptr) {
+      if (const auto complaint = table_.missing(options_)) return *complaint;
     }
-    if (command_.command == Command::record) return missing_to_record();
-    if (command_.command == Command::bridge) return missing_to_bridge();
-    if (command_.command == Command::breaking) return missing_to_compare();
-    if (command_.command == Command::ca) return missing_for_authority(options_);
-    if (command_.command == Command::discover) {
-      return options_.inputs.empty() ? "" : "`robdef discover` takes no files";
+    switch (command_.command) {
+      case Command::explain:
+        if (options_.inputs.empty()) return options_.lists_codes ? "" : "no code given";
+        return options_.lists_codes ? "`--list` takes no codes" : "";
+      case Command::breaking:
+        return options_.inputs.size() == 2 ? "" : "give two versions: the old and the new one";
+      case Command::lsp:
+        return options_.inputs.empty() ? "" : "`robdef lsp` takes no files; the editor names them";
+      case Command::format:
+        return options_.inputs.empty() ? "no file given" : "";
+      default:
+        return missing_to_compile();
     }
-    if (command_.command == Command::lsp) {
-      return options_.inputs.empty() ? "" : "`robdef lsp` takes no files; the editor names them";
-    }
-    if (command_.command >= Command::get ||
-        (command_.command == Command::describe && !options_.inputs.empty() &&
-         is_url(options_.inputs.front()))) {
-      return live::missing(options_);
-    }
-    if (reading_definitions.contains(command_.command)) return missing_to_compile();
-    if (options_.inputs.empty() && command_.command != Command::explain) return "no file given";
-    if (command_.command == Command::replay) return missing_to_replay();
-    if (!options_.inputs.empty() && options_.lists_codes) return "`--list` takes no codes";
-    return "";
   }
 
   /// Inputs and languages may be in a project file: job.hpp asks for them.
@@ -170,33 +162,7 @@ class ArgumentReader {
     return "";
   }
 
-  [[nodiscard]] std::string missing_to_record() const {
-    const RecordingOptions& wanted = options_.recording;
-    if (!options_.inputs.empty()) return "`robdef record` takes no files; name one with `-o`";
-    if (wanted.connect.empty()) return "`--connect` is missing";
-    if (!wanted.port) return "`--listen` is missing";
-    return wanted.output.empty() ? "`--output` is missing" : "";
-  }
-
-  [[nodiscard]] std::string missing_to_bridge() const {
-    if (options_.inputs.empty()) return "no board given";
-    return options_.recording.port ? "" : "`--listen` is missing";
-  }
-
-  [[nodiscard]] std::string missing_to_compare() const {
-    if (options_.inputs.size() != 2) return "give two versions: the old and the new one";
-    const bool has_url = std::any_of(options_.inputs.begin(), options_.inputs.end(), is_url);
-    if (!has_url) return options_.live.user.empty() ? "" : "`--user` is for the URL of a service";
-    return live::missing_to_connect(options_);
-  }
-
-  [[nodiscard]] std::string missing_to_replay() const {
-    const RecordingOptions& wanted = options_.recording;
-    if (options_.inputs.size() != 1) return "one file at a time can be played";
-    if (wanted.connect.empty() == !wanted.port) return "give either `--connect` or `--listen`";
-    return "";
-  }
-
+  const CommandTable& table_;
   const CommandRow& command_;
   std::span<const std::string> arguments_;
   Options options_;
@@ -205,26 +171,27 @@ class ArgumentReader {
 }  // namespace
 
 std::variant<Options, Answer, UsageError> parse_options(std::span<const std::string> arguments,
-                                                        std::string_view import_variable) {
+                                                        std::string_view import_variable,
+                                                        const CommandTable& table) {
   if (arguments.empty()) return UsageError{"no command given\n`robdef --help` lists the commands"};
   const std::string& first = arguments.front();
   if (first == "--version") return Answer{"robdef " ROBDEF_VERSION "\n"};
   if (first == "--help" || first == "-h" || (first == "help" && arguments.size() == 1)) {
-    return Answer{general_help()};
+    return Answer{general_help(table)};
   }
   if (first == "help") {
-    const CommandRow* topic = find_command(arguments[1]);
-    if (topic == nullptr) return unknown_command(arguments[1]);
-    return Answer{help_of(*topic)};
+    const CommandRow* topic = find_command(table, arguments[1]);
+    if (topic == nullptr) return unknown_command(table, arguments[1]);
+    return Answer{help_of(*topic, table)};
   }
-  const CommandRow* command = find_command(first);
+  const CommandRow* command = find_command(table, first);
   if (command == nullptr) {
     return first.starts_with("-")
                ? UsageError{"the first argument is a command, not " + in_quotes(first) +
                             "\n`robdef --help` lists the commands"}
-               : unknown_command(first);
+               : unknown_command(table, first);
   }
-  auto result = ArgumentReader(*command, arguments.subspan(1)).read();
+  auto result = ArgumentReader(table, *command, arguments.subspan(1)).read();
   if (auto* options = std::get_if<Options>(&result)) {
     options->own_import_folders = options->search_path.folders.size();
     options->search_path =

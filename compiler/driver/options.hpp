@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <any>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -14,11 +15,7 @@
 #include "compiler/diagnostics/render.hpp"
 #include "compiler/diagnostics/report.hpp"
 #include "compiler/docs/docs.hpp"
-#include "compiler/driver/authority_options.hpp"
 #include "compiler/driver/breaking_options.hpp"
-#include "compiler/driver/discover_options.hpp"
-#include "compiler/driver/live_options.hpp"
-#include "compiler/driver/recording_options.hpp"
 #include "compiler/model/rename.hpp"
 #include "compiler/syntax/read.hpp"
 
@@ -26,6 +23,7 @@
 /// `--help` alike.
 namespace robdef {
 
+/// Those of the compiler up to `lsp`; the others are in cli/, which a compiler alone does not have.
 enum class Command {
   generate,
   check,
@@ -36,13 +34,13 @@ enum class Command {
   model,
   view,
   explain,
+  lsp,
   inspect,
   record,
   replay,
   bridge,
   ca,
   discover,
-  lsp,
   get,
   set,
   call,
@@ -50,6 +48,8 @@ enum class Command {
   connect,
   complete
 };
+
+struct CommandTable;
 
 /// What the user asked for. Which parts mean something depends on the command.
 struct Options {
@@ -80,10 +80,9 @@ struct Options {
   docs::Form docs_form = docs::Form::html;
   bool checks_only = false;  ///< format: says what would change, and writes nothing
   BreakingOptions breaking;
-  RecordingOptions recording;
-  DiscoverOptions discover;
-  LiveOptions live;
-  AuthorityOptions authority;
+  std::any more;  ///< what commands that are not the compiler's are told
+  /// Of the program; set by parse_options().
+  const CommandTable* table = nullptr;
 };
 
 /// Text that answers the command line itself: help or the version.
@@ -96,9 +95,10 @@ struct UsageError {
   std::string text;
 };
 
-/// Understands the arguments behind the program's name. `import_variable` is the value of
-/// ROBOTRACONTEUR_ROBDEF_PATH: folders separated by `:` or `;`.
+/// Understands the arguments behind the name of a program with these commands. `import_variable` is
+/// the value of ROBOTRACONTEUR_ROBDEF_PATH: folders separated by `:` or `;`.
 std::variant<Options, Answer, UsageError> parse_options(std::span<const std::string> arguments,
-                                                        std::string_view import_variable);
+                                                        std::string_view import_variable,
+                                                        const CommandTable& table);
 
 }  // namespace robdef

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/driver/run.hpp"
 
+#include <cstdlib>
 #include <exception>
+#include <iostream>
+#include <optional>
 #include <ostream>
 #include <variant>
 #include <vector>
 
-#include "compiler/driver/authority.hpp"
 #include "compiler/driver/breaking.hpp"
-#include "compiler/driver/discover.hpp"
 #include "compiler/driver/explain.hpp"
 #include "compiler/driver/format.hpp"
-#include "compiler/driver/live/commands.hpp"
 #include "compiler/driver/lsp.hpp"
-#include "compiler/driver/recordings.hpp"
+#include "compiler/syntax/read.hpp"
 
 namespace robdef {
 
@@ -39,8 +39,8 @@ ExitStatus explain(const Options& options, std::ostream& out, std::ostream& err)
 }
 
 ExitStatus answer(std::span<const std::string> arguments, std::string_view import_variable,
-                  std::ostream& out, std::ostream& err) {
-  const auto parsed = parse_options(arguments, import_variable);
+                  const CommandTable& table, std::ostream& out, std::ostream& err) {
+  const auto parsed = parse_options(arguments, import_variable, table);
   if (const auto* text = std::get_if<Answer>(&parsed)) {
     out << text->text;
     return exit_fine;
@@ -50,6 +50,9 @@ ExitStatus answer(std::span<const std::string> arguments, std::string_view impor
     return exit_usage;
   }
   const auto& options = std::get<Options>(parsed);
+  if (table.run != nullptr) {
+    if (const std::optional<ExitStatus> status = table.run(options, out, err)) return *status;
+  }
   switch (options.command) {
     case Command::explain:
       return explain(options, out, err);
@@ -57,32 +60,8 @@ ExitStatus answer(std::span<const std::string> arguments, std::string_view impor
       return format_files(options, out, err);
     case Command::breaking:
       return breaking_changes(options, out, err);
-    case Command::inspect:
-      return inspect(options, out, err);
-    case Command::record:
-      return record(options, out, err);
-    case Command::replay:
-      return replay(options, out, err);
-    case Command::bridge:
-      return bridge(options, out, err);
-    case Command::ca:
-      return run_authority(options, out, err);
     case Command::lsp:
       return serve_editor(options, out);
-    case Command::discover:
-      return discover(options, out, err);
-    case Command::get:
-    case Command::set:
-    case Command::call:
-    case Command::watch:
-    case Command::connect:
-    case Command::complete:
-      return run_live(options, out, err);
-    case Command::describe:
-      if (!options.inputs.empty() && is_url(options.inputs.front())) {
-        return run_live(options, out, err);
-      }
-      return compile(options, out, err);
     default:
       return compile(options, out, err);
   }
@@ -91,8 +70,8 @@ ExitStatus answer(std::span<const std::string> arguments, std::string_view impor
 }  // namespace
 
 ExitStatus run(std::span<const std::string> arguments, std::string_view import_variable,
-               std::ostream& out, std::ostream& err) {
-  const ExitStatus status = answer(arguments, import_variable, out, err);
+               const CommandTable& table, std::ostream& out, std::ostream& err) {
+  const ExitStatus status = answer(arguments, import_variable, table, out, err);
   if (out.flush()) return status;
   err << "robdef: standard output cannot be written\n";
   return status == exit_fine ? exit_errors : status;
@@ -109,6 +88,16 @@ ExitStatus guard(const std::function<ExitStatus()>& work, std::ostream& err) {
            "thrown\nPlease report it, with the definition and the command line.\n";
   }
   return exit_fault;
+}
+
+int run_main(int count, char** words, const CommandTable& table) {
+  const std::vector<std::string> arguments(words + 1, words + count);
+  const char* const variable = std::getenv(ast::search_path_variable);
+  return guard(
+      [&] {
+        return run(arguments, variable == nullptr ? "" : variable, table, std::cout, std::cerr);
+      },
+      std::cerr);
 }
 
 }  // namespace robdef

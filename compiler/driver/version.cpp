@@ -5,15 +5,12 @@
 #include <filesystem>
 #include <fstream>
 #include <ostream>
-#include <rr/error.hpp>
-#include <rr/printable.hpp>
 #include <utility>
 #include <vector>
 
+#include "compiler/diagnostics/excerpt.hpp"
 #include "compiler/diagnostics/render.hpp"
-#include "compiler/driver/live/commands.hpp"
-#include "compiler/driver/live/pulled_definitions.hpp"
-#include "compiler/driver/recorded_definitions.hpp"
+#include "compiler/driver/command_table.hpp"
 #include "compiler/driver/revision.hpp"
 #include "compiler/driver/version_error.hpp"
 #include "compiler/model/check.hpp"
@@ -27,20 +24,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class Kind { files, revision, recording, service };
+enum class Kind { files, revision, sent };
 
-bool is_recording(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string begin(recording_mark.size(), '\0');
-  return file.read(begin.data(), static_cast<std::streamsize>(begin.size())) &&
-         begin == recording_mark;
-}
+bool is_url(const std::string& text) { return text.find("://") != std::string::npos; }
 
-Kind kind_of(const std::string& what) {
+Kind kind_of(const std::string& what, const CommandTable& table) {
   std::error_code error;
   if (ast::is_standard_input(what) || fs::is_directory(what, error)) return Kind::files;
-  if (fs::exists(what, error)) return is_recording(what) ? Kind::recording : Kind::files;
-  if (is_url(what)) return Kind::service;
+  const bool may_be_sent = table.is_sent != nullptr && table.is_sent(what);
+  if (fs::exists(what, error)) return may_be_sent && !is_url(what) ? Kind::sent : Kind::files;
+  if (may_be_sent) return Kind::sent;
+  if (is_url(what))
+    throw VersionError("this robdef is the compiler alone, and connects to nothing");
   return what.find(':') == std::string::npos ? Kind::files : Kind::revision;
 }
 
@@ -92,7 +87,7 @@ class VersionReader {
   VersionReader(const std::string& what, const Options& options, Sources& sources,
                 std::ostream& err)
       : what_(what),
-        kind_(kind_of(what)),
+        kind_(kind_of(what, *options.table)),
         options_(options),
         sources_(sources),
         report_(is_sent() ? Origin::network : Origin::user),
@@ -100,8 +95,8 @@ class VersionReader {
 
   std::optional<Version> read() {
     const ast::Program program = read_program();
-    Version version{rr::printable(ast::shown_name(what_)),
-                    model::resolve(program, sources_, report_), is_sent(), kind_ == Kind::files};
+    Version version{printable(ast::shown_name(what_)), model::resolve(program, sources_, report_),
+                    is_sent(), kind_ == Kind::files};
     model::evaluate(version.model, report_);
     model::lay_out(version.model, report_);
     // A client takes what a service sends, whatever rules it breaks.
@@ -112,7 +107,7 @@ class VersionReader {
   }
 
  private:
-  [[nodiscard]] bool is_sent() const { return kind_ == Kind::recording || kind_ == Kind::service; }
+  [[nodiscard]] bool is_sent() const { return kind_ == Kind::sent; }
 
   ast::Program read_program() {
     switch (kind_) {
@@ -127,19 +122,17 @@ class VersionReader {
             },
             sources_, report_);
       }
-      case Kind::recording:
-        return read_sent(recorded_definitions(what_, err_), sources_, report_);
-      case Kind::service:
+      case Kind::sent:
         break;
     }
-    return read_sent(live::pulled_definitions(options_.live, what_), sources_, report_);
+    return read_sent(options_.table->read_sent(what_, options_, err_), sources_, report_);
   }
 
   void print_errors() const {
     for (const Diagnostic* const diagnostic : report_.sorted()) {
       if (diagnostic->severity() == Severity::error) err_ << to_text(*diagnostic, sources_) << '\n';
     }
-    err_ << "robdef: " << rr::printable(ast::shown_name(what_))
+    err_ << "robdef: " << printable(ast::shown_name(what_))
          << ": has errors, and is not compared\n";
   }
 
@@ -157,15 +150,10 @@ std::optional<Version> read_version(const std::string& what, const Options& opti
                                     Sources& sources, std::ostream& err) {
   try {
     return VersionReader(what, options, sources, err).read();
-  } catch (const rr::Error& error) {
-    err << "robdef: " << rr::printable(what) << ": "
-        << rr::printable(error.message(), longest_message) << '\n';
   } catch (const VersionError& error) {
-    err << "robdef: " << rr::printable(what) << ": " << rr::printable(error.what(), longest_message)
-        << '\n';
+    err << "robdef: " << printable(what) << ": " << printable(error.what()) << '\n';
   } catch (const fs::filesystem_error& error) {
-    err << "robdef: " << rr::printable(what) << ": cannot be read: " << error.code().message()
-        << '\n';
+    err << "robdef: " << printable(what) << ": cannot be read: " << error.code().message() << '\n';
   }
   return std::nullopt;
 }

@@ -6,10 +6,21 @@
 namespace robdef::lsp {
 
 bool Analysis::reads(const std::string& path) const {
-  for (std::uint32_t number = 0; number < sources.size(); ++number) {
-    if (sources[SourceId{number}].name() == path) return true;
+  for (; known_paths_ < sources.size(); ++known_paths_) {
+    paths_.insert(sources[SourceId{known_paths_}].name());
   }
-  return false;
+  return paths_.contains(path);
+}
+
+ast::EarlierFiles Analysis::files() && {
+  ast::EarlierFiles files;
+  index_.reset();
+  for (ast::ProgramFile& one : program.files) {
+    const Source& source = sources[one.file.source];
+    files.try_emplace(source.name(), ast::EarlierFile{source.text(), std::move(one.file)});
+  }
+  program.files.clear();
+  return files;
 }
 
 const Index& Analysis::index() const {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -14,6 +17,7 @@
 #include "compiler/lsp/text.hpp"
 #include "compiler/model/model.hpp"
 #include "compiler/syntax/ast.hpp"
+#include "compiler/syntax/read.hpp"
 
 namespace robdef::lsp {
 
@@ -34,12 +38,18 @@ class Analysis {
   [[nodiscard]] const std::string& path() const { return sources[SourceId{}].name(); }
   [[nodiscard]] bool reads(const std::string& path) const;
 
+  /// All that was read, for reading later versions; the end of this analysis. Texts are those of
+  /// `sources`.
+  [[nodiscard]] ast::EarlierFiles files() &&;
+
   /// What the file's names mean; made when it is first asked for.
   [[nodiscard]] const Index& index() const;
   /// The text of a source with its lines, likewise.
   [[nodiscard]] const Text& text(SourceId id = {}) const;
 
  private:
+  mutable std::unordered_set<std::string_view> paths_;  // of sources
+  mutable std::uint32_t known_paths_ = 0;               // of sources, in their order
   mutable std::unique_ptr<Index> index_;
   mutable std::map<SourceId, Text> texts_;
 };

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long an edit takes from the message to its diagnostics: lsp_edit_benchmark [LINES [EDITS]].
+// How long an edit takes from the message to its diagnostics, by the clock and of the own time of
+// this process, which a busy machine does not lengthen: lsp_edit_benchmark [LINES [EDITS]].
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -56,6 +58,7 @@ int main(int count, char** words) {
       {{"textDocument", {{"uri", "untitled:large"}, {"version", 1}, {"text", definition(lines)}}}});
   server.publish();
   std::vector<double> times;
+  std::vector<double> own;
   for (int edit = 0; edit < edits; ++edit) {
     // A letter is typed into the name of a field, and taken away.
     const int line = 3 + 20 * ((edit / 2 * 7919) % (lines / 20)) + 3;
@@ -65,6 +68,7 @@ int main(int count, char** words) {
                            {"end", {{"line", line}, {"character", end}}}}},
                          {"text", edit % 2 == 0 ? "x" : ""}};
     const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t own_begin = std::clock();
     notify("textDocument/didChange",
            {{"textDocument", {{"uri", "untitled:large"}, {"version", edit}}},
             {"contentChanges", Json::array({change})}});
@@ -72,8 +76,12 @@ int main(int count, char** words) {
     times.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
             .count());
+    own.push_back(1000.0 * static_cast<double>(std::clock() - own_begin) / CLOCKS_PER_SEC);
   }
   std::ranges::sort(times);
-  std::printf("%d lines, %d edits, %zu times diagnostics: p50 %.1f ms, p99 %.1f ms\n", lines, edits,
-              published, at(times, 0.5), at(times, 0.99));
+  std::ranges::sort(own);
+  std::printf(
+      "%d lines, %d edits, %zu times diagnostics: p50 %.1f ms, p99 %.1f ms; own time p50 %.1f ms, "
+      "p99 %.1f ms\n",
+      lines, edits, published, at(times, 0.5), at(times, 0.99), at(own, 0.5), at(own, 0.99));
 }

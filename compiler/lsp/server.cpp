@@ -98,10 +98,13 @@ void Server::notify(const std::string& method, const Json& params) {
     if (method == "workspace/didChangeWorkspaceFolders") did_change_folders(params);
     if (method == "initialized") watch_files();
   } catch (const std::exception& error) {
-    constexpr int error_message = 1;
-    send_(notification("window/logMessage",
-                       {{"type", error_message}, {"message", method + ": " + error.what()}}));
+    log(method + ": " + error.what());
   }
+}
+
+void Server::log(const std::string& message) {
+  constexpr int error_message = 1;
+  send_(notification("window/logMessage", {{"type", error_message}, {"message", message}}));
 }
 
 Json Server::result_of(const std::string& method, const Json& params) {
@@ -236,6 +239,9 @@ void Server::did_change(const Json& params) {
   for (const auto& [other, open] : workspace_.documents()) {
     if (workspace_.depends(open, path)) stale_.insert(other);
   }
+  // Whatever becomes of the changes: those before one that is refused stay.
+  workspace_.forget(path);
+  stale_.insert(path);
   for (const Json& change : part_of(params, "contentChanges")) {
     const std::string text = text_of(change, "text");
     if (change.contains("range")) {
@@ -244,8 +250,6 @@ void Server::did_change(const Json& params) {
       document->text = Text(text);
     }
   }
-  workspace_.forget(path);
-  stale_.insert(path);
 }
 
 void Server::did_close(const Json& params) {
@@ -291,13 +295,22 @@ void Server::publish() {
   for (const std::string& path : std::exchange(stale_, {})) {
     const auto open = workspace_.documents().find(path);
     if (open == workspace_.documents().end()) continue;
-    const auto analysis = workspace_.analysis(path);
-    if (!analysis) continue;
-    send_(notification("textDocument/publishDiagnostics",
-                       {{"uri", open->second.uri},
-                        {"version", open->second.version},
-                        {"diagnostics", diagnostics_of(*analysis, workspace_, encoding_)}}));
+    // One document with which the compiler has a fault leaves the others alone.
+    try {
+      publish(open->second);
+    } catch (const std::exception& error) {
+      log("diagnostics of " + open->second.uri + ": " + error.what());
+    }
   }
+}
+
+void Server::publish(const Document& document) {
+  const auto analysis = workspace_.analysis(document.path);
+  if (!analysis) return;
+  send_(notification("textDocument/publishDiagnostics",
+                     {{"uri", document.uri},
+                      {"version", document.version},
+                      {"diagnostics", diagnostics_of(*analysis, workspace_, encoding_)}}));
 }
 
 std::shared_ptr<const Analysis> Server::analysis_of(const Json& params) {

@@ -44,6 +44,9 @@ class Server {
   [[nodiscard]] Json capabilities() const;
   void watch_files();
 
+  void publish(const Document& document);
+  void log(const std::string& message);
+
   void did_open(const Json& params);
   void did_change(const Json& params);
   void did_close(const Json& params);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <future>
 #include <sstream>
+#include <stdexcept>
 #include <streambuf>
 #include <utility>
 
@@ -188,6 +189,49 @@ TEST(Server, RefusesWhatItCannotAnswer) {
   editor.notify("exit", nullptr);
   EXPECT_TRUE(editor.server.is_ended());
   EXPECT_EQ(editor.server.exit_code(), 0);
+}
+
+// A fault of the compiler with one document ends neither the server nor what others get.
+TEST(Server, GoesOnAfterAFaultWhilePublishing) {
+  std::vector<Json> sent;
+  bool fails = false;
+  Server server({}, [&](const Json& message) {
+    const std::string text = message.dump();
+    if (fails && text.find("publishDiagnostics") != text.npos &&
+        text.find("a.robdef") != text.npos) {
+      throw std::runtime_error("a fault");
+    }
+    sent.push_back(message);
+  });
+  server.take(
+      {{"jsonrpc", "2.0"}, {"id", 1}, {"method", "initialize"}, {"params", Json::object()}});
+  for (const char* uri : {"untitled:a.robdef", "untitled:b.robdef"}) {
+    server.take({{"jsonrpc", "2.0"},
+                 {"method", "textDocument/didOpen"},
+                 {"params", {{"textDocument", {{"uri", uri}, {"version", 1}, {"text", ""}}}}}});
+  }
+  sent.clear();
+  fails = true;
+  server.publish();
+  ASSERT_EQ(sent.size(), 2U);
+  EXPECT_EQ(sent[0]["method"], "window/logMessage");
+  EXPECT_EQ(sent[0]["params"]["message"], "diagnostics of untitled:a.robdef: a fault");
+  EXPECT_EQ(sent[1]["params"]["uri"], "untitled:b.robdef");
+  EXPECT_FALSE(server.has_to_publish());
+}
+
+// What is answered after a change that is refused is about the text as it is then.
+TEST(Server, KeepsTheChangesBeforeOneThatIsRefused) {
+  Editor editor;
+  editor.open("a.robdef", "service a\n");
+  EXPECT_THAT(editor.codes("a.robdef"), IsEmpty());
+  editor.notify("textDocument/didChange",
+                {{"textDocument", {{"uri", editor.uri("a.robdef")}, {"version", 2}}},
+                 {"contentChanges",
+                  Json::array({{{"range", to_json({{1, 0}, {1, 0}})}, {"text", "struct S\n"}},
+                               {{"range", to_json({{1, 0}, {0, 0}})}, {"text", "x"}}})}});
+  EXPECT_EQ(editor.sent.back()["method"], "window/logMessage");
+  EXPECT_THAT(editor.codes("a.robdef"), ElementsAre("R0119"));
 }
 
 TEST(Server, RefusesARequestThatIsCancelled) {

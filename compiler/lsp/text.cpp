@@ -61,11 +61,35 @@ std::string_view Text::line(std::uint32_t number) const {
   return std::string_view(text_).substr(begin, line_end(number) - begin);
 }
 
+template <class IsBefore>
+Text::Count Text::count_before(std::uint32_t number, Encoding encoding, IsBefore is_before) const {
+  constexpr std::uint32_t distance = 1024;
+  const std::uint32_t begin = line_starts_[number];
+  const std::uint32_t end = line_end(number);
+  if (end - begin <= distance) return {begin, 0};
+  const auto [found, is_new] = counts_.try_emplace({number, encoding});
+  std::vector<Count>& counts = found->second;
+  if (is_new) {
+    Count at{begin, 0};
+    while (at.offset < end) {
+      if (counts.empty() || at.offset - counts.back().offset >= distance) counts.push_back(at);
+      const std::size_t size =
+          character_size(std::string_view(text_).substr(at.offset, end - at.offset));
+      at.offset += static_cast<std::uint32_t>(size);
+      at.units += units_of(size, encoding);
+    }
+  }
+  const auto behind = std::partition_point(counts.begin(), counts.end(), is_before);
+  return *std::prev(behind);
+}
+
 std::uint32_t Text::offset(Place place, Encoding encoding) const {
   if (place.line >= line_count()) return static_cast<std::uint32_t>(text_.size());
-  std::string_view rest = line(place.line);
-  std::uint32_t at = line_starts_[place.line];
-  std::uint32_t left = place.character;
+  const Count from = count_before(
+      place.line, encoding, [&place](const Count& one) { return one.units <= place.character; });
+  std::uint32_t at = from.offset;
+  std::string_view rest = std::string_view(text_).substr(at, line_end(place.line) - at);
+  std::uint32_t left = place.character - from.units;
   while (!rest.empty()) {
     const std::size_t size = character_size(rest);
     const std::uint32_t units = units_of(size, encoding);
@@ -82,9 +106,12 @@ Place Text::place(std::uint32_t offset, Encoding encoding) const {
   if (behind == line_starts_.begin()) return {0, 0};
   const auto number = static_cast<std::uint32_t>(behind - line_starts_.begin() - 1);
   const std::uint32_t end = std::min(offset, line_end(number));
-  std::string_view rest = std::string_view(text_).substr(line_starts_[number]);
-  rest = rest.substr(0, end - line_starts_[number]);
-  std::uint32_t units = 0;
+  // Characters of UTF-8 are counted in what they are made of.
+  if (encoding == Encoding::utf8) return {number, end - line_starts_[number]};
+  const Count from =
+      count_before(number, encoding, [end](const Count& one) { return one.offset <= end; });
+  std::string_view rest = std::string_view(text_).substr(from.offset, end - from.offset);
+  std::uint32_t units = from.units;
   while (!rest.empty()) {
     const std::size_t size = character_size(rest);
     units += units_of(size, encoding);
@@ -100,6 +127,7 @@ void Text::replace(const Range& range, std::string_view replacement, Encoding en
   const std::uint32_t begin = offset(range.start, encoding);
   const std::uint32_t end = offset(range.end, encoding);
   text_.replace(begin, end - begin, replacement);
+  counts_.clear();
   line_starts_ = starts_of(text_);
 }
 

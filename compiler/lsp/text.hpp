@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/diagnostics/source.hpp"
@@ -40,10 +42,21 @@ class Text {
   void replace(const Range& range, std::string_view replacement, Encoding encoding);
 
  private:
+  /// A place within a line, and how many units are before it there.
+  struct Count {
+    std::uint32_t offset = 0;
+    std::uint32_t units = 0;
+  };
+
   [[nodiscard]] std::uint32_t line_end(std::uint32_t number) const;
+  /// Where to begin to count for a place in a line.
+  template <class IsBefore>
+  Count count_before(std::uint32_t number, Encoding encoding, IsBefore is_before) const;
 
   std::string text_;
   std::vector<std::uint32_t> line_starts_;
+  /// Of long lines, so that not all is counted for each place: some counts, in their order.
+  mutable std::map<std::pair<std::uint32_t, Encoding>, std::vector<Count>> counts_;
 };
 
 }  // namespace robdef::lsp

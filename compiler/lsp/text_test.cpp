@@ -62,6 +62,31 @@ TEST(Text, BytesThatAreNotUtf8CountAsOne) {
   EXPECT_EQ(text.place(3, u16), (Place{0, 3}));
 }
 
+// Of a long line not every place is counted from the begin of the line.
+TEST(Text, PlacesOfALongLineAreThoseOfItsCharacters) {
+  std::string line;
+  while (line.size() < 10'000) line += "abc\xC3\xA9\xE2\x82\xAC\xF0\x9F\xA4\x96\xFF";
+  Text text("first\n" + line + "\nlast");
+  for (const Encoding encoding : {u16, u8}) {
+    std::uint32_t units = 0;
+    for (std::uint32_t at = 0; at < line.size();) {
+      ASSERT_EQ(text.place(6 + at, encoding), (Place{1, units}));
+      ASSERT_EQ(text.offset({1, units}, encoding), 6 + at);
+      const char first = line[at];
+      const std::uint32_t size = first == '\xC3'   ? 2
+                                 : first == '\xE2' ? 3
+                                 : first == '\xF0' ? 4
+                                                   : 1;
+      at += size;
+      units += encoding == u8 ? size : size == 4 ? 2 : 1;
+    }
+    EXPECT_EQ(text.offset({1, units + 9}, encoding), 6 + line.size());
+  }
+  text.replace({{1, 0}, {1, 3}}, "", u16);
+  EXPECT_EQ(text.place(6 + 2000, u16).line, 1U);
+  EXPECT_EQ(text.offset(text.place(6 + 1997 - 1997 % 13, u16), u16), 6 + 1997 - 1997 % 13);
+}
+
 TEST(Text, ReplacesRanges) {
   Text text("one\r\ntwo\r\n");
   text.replace({{0, 3}, {1, 0}}, "", u16);

@@ -109,13 +109,15 @@ Document* Workspace::find(const std::string& uri) {
 }
 
 void Workspace::forget(const std::string& path) {
-  std::erase_if(analyses_, [&](const auto& entry) {
-    return entry.first == path || entry.second->misses_import || entry.second->reads(path);
-  });
+  for (auto& [document, known] : analyses_) {
+    if (known.is_outdated) continue;
+    known.is_outdated =
+        document == path || known.analysis->misses_import || known.analysis->reads(path);
+  }
 }
 
 void Workspace::forget_all() {
-  analyses_.clear();
+  for (auto& [document, known] : analyses_) known.is_outdated = true;
   projects_.clear();
 }
 
@@ -184,7 +186,8 @@ std::optional<ast::NamedText> Workspace::find_import(const std::string& service,
   return std::nullopt;
 }
 
-std::shared_ptr<Analysis> Workspace::analyse(const std::string& path, std::string text) {
+std::shared_ptr<Analysis> Workspace::analyse(const std::string& path, std::string text,
+                                             std::shared_ptr<Analysis> earlier) {
   auto made = std::make_shared<Analysis>();
   const LoadedProject* const project = project_of(path);
   if (project != nullptr) set_levels(made->report, {&project->project.levels});
@@ -193,7 +196,11 @@ std::shared_ptr<Analysis> Workspace::analyse(const std::string& path, std::strin
   };
   std::vector<ast::NamedText> texts;
   texts.push_back({path, std::move(text), false});
-  made->program = ast::read_texts(std::move(texts), find, made->sources, made->report);
+  // What has not changed moves, which nobody else may see.
+  ast::EarlierFiles files;
+  if (earlier && earlier.use_count() == 1) files = std::move(*earlier).files();
+  made->program =
+      ast::read_texts(std::move(texts), find, made->sources, made->report, std::move(files));
   made->model = model::resolve(made->program, made->sources, made->report);
   model::evaluate(made->model, made->report);
   model::lay_out(made->model, made->report);
@@ -211,17 +218,25 @@ bool Workspace::is_current(const Analysis& analysis) const {
 
 std::shared_ptr<const Analysis> Workspace::analysis(const std::string& path) {
   const auto known = analyses_.find(path);
-  if (known != analyses_.end() && is_current(*known->second)) return known->second;
+  std::shared_ptr<Analysis> earlier;
+  if (known != analyses_.end()) {
+    if (!known->second.is_outdated && is_current(*known->second.analysis)) {
+      return known->second.analysis;
+    }
+    earlier = std::move(known->second.analysis);
+    analyses_.erase(known);
+  }
   std::optional<std::string> text = text_of(path);
   if (!text) return nullptr;
-  std::shared_ptr<Analysis> made = analyse(path, *std::move(text));
-  if (documents_.contains(path)) analyses_[path] = made;
+  std::shared_ptr<Analysis> made = analyse(path, *std::move(text), std::move(earlier));
+  if (documents_.contains(path)) analyses_[path] = {made};
   return made;
 }
 
 bool Workspace::depends(const Document& document, const std::string& path) {
   const auto known = analyses_.find(document.path);
-  return known == analyses_.end() || known->second->misses_import || known->second->reads(path);
+  return known == analyses_.end() || known->second.is_outdated ||
+         known->second.analysis->misses_import || known->second.analysis->reads(path);
 }
 
 std::vector<std::string> Workspace::files() {

@@ -51,9 +51,9 @@ class Workspace {
   [[nodiscard]] const std::map<std::string, Document>& documents() const { return documents_; }
 
   /// The text of a document has changed, or a file on the disk: what was found with it is
-  /// forgotten.
+  /// out of date.
   void forget(const std::string& path);
-  /// A project file, or which files there are: everything is forgotten.
+  /// A project file, or which files there are: everything is out of date.
   void forget_all();
 
   /// Of an open document, else of a file; nullptr when it cannot be read.
@@ -79,7 +79,14 @@ class Workspace {
   };
 
   const LoadedProject* project_of(const std::string& path);
-  std::shared_ptr<Analysis> analyse(const std::string& path, std::string text);
+  /// What was found in an open document, or in an earlier version of it.
+  struct Known {
+    std::shared_ptr<Analysis> analysis;
+    bool is_outdated = false;
+  };
+
+  std::shared_ptr<Analysis> analyse(const std::string& path, std::string text,
+                                    std::shared_ptr<Analysis> earlier);
   std::optional<ast::NamedText> find_import(const std::string& service,
                                             const std::string& importing,
                                             const LoadedProject* project, Analysis& analysis);
@@ -88,10 +95,10 @@ class Workspace {
 
   const WorkspaceOptions options_;
   std::vector<std::string> folders_;
-  std::map<std::string, Document> documents_;                  // by path
-  std::map<std::string, std::string> open_paths_;              // by URI
-  std::map<std::string, LoadedProject> projects_;              // by path
-  std::map<std::string, std::shared_ptr<Analysis>> analyses_;  // of open documents
+  std::map<std::string, Document> documents_;      // by path
+  std::map<std::string, std::string> open_paths_;  // by URI
+  std::map<std::string, LoadedProject> projects_;  // by path
+  std::map<std::string, Known> analyses_;          // of open documents
 };
 
 /// The one spelling of the path of a URI; what is no file stands for itself.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <initializer_list>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/model/resolve.hpp"
@@ -39,20 +40,20 @@ bool knows_modifier(MemberKind kind, std::string_view modifier) {
 }
 
 Access access_of(MemberKind kind, const std::vector<Modifier>& modifiers) {
-  const auto has = [&](std::string_view name) {
-    return knows_modifier(kind, name) &&
-           std::any_of(modifiers.begin(), modifiers.end(), [name](const Modifier& modifier) {
-             return modifier.name == name && modifier.arguments.empty();
-           });
-  };
+  constexpr std::pair<std::string_view, bool Access::*> meanings[] = {
+      {"readonly", &Access::is_readonly},     {"writeonly", &Access::is_writeonly},
+      {"unreliable", &Access::is_unreliable}, {"nolock", &Access::is_nolock},
+      {"nolockread", &Access::is_nolockread}, {"perclient", &Access::is_perclient},
+      {"urgent", &Access::is_urgent}};
   Access access;
-  access.is_readonly = has("readonly");
-  access.is_writeonly = has("writeonly") && !access.is_readonly;
-  access.is_unreliable = has("unreliable");
-  access.is_nolock = has("nolock");
-  access.is_nolockread = has("nolockread") && !access.is_nolock;
-  access.is_perclient = has("perclient");
-  access.is_urgent = has("urgent");
+  for (const Modifier& modifier : modifiers) {
+    if (!modifier.arguments.empty() || !knows_modifier(kind, modifier.name)) continue;
+    for (const auto& [name, flag] : meanings) {
+      if (modifier.name == name) access.*flag = true;
+    }
+  }
+  if (access.is_readonly) access.is_writeonly = false;
+  if (access.is_nolock) access.is_nolockread = false;
   return access;
 }
 

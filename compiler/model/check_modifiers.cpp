@@ -138,9 +138,11 @@ void features_fit_the_version(const Definition& definition, Report& report) {
 
 void modifiers_are_known(const Definition& definition, Report& report) {
   each_modifier_list(definition, [&](const auto& modifiers, MemberKind kind, const auto&) {
-    const std::string of_kind =
-        " has no effect on " + (kind == MemberKind::property ? std::string("a property or field")
-                                                             : with_article(name_of(kind)));
+    const auto of_kind = [kind] {
+      return " has no effect on " + (kind == MemberKind::property
+                                         ? std::string("a property or field")
+                                         : with_article(name_of(kind)));
+    };
     for (const Modifier& modifier : modifiers) {
       if (knows_modifier(kind, modifier.name)) {
         if (modifier.arguments.empty()) continue;
@@ -149,7 +151,7 @@ void modifiers_are_known(const Definition& definition, Report& report) {
             .help("write plain " + quoted(modifier.name))
             .edit(modifier.span, modifier.name);
       } else if (is_language_word(modifier.name)) {
-        report.add(Code::R0610, modifier.span, quoted(modifier.name) + of_kind)
+        report.add(Code::R0610, modifier.span, quoted(modifier.name) + of_kind())
             .label("belongs to other kinds of members");
       } else {
         report_unknown(modifier, report);
@@ -160,6 +162,7 @@ void modifiers_are_known(const Definition& definition, Report& report) {
 
 void modifiers_do_not_contradict(const Definition& definition, Report& report) {
   each_modifier_list(definition, [&](const auto& modifiers, MemberKind kind, const auto&) {
+    if (modifiers.size() < 2) return;
     if (knows_modifier(kind, "readonly")) {
       report_contradiction(modifiers, "readonly", "writeonly", report);
     }

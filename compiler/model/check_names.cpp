@@ -2,9 +2,13 @@
 // Rules on names: V01, V02, V07, V08, V15, V23.
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "compiler/model/phrases.hpp"
 #include "compiler/model/rules.hpp"
@@ -54,6 +58,32 @@ struct First {
   std::string_view kind;
 };
 
+// The first of each name. A few names are compared with each other, many are looked up.
+class Firsts {
+ public:
+  // Nothing for a new name.
+  std::optional<First> add(std::string_view name, First first) {
+    if (few_.size() < most) {
+      for (const auto& [other, known] : few_) {
+        // Names that are numbered differ at their ends.
+        const bool may_be_same =
+            other.size() == name.size() && (name.empty() || other.back() == name.back());
+        if (may_be_same && other == name) return known;
+      }
+      few_.emplace_back(name, first);
+      return std::nullopt;
+    }
+    if (many_.empty()) many_.insert(few_.begin(), few_.end());
+    const auto [known, is_new] = many_.try_emplace(name, first);
+    return is_new ? std::nullopt : std::optional(known->second);
+  }
+
+ private:
+  static constexpr std::size_t most = 12;
+  std::vector<std::pair<std::string_view, First>> few_;
+  std::unordered_map<std::string_view, First> many_;
+};
+
 // Reports every name that has been seen before, of V07 and V23.
 class Uniqueness {
  public:
@@ -61,13 +91,13 @@ class Uniqueness {
       : code_(code), scope_(scope), report_(report) {}
 
   void add(std::string_view name, Span span, std::string_view kind) {
-    const auto [first, is_new] = firsts_.try_emplace(name, First{span, kind});
-    if (is_new) return;
+    const std::optional<First> first = firsts_.add(name, {span, kind});
+    if (!first) return;
     report_
         .add(code_, span,
              "the name " + quoted(name) + " occurs twice in this " + std::string(scope_))
         .label(with_article(kind) + " of the same name")
-        .also(first->second.span, "first declared here, as " + with_article(first->second.kind))
+        .also(first->span, "first declared here, as " + with_article(first->kind))
         .help("rename one of the two");
   }
 
@@ -75,7 +105,7 @@ class Uniqueness {
   Code code_;
   std::string_view scope_;
   Report& report_;
-  std::unordered_map<std::string_view, First> firsts_;
+  Firsts firsts_;
 };
 
 // The kind of a declaration.
@@ -175,16 +205,16 @@ void parameter_names_are_unique(const Definition& definition, Report& report) {
   for (const Object& object : definition.objects) {
     for (const Member& member : object.members) {
       if (member.parameters.size() < 2) continue;
-      std::unordered_map<std::string_view, Span> firsts;
+      Firsts firsts;
       for (const Parameter& parameter : member.parameters) {
-        const auto [first, is_new] = firsts.try_emplace(parameter.name, parameter.span);
-        if (is_new) continue;
+        const auto first = firsts.add(parameter.name, {parameter.span, "parameter"});
+        if (!first) continue;
         report
             .add(
                 Code::R0602, parameter.span,
                 "two parameters of " + quoted(member.name) + " are named " + quoted(parameter.name))
             .label("has the name of an earlier parameter")
-            .also(first->second, "first used here");
+            .also(first->span, "first used here");
       }
     }
   }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int model_version = 2;
 
-std::string_view name_of(ArrayForm form) {
+std::string_view word_for(ArrayForm form) {
   switch (form) {
     case ArrayForm::none:
       return "none";
@@ -35,7 +35,7 @@ std::string_view name_of(ArrayForm form) {
   return "";
 }
 
-std::string_view name_of(ContainerForm form) {
+std::string_view word_for(ContainerForm form) {
   switch (form) {
     case ContainerForm::none:
       return "none";
@@ -51,7 +51,7 @@ std::string_view name_of(ContainerForm form) {
   return "";
 }
 
-std::string_view name_of(GeneratorForm form) {
+std::string_view word_for(GeneratorForm form) {
   switch (form) {
     case GeneratorForm::none:
       return "none";
@@ -65,7 +65,7 @@ std::string_view name_of(GeneratorForm form) {
   return "";
 }
 
-std::string_view name_of(IndexForm form) {
+std::string_view word_for(IndexForm form) {
   switch (form) {
     case IndexForm::none:
       return "none";
@@ -77,7 +77,7 @@ std::string_view name_of(IndexForm form) {
   return "";
 }
 
-std::string_view name_of(ast::VersionSpelling spelling) {
+std::string_view word_for(ast::VersionSpelling spelling) {
   switch (spelling) {
     case ast::VersionSpelling::none:
       return "none";
@@ -213,7 +213,7 @@ void Dump::definition(const Definition& definition) {
     json_.member("is_import", definition.is_import);
   }
   json_.member("version", has_version ? text_of(definition.version) : std::string());
-  json_.member("version_spelling", name_of(definition.version_spelling));
+  json_.member("version_spelling", word_for(definition.version_spelling));
   place("version_span", definition.version_span);
   documentation(definition.documentation);
   place("span", definition.span);
@@ -373,9 +373,9 @@ void Dump::member(const Object& object, const Member& member) {
   name_only(member);
   json_.key("type");
   type(member.type);
-  json_.member("index", name_of(member.index));
+  json_.member("index", word_for(member.index));
   list("parameters", member.parameters, [this](const Parameter& one) { parameter(one); });
-  json_.member("generator", name_of(member.generator)).key("generator_parameter");
+  json_.member("generator", word_for(member.generator)).key("generator_parameter");
   if (member.generator_parameter) {
     parameter(*member.generator_parameter);
   } else {
@@ -423,9 +423,9 @@ void Dump::type(const Type& type) {
   base.container = ContainerForm::none;
   json_.begin_object().member("text", type.text());
   json_.member("kind", std::visit(BaseKind{}, type.base)).member("name", base.text());
-  json_.member("array", name_of(type.array)).key("dimensions").begin_array();
+  json_.member("array", word_for(type.array)).key("dimensions").begin_array();
   for (const std::uint32_t dimension : type.dimensions) json_.value(dimension);
-  json_.end_array().member("container", name_of(type.container));
+  json_.end_array().member("container", word_for(type.container));
   place("span", type.span);
   add([&](const auto& more) { more.type(json_, type); });
   json_.end_object();

@@ -142,6 +142,8 @@ std::vector<std::vector<Graph::Edge>> Graph::cycles() const {
   const std::size_t most = std::max<std::size_t>(1, most_work / cost);
 
   std::vector<std::vector<Edge>> found;
+  const std::vector<bool> is_any = cyclic();
+  if (std::find(is_any.begin(), is_any.end(), true) == is_any.end()) return found;
   Graph rest = *this;
   while (found.size() < most) {
     const std::vector<bool> is_cyclic = rest.cyclic();

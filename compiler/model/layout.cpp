@@ -169,7 +169,11 @@ void Layout::check_namedarray(const Record& namedarray) {
   }
 }
 
+// Empty if there is no record of the kind.
 Graph Layout::containment(RecordKind kind) const {
+  const bool has_any = std::any_of(records_.begin(), records_.end(),
+                                   [kind](const Record* record) { return record->kind == kind; });
+  if (!has_any) return Graph(0);
   Graph graph(records_.size());
   for (std::size_t i = 0; i < records_.size(); ++i) {
     if (records_[i]->kind != kind) continue;
@@ -206,7 +210,7 @@ void Layout::report_cycles(RecordKind kind) {
 
 void Layout::mark_recursive_structs() {
   const std::vector<bool> is_cyclic = containment(RecordKind::struct_).cyclic();
-  for (std::size_t i = 0; i < records_.size(); ++i) records_[i]->is_recursive = is_cyclic[i];
+  for (std::size_t i = 0; i < is_cyclic.size(); ++i) records_[i]->is_recursive = is_cyclic[i];
 }
 
 void Layout::compute_sizes() {

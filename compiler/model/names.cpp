@@ -247,7 +247,7 @@ bool Names::suggest_elsewhere(Diagnostic& diagnostic, const Scope& scope, std::s
 }
 
 void Names::suggest_near(Diagnostic& diagnostic, const Scope& scope, std::string_view name,
-                         const Wanted& wanted) const {
+                         const Wanted& wanted) {
   const bool any_type = wanted.noun == "type";
   for (const auto& [habit, word] : habits) {
     if (any_type && habit == name) {
@@ -257,15 +257,10 @@ void Names::suggest_near(Diagnostic& diagnostic, const Scope& scope, std::string
   }
   const std::size_t count = scope.alias_order.size() + scope.order.size() + built_in.size();
   if (!report_.may_suggest(count, comparisons(name))) return;
-  std::vector<std::string_view> candidates;
-  for (const std::string_view alias : scope.alias_order) {
-    if (wanted.fits(*scope.aliases.at(alias))) candidates.push_back(alias);
-  }
-  for (const std::string_view own : scope.order) {
-    if (wanted.fits(scope.declared.at(own))) candidates.push_back(own);
-  }
-  if (any_type) candidates.insert(candidates.end(), built_in.begin(), built_in.end());
-  const std::string_view near = nearest(name, candidates);
+  // A name that is gone is often written many times.
+  const auto [known, is_new] = near_.try_emplace({&scope, wanted.noun, std::string(name)});
+  if (is_new) known->second = near_name(scope, name, wanted);
+  const std::string_view near = known->second;
   if (near.empty()) return;
   const auto own = scope.declared.find(near);
   if (own != scope.declared.end()) {
@@ -274,6 +269,20 @@ void Names::suggest_near(Diagnostic& diagnostic, const Scope& scope, std::string
     diagnostic.help(quoted(near) + " is close");
   }
   diagnostic.edit(diagnostic.primary().span, std::string(near));
+}
+
+std::string_view Names::near_name(const Scope& scope, std::string_view name, const Wanted& wanted) {
+  std::vector<std::string_view> candidates;
+  for (const std::string_view alias : scope.alias_order) {
+    if (wanted.fits(*scope.aliases.at(alias))) candidates.push_back(alias);
+  }
+  for (const std::string_view own : scope.order) {
+    if (wanted.fits(scope.declared.at(own))) candidates.push_back(own);
+  }
+  if (wanted.noun == "type") {
+    candidates.insert(candidates.end(), built_in.begin(), built_in.end());
+  }
+  return nearest(name, candidates);
 }
 
 void Names::suggest_declared(Diagnostic& diagnostic, const Scope& scope, std::string_view name,

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <unordered_map>
 #include <vector>
 
@@ -73,7 +75,9 @@ class Names {
   bool suggest_elsewhere(Diagnostic& diagnostic, const Scope& scope, std::string_view name,
                          const Wanted& wanted) const;
   void suggest_near(Diagnostic& diagnostic, const Scope& scope, std::string_view name,
-                    const Wanted& wanted) const;
+                    const Wanted& wanted);
+  static std::string_view near_name(const Scope& scope, std::string_view name,
+                                    const Wanted& wanted);
   void suggest_declared(Diagnostic& diagnostic, const Scope& scope, std::string_view name,
                         bool (*fits)(const Named&)) const;
   void suggest_import(Diagnostic& diagnostic, const Scope& scope, std::string_view service) const;
@@ -84,6 +88,8 @@ class Names {
   const SyntaxErrors& syntax_errors_;
   Report& report_;
   std::unordered_map<const Definition*, Scope> scopes_;
+  /// What was close to unknown names, of a scope and as what they were wanted.
+  std::map<std::tuple<const Scope*, std::string_view, std::string>, std::string_view> near_;
   std::vector<const Definition*> order_;  ///< of `scopes_`, never iterated itself
 };
 

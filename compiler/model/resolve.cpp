@@ -25,6 +25,7 @@ namespace {
 
 std::vector<Modifier> resolved(const std::vector<ast::Modifier>& written) {
   std::vector<Modifier> modifiers;
+  modifiers.reserve(written.size());
   for (const ast::Modifier& one : written) {
     Modifier& modifier = modifiers.emplace_back();
     modifier.name = one.name.text;
@@ -257,6 +258,7 @@ void Resolver::resolve_reference(const ast::TypeRef& written, const Definition& 
 void Resolver::resolve_signature(const ast::Member& written, const Definition& user,
                                  Member& member) {
   if (written.type) member.type = value_type(*written.type, user);
+  member.parameters.reserve(written.parameters.size());
   for (const ast::Parameter& one : written.parameters) {
     member.parameters.push_back(parameter(one, user));
   }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "compiler/output/cpp_lines.hpp"
 #include "compiler/output/template_tokens.hpp"
 
 namespace robdef {
@@ -16,14 +17,14 @@ TemplateError::TemplateError(std::string_view name, std::size_t line, std::strin
 
 /// A bound piece: names have become places in views.
 struct Template::Node {
-  enum class Kind { text, value, item, section, first, last };
+  enum class Kind { text, value, item, section, first, last, lines, columns };
 
   Kind kind = Kind::text;
   bool is_inverted = false;                 ///< section, first, last
   std::string text = {};                    ///< of text
   std::size_t depth = 0;                    ///< value, item, section: which of the views in scope
   std::vector<const ViewField*> path = {};  ///< value, section: the field, and the fields around it
-  std::vector<Node> children = {};          ///< section, first, last
+  std::vector<Node> children = {};          ///< all but text, value, item
 };
 
 namespace {
@@ -144,7 +145,13 @@ class Binder {
     const Token& opened = *token++;
     Node node;
     bool has_scope = false;
-    if (opened.text == "@first" || opened.text == "@last") {
+    if (opened.text == "@c++" || opened.text == "@columns") {
+      // They work on whole lines.
+      if (!opened.is_alone || opened.kind == Token::Kind::inverted) {
+        fail(name, opened, "`{{#" + std::string(opened.text) + "}}` stands alone on its line");
+      }
+      node.kind = opened.text == "@c++" ? Node::Kind::lines : Node::Kind::columns;
+    } else if (opened.text == "@first" || opened.text == "@last") {
       node.kind = opened.text == "@first" ? Node::Kind::first : Node::Kind::last;
     } else {
       node = find(name, opened);
@@ -256,7 +263,29 @@ class Printer {
       case Node::Kind::section:
         print_section(node);
         return;
+      case Node::Kind::lines:
+        print_lines(node);
+        return;
+      case Node::Kind::columns:
+        print_columns(node);
+        return;
     }
+  }
+
+  void print_lines(const Node& node) {
+    const std::size_t begin = text_.size();
+    print(node.children);
+    const std::string_view printed = std::string_view(text_).substr(begin);
+    if (!cpp::has_long_line(printed)) return;
+    std::string lines = cpp::broken_lines(printed);
+    text_.replace(begin, text_.size() - begin, lines);
+  }
+
+  void print_columns(const Node& node) {
+    const std::size_t begin = text_.size();
+    print(node.children);
+    std::string columns = cpp::columns(std::string_view(text_).substr(begin));
+    text_.replace(begin, text_.size() - begin, columns);
   }
 
   void print_section(const Node& node) {

@@ -17,12 +17,16 @@
 ///                         whose names are then seen first; for each item of a list
 ///   {{^name}}...{{/name}} when there is none of that
 ///   {{#@first}} {{#@last}} (or ^) where in the innermost list this is
+///   {{#@c++}} alone on its line: lines of C++ inside that are longer than 100 columns are broken
+///                         (cpp_lines.hpp)
+///   {{#@columns}}         likewise: the lines inside, of one indentation, are put into columns
 ///   {{> partial}}         another template, with the blanks before it put before each of its lines
 ///   {{! comment}}
 ///
-/// Nothing is escaped. A section, partial or comment that is alone on its line takes the whole line
-/// with it. Names are looked up in the view in scope and then in those around it, once, when the
-/// template is bound to a view's type: an unknown name is found even where nothing is printed.
+/// Of more than two braces the last two begin a tag. Nothing is escaped. A section, partial or
+/// comment that is alone on its line takes the whole line with it. Names are looked up in the view
+/// in scope and then in those around it, once, when the template is bound to a view's type: an
+/// unknown name is found even where nothing is printed.
 namespace robdef {
 
 /// A fault in a template: ours, or the author's of a template folder.

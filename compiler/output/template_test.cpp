@@ -11,6 +11,8 @@
 namespace robdef {
 namespace {
 
+using testing::HasSubstr;
+
 struct NoteView {
   std::string text;
 };
@@ -109,6 +111,21 @@ TEST(Template, RefusesAnUnknownNameEvenWhereNothingIsPrinted) {
 TEST(Template, RefusesATruthOrListAsText) {
   EXPECT_EQ(message_of("\n\n{{items}}"), "test:3: `items` is no text");
   EXPECT_EQ(message_of("{{.}}"), "test:1: `{{.}}` outside a list of texts");
+}
+
+TEST(Template, OfThreeBracesTwoAreATag) {
+  EXPECT_EQ(render("{{{title}}}"), "{shop}");
+  EXPECT_EQ(render("{{{#items}}{{name}} {{/items}}};"), "{cup table };");
+}
+
+TEST(Template, BreaksLinesOfCpp) {
+  const std::string argument(60, 'a');
+  EXPECT_EQ(render("{{#@c++}}\n  {{title}}(" + argument + ", " + argument + ");\n{{/@c++}}\nend\n"),
+            "  shop(" + argument + ",\n       " + argument + ");\nend\n");
+  EXPECT_EQ(render("{{#@columns}}\n{{#items}}\n  {{name}},\n{{/items}}\n{{/@columns}}\n"),
+            "  cup,\n  table,\n");
+  EXPECT_THAT(message_of("a{{#@c++}}b{{/@c++}}"), HasSubstr("stands alone on its line"));
+  EXPECT_THAT(message_of("{{^@columns}}\nb\n{{/@columns}}\n"), HasSubstr("stands alone"));
 }
 
 TEST(Template, RefusesUnbalancedTags) {

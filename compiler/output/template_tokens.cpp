@@ -31,8 +31,10 @@ class Scanner {
 
   std::vector<Token> scan() {
     while (true) {
-      const std::size_t open = source_.find("{{", at_);
+      std::size_t open = source_.find("{{", at_);
       if (open == std::string_view::npos) break;
+      // Of more braces the last two: the others are text.
+      while (open + 2 < source_.size() && source_[open + 2] == '{') ++open;
       const std::size_t close = source_.find("}}", open);
       if (close == std::string_view::npos) {
         throw TemplateError(name_, line_ + lines_in(source_.substr(at_, open - at_)),

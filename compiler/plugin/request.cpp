@@ -18,18 +18,6 @@ namespace {
 
 constexpr int request_version = 1;
 
-/// A plug-in decides for itself what it cannot serve.
-constexpr Abilities everything{.properties = true,
-                               .functions = true,
-                               .generators = true,
-                               .events = true,
-                               .objrefs = true,
-                               .pipes = true,
-                               .callbacks = true,
-                               .wires = true,
-                               .memories = true,
-                               .contained_memories = true};
-
 /// What types are declared in: nothing for those of the language.
 struct DeclaredIn {
   const model::Definition* operator()(const model::Record* one) const { return one->definition; }
@@ -60,6 +48,7 @@ class Facts : public model::DumpAdditions {
   void member(JsonWriter& json, const model::Object& object,
               const model::Member& member) const override {
     MemberFacts facts;
+    // A plug-in decides for itself what it cannot serve.
     describe(facts, object, member, everything);
     facts.number = std::to_string(&member - object.members.data());
     const model::Object* const base = origin(object, member.name);

@@ -107,7 +107,7 @@ void FileParser::block_constant() {
         .label("too late in the block")
         .also(*block_.first_member, "has to come after it");
   }
-  auto constant = parser_.constant(line_, report());
+  auto constant = statement(&Earlier::constant, &LineParser::constant);
   if (!constant) return;
   auto& constants =
       block_.kind == BlockKind::object ? block_.object.constants : block_.record.constants;
@@ -129,14 +129,14 @@ void FileParser::implements() {
 void FileParser::field() {
   if (!block_.first_member) block_.first_member = first_word_span();
   if (!has_operand(Keyword::field)) return;
-  auto field = parser_.field(line_, report());
+  auto field = statement(&Earlier::field, &LineParser::field);
   if (field) block_.record.fields.push_back(std::move(*field));
 }
 
 void FileParser::member() {
   if (!block_.first_member) block_.first_member = first_word_span();
   if (!has_operand(keyword_of(first_word()))) return;
-  auto member = parser_.member(line_, report());
+  auto member = statement(&Earlier::member, &LineParser::member);
   if (member) block_.object.members.push_back(std::move(*member));
 }
 
@@ -158,7 +158,7 @@ void FileParser::enum_values() {
         .label("more values follow");
     block_.missing_comma.reset();
   }
-  auto values = parser_.enum_line(line_, report());
+  auto values = statement(&Earlier::enum_line, &LineParser::enum_line);
   if (!values) {
     block_.is_whole = false;
     return;
@@ -173,6 +173,7 @@ void FileParser::enum_values() {
 
 void FileParser::end() {
   const auto end = parser_.end(line_, report());
+  if (end && end->kind) is_plain_ = false;  // it depends on the version
   if (end && end->kind && keyword_of(end->kind->text) != block_.keyword) {
     report()
         .add(Code::R0120, end->kind->span,

@@ -12,13 +12,18 @@
 
 namespace robdef::syntax {
 
-FileParser::FileParser(const Source& source, SourceId id, Report& report)
+FileParser::FileParser(const Source& source, SourceId id, Report& report, ast::EarlierFile* earlier)
     : report_(report), reader_(source, id, report) {
   file_.source = id;
+  if (earlier != nullptr) earlier_.emplace(earlier->text, earlier->file, source.text(), id);
 }
 
 ast::File FileParser::run() {
-  while (reader_.next(is_in_block(), line_)) read_line();
+  first_remark_ = report_.remarks();
+  while (reader_.next(is_in_block(), line_)) {
+    read_line();
+    mark_plain_lines();
+  }
   finish();
   file_.written.lines = std::move(reader_.written());
   return std::move(file_);
@@ -30,7 +35,46 @@ std::string_view FileParser::first_word() const {
   return text.substr(0, static_cast<std::size_t>(end - text.begin()));
 }
 
+// Of the lines since the statement before, the one that was read included.
+void FileParser::mark_plain_lines() {
+  const bool is_plain = std::exchange(is_plain_, true) && report_.remarks() == first_remark_;
+  std::vector<ast::Line>& lines = reader_.written();
+  for (; first_line_ < lines.size(); ++first_line_) lines[first_line_].is_plain = is_plain;
+  first_remark_ = report_.remarks();
+}
+
+// A whole block that has not changed.
+bool FileParser::take_block() {
+  if (!earlier_ || is_in_block() || wants_service_ || line_.is_damaged()) return false;
+  const Keyword keyword = keyword_of(first_word());
+  const Part part = keyword == Keyword::enum_ ? Part::names : Part::types;
+  if (!is_block_keyword(keyword) || part_ > part) return false;
+  std::vector<ast::Line>& lines = reader_.written();
+  auto block = earlier_->block(lines.back().begin);
+  if (!block) return false;
+  enter(part);
+  expects_strays_ = false;
+  const std::size_t first = lines.size();
+  lines.pop_back();
+  for (ast::Line line : block->lines) {
+    const auto first_token = static_cast<std::uint32_t>(file_.written.tokens.size());
+    earlier_->append_tokens(line, block->shift, file_.written.tokens);
+    line.first_token = first_token;
+    line.begin = block->shift.moved(line.begin);
+    line.end = block->shift.moved(line.end);
+    lines.push_back(line);
+    // With what stands above.
+    if (lines.size() == first) mark_plain_lines();
+  }
+  first_line_ = lines.size();
+  reader_.skip_to(lines.back().end);
+  std::visit([&](auto& node) { node.documentation = line_.documentation(); }, block->declaration);
+  file_.declarations.push_back(std::move(block->declaration));
+  return true;
+}
+
 void FileParser::read_line() {
+  if (take_block()) return;
   if (cut_badly()) return;
   const Keyword keyword = keyword_of(first_word());
   block_.has_content = block_.has_content || keyword != Keyword::end;
@@ -62,7 +106,8 @@ void FileParser::keep_line(bool is_inside) {
   ast::Line& line = reader_.written().back();
   line.first_token = static_cast<std::uint32_t>(file_.written.tokens.size());
   line.is_in_block = is_inside;
-  line.token_count = parser_.take_tokens(line_, file_.written.tokens);
+  line.token_count = earlier_ ? earlier_->take_tokens(file_.written.tokens) : 0;
+  if (line.token_count == 0) line.token_count = parser_.take_tokens(line_, file_.written.tokens);
   if (line.token_count == 0) return;
   line.kind = ast::LineKind::statement;
   if (!line_.is_damaged()) return;
@@ -177,6 +222,7 @@ bool FileParser::forbids_options() const {
 
 // Inside and outside of blocks.
 void FileParser::option() {
+  is_plain_ = false;
   if (!has_operand(Keyword::option)) return;
   if (forbids_options()) {
     report()
@@ -258,7 +304,7 @@ void FileParser::exception() {
 void FileParser::constant() {
   is_too_late(Part::names, Code::R0116, "constants of a file stand before all types and objects");
   enter(Part::names);
-  auto constant = parser_.constant(line_, report());
+  auto constant = statement(&Earlier::constant, &LineParser::constant);
   if (constant) file_.declarations.emplace_back(std::move(*constant));
 }
 

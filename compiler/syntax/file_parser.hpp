@@ -10,8 +10,10 @@
 #include "compiler/diagnostics/report.hpp"
 #include "compiler/diagnostics/source.hpp"
 #include "compiler/syntax/ast.hpp"
+#include "compiler/syntax/earlier.hpp"
 #include "compiler/syntax/line_parser.hpp"
 #include "compiler/syntax/lines.hpp"
+#include "compiler/syntax/parse.hpp"
 #include "compiler/syntax/words.hpp"
 
 namespace robdef::syntax {
@@ -20,7 +22,10 @@ namespace robdef::syntax {
 /// belongs to which block. The form of a single line is LineParser's part.
 class FileParser {
  public:
-  FileParser(const Source& source, SourceId id, Report& report);
+  /// With an earlier version of the text and what was read of it, which is used up, only what has
+  /// changed is parsed.
+  FileParser(const Source& source, SourceId id, Report& report,
+             ast::EarlierFile* earlier = nullptr);
 
   /// May be called once.
   ast::File run();
@@ -46,6 +51,8 @@ class FileParser {
   };
 
   void read_line();
+  bool take_block();
+  void mark_plain_lines();
   void keep_line(bool is_inside);
   void leave_comments_outside();
   void read_outside(Keyword keyword);
@@ -83,6 +90,19 @@ class FileParser {
   void declare_version(ast::VersionSpelling spelling, const VersionLine& version);
   [[nodiscard]] bool forbids_options() const;
 
+  /// Reads the current line by a rule of the parser, unless it was read before.
+  template <class Node>
+  std::optional<Node> statement(std::optional<Node> (Earlier::*given)(const LogicalLine&,
+                                                                      const ast::Line&),
+                                std::optional<Node> (LineParser::*parsed)(const LogicalLine&,
+                                                                          Report&)) {
+    if (earlier_) {
+      auto known = ((*earlier_).*given)(line_, reader_.written().back());
+      if (known) return known;
+    }
+    return (parser_.*parsed)(line_, report());
+  }
+
   /// Where findings on the current line go: nowhere if its text is damaged, which is reported.
   Report& report() { return line_.is_damaged() ? discarded_ : report_; }
   [[nodiscard]] std::string_view first_word() const;
@@ -91,6 +111,7 @@ class FileParser {
 
   Report& report_;
   Report discarded_;
+  std::optional<Earlier> earlier_;
   LineReader reader_;
   LineParser parser_;
   LogicalLine line_;
@@ -101,6 +122,10 @@ class FileParser {
   std::vector<Span> options_;          ///< accepted ones: their keywords
   bool wants_service_ = true;          ///< until the first statement
   bool expects_strays_ = false;        ///< after a block without an end
+  // Of the statement that is being read.
+  std::size_t first_line_ = 0;    ///< the line behind the statement before
+  std::size_t first_remark_ = 0;  ///< remarks of the report until then
+  bool is_plain_ = true;          ///< what it means does not depend on the file
 };
 
 }  // namespace robdef::syntax

@@ -105,7 +105,7 @@ void LineReader::skip_physical_line() {
 
 // The line that ends where reading goes on.
 void LineReader::keep(ast::LineKind kind, bool is_in_block, std::uint32_t begin) {
-  written_.push_back({kind, is_in_block, begin, static_cast<std::uint32_t>(next_), 0, 0});
+  written_.push_back({kind, is_in_block, false, begin, static_cast<std::uint32_t>(next_), 0, 0});
 }
 
 LineReader::Physical LineReader::read_physical() {

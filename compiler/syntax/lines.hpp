@@ -66,6 +66,9 @@ class LineReader {
   /// becomes part of that statement's line.
   void skip_physical_line();
 
+  /// Goes on behind lines that are known; `offset` is where a line begins.
+  void skip_to(std::uint32_t offset) { next_ = offset; }
+
   /// All lines up to the statement that was read last, each statement as LineKind::unread.
   [[nodiscard]] std::vector<ast::Line>& written() { return written_; }
 

@@ -62,6 +62,9 @@ std::string_view name_of(LineKind kind);
 struct Line {
   LineKind kind{};
   bool is_in_block = false;  ///< between the first line of a block and its `end`
+  /// Means the same wherever it stands, and nothing was reported or allowed while it was read, nor
+  /// while the lines between it and the statement above were.
+  bool is_plain = false;
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
   std::uint32_t first_token = 0;

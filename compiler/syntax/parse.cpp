@@ -7,11 +7,22 @@
 
 namespace robdef::ast {
 
-File parse(const Source& source, SourceId id, Report& report) {
-  File file = syntax::FileParser(source, id, report).run();
+namespace {
+
+File with_doubts(File file, Report& report) {
   syntax::doubt_names(file, report);
   syntax::doubt_types(file, report);
   return file;
+}
+
+}  // namespace
+
+File parse(const Source& source, SourceId id, Report& report) {
+  return with_doubts(syntax::FileParser(source, id, report).run(), report);
+}
+
+File parse(const Source& source, SourceId id, Report& report, EarlierFile earlier) {
+  return with_doubts(syntax::FileParser(source, id, report, &earlier).run(), report);
 }
 
 }  // namespace robdef::ast

@@ -16,8 +16,6 @@
 #include <unordered_set>
 #include <utility>
 
-#include "compiler/syntax/parse.hpp"
-
 namespace robdef::ast {
 namespace {
 
@@ -62,8 +60,13 @@ std::size_t first_folder_end(std::string_view list) {
 class Loader {
  public:
   // Without `find` imports are files.
-  Loader(const SearchPath& path, Sources& sources, Report& report, FindImport find = {})
-      : path_(path), sources_(sources), report_(report), find_(std::move(find)) {}
+  Loader(const SearchPath& path, Sources& sources, Report& report, FindImport find = {},
+         EarlierFiles earlier = {})
+      : path_(path),
+        sources_(sources),
+        report_(report),
+        find_(std::move(find)),
+        earlier_(std::move(earlier)) {}
 
   Program run(const std::vector<std::string>& inputs) {
     for (const std::string& input : inputs) load_input(input);
@@ -74,7 +77,7 @@ class Loader {
   Program run(std::vector<NamedText> texts) {
     for (NamedText& text : texts) {
       const SourceId id = sources_.add(std::move(text.name), std::move(text.text));
-      add(parse(sources_[id], id, report_), text.is_import);
+      add(parsed(id), text.is_import);
     }
     if (find_) follow_imports();
     return std::move(program_);
@@ -88,12 +91,19 @@ class Loader {
     const SourceId id =
         sources_.add(shown_name(path), std::move(read.text).value_or(std::string()));
     if (is_read) {
-      add(parse(sources_[id], id, report_), false);
+      add(parsed(id), false);
     } else if (read.is_missing) {
       report_.add(Code::R0509, {id, 0, 0}, fmt::format("there is no file `{}`", path));
     } else {
       report_.add(Code::R0510, {id, 0, 0}, fmt::format("`{}` {}", path, read.failure));
     }
+  }
+
+  File parsed(SourceId id) {
+    const Source& source = sources_[id];
+    auto earlier = earlier_.extract(source.name());
+    return earlier ? parse(source, id, report_, std::move(earlier.mapped()))
+                   : parse(source, id, report_);
   }
 
   void add(File file, bool is_import) {
@@ -146,7 +156,7 @@ class Loader {
 
   bool add_import(const Name& name, const std::string& path, std::string text) {
     const SourceId id = sources_.add(path, std::move(text));
-    File file = parse(sources_[id], id, report_);
+    File file = parsed(id);
     // Without a name the file has a mistake of its own.
     if (file.service && file.service->text != name.text) {
       report_
@@ -172,6 +182,7 @@ class Loader {
   Sources& sources_;
   Report& report_;
   const FindImport find_;
+  EarlierFiles earlier_;
   Program program_;
   std::unordered_map<std::string, Span> services_;
   std::unordered_set<std::string> loaded_;
@@ -242,9 +253,9 @@ Program read_texts(std::vector<NamedText> texts, Sources& sources, Report& repor
 }
 
 Program read_texts(std::vector<NamedText> texts, const FindImport& find, Sources& sources,
-                   Report& report) {
+                   Report& report, EarlierFiles earlier) {
   const SearchPath nowhere;
-  return Loader(nowhere, sources, report, find).run(std::move(texts));
+  return Loader(nowhere, sources, report, find, std::move(earlier)).run(std::move(texts));
 }
 
 }  // namespace robdef::ast

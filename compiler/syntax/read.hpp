@@ -5,11 +5,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "compiler/diagnostics/report.hpp"
 #include "compiler/diagnostics/source.hpp"
 #include "compiler/syntax/ast.hpp"
+#include "compiler/syntax/parse.hpp"
 
 namespace robdef::ast {
 
@@ -72,9 +74,13 @@ Program read_texts(std::vector<NamedText> texts, Sources& sources, Report& repor
 using FindImport = std::function<std::optional<NamedText>(const std::string& service,
                                                           const std::string& importing)>;
 
+/// What was read of earlier versions of texts, by their names.
+using EarlierFiles = std::unordered_map<std::string, EarlierFile>;
+
 /// The same; imports that are not among the texts are those that `find` gives, over any number of
-/// steps. Reports R0512 as read() does.
+/// steps. Reports R0512 as read() does. What is among `earlier` is used up, and only what has
+/// changed is parsed.
 Program read_texts(std::vector<NamedText> texts, const FindImport& find, Sources& sources,
-                   Report& report);
+                   Report& report, EarlierFiles earlier = {});
 
 }  // namespace robdef::ast

@@ -32,6 +32,26 @@ bool contains(const std::array<std::string_view, size>& words, std::string_view 
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+constexpr std::size_t slots = 256;
+constexpr std::size_t slot_of(std::string_view word) {
+  return (static_cast<unsigned char>(word.front()) * 7U + word.size() * 31U) % slots;
+}
+
+// Which first letters and lengths words of a list have, because most words are none of them.
+template <std::size_t size>
+constexpr void mark(const std::array<std::string_view, size>& words,
+                    std::array<bool, slots>& marks) {
+  for (const std::string_view word : words) marks[slot_of(word)] = true;
+}
+
+constexpr std::array<bool, slots> reserved_slots = [] {
+  std::array<bool, slots> marks{};
+  mark(keywords, marks);
+  mark(number_types, marks);
+  mark(other_types, marks);
+  return marks;
+}();
+
 bool begins_in_any_case(std::string_view word, std::string_view lower_prefix) {
   const auto same = [](char lower, char c) { return lower == (c >= 'A' && c <= 'Z' ? c + 32 : c); };
   return word.size() >= lower_prefix.size() &&
@@ -69,10 +89,13 @@ std::string_view nearest_modifier(std::string_view word) {
 }
 
 bool is_reserved_word(std::string_view word) {
+  if (word.empty() || !reserved_slots[slot_of(word)]) return false;
   return contains(keywords, word) || is_built_in_type(word);
 }
 
 bool has_reserved_prefix(std::string_view word) {
+  constexpr std::string_view first_letters = "gsarGSAR";
+  if (word.empty() || first_letters.find(word.front()) == first_letters.npos) return false;
   for (const std::string_view prefix : {"get_", "set_", "async_", "rr", "robotraconteur"}) {
     if (begins_in_any_case(word, prefix)) return true;
   }

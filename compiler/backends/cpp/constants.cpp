@@ -6,9 +6,9 @@
 #include <variant>
 #include <vector>
 
-#include "compiler/backends/cpp/layout.hpp"
 #include "compiler/backends/literals.hpp"
 #include "compiler/backends/words.hpp"
+#include "compiler/output/cpp_layout.hpp"
 #include "compiler/output/escape.hpp"
 
 namespace robdef::cpp {

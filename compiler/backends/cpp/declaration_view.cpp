@@ -3,10 +3,10 @@
 #include <utility>
 
 #include "compiler/backends/cpp/constants.hpp"
-#include "compiler/backends/cpp/layout.hpp"
 #include "compiler/backends/cpp/view_parts.hpp"
 #include "compiler/backends/literals.hpp"
 #include "compiler/backends/words.hpp"
+#include "compiler/output/cpp_layout.hpp"
 
 namespace robdef::cpp {
 namespace {
@@ -26,18 +26,6 @@ FieldView make_field(const model::Field& field, const model::Record& record,
   view.robdef_type = field.type.text();
   view.declaration = variable(type, view.name, 2);
   return view;
-}
-
-std::vector<std::string> field_rows(const RecordView& view) {
-  std::vector<std::string> items;
-  for (const FieldView& field : view.fields) {
-    items.push_back(list({.before = "::rr::field<" + field.descriptor + ">(",
-                          .items = {"\"" + field.wire_name + "\"",
-                                    "offsetof(" + view.name + ", " + field.name + ")"},
-                          .after = "),"},
-                         4));
-  }
-  return table_rows(items, 4);
 }
 
 std::string record_table(const RecordView& view) {
@@ -151,7 +139,7 @@ RecordView make_record(const model::Record& record, const Context& context) {
   const RecordNames names(record, context.report);
   RecordView view;
   describe(view, record);
-  view.name = identifier(code_name(record));
+  view.name = view.class_name = identifier(code_name(record));
   view.qualified = qualified(*record.definition, view.name);
   view.doc = doc_lines(record.documentation, 0);
   if (view.is_namedarray) view.number_type = context.types.number(record.number);
@@ -161,7 +149,6 @@ RecordView make_record(const model::Record& record, const Context& context) {
   }
   view.table = table_name("type", record.name);
   view.field_table = table_name("fields", record.name);
-  view.field_rows = field_rows(view);
   view.table_definition = record_table(view);
   view.specialization = specialization(view, namespace_of(record.definition->name));
   context.types.include("<rr/type.hpp>");

@@ -7,12 +7,12 @@
 #include <variant>
 
 #include "compiler/backends/cpp/backend.hpp"
-#include "compiler/backends/cpp/layout.hpp"
 #include "compiler/backends/cpp/member_lines.hpp"
 #include "compiler/backends/cpp/view_parts.hpp"
 #include "compiler/backends/implements.hpp"
 #include "compiler/backends/member_facts.hpp"
 #include "compiler/backends/words.hpp"
+#include "compiler/output/cpp_layout.hpp"
 
 namespace robdef::cpp {
 namespace {
@@ -33,10 +33,7 @@ std::string access_text(const model::Access& access) {
 class MemberMaker {
  public:
   MemberMaker(const Object& object, const Context& context)
-      : object_(object),
-        context_(context),
-        hidden_(names_inside(object)),
-        member_table_(table_name("members", object.name)) {}
+      : object_(object), context_(context), hidden_(names_inside(object)) {}
 
   void make(ObjectView& object) {
     std::vector<MemberView>& views = object.members;
@@ -45,7 +42,6 @@ class MemberMaker {
       MemberView view = common(member);
       if (view.is_served) {
         view.number = std::to_string(served++);
-        view.entry = member_table_ + "[" + view.number + "]";
       } else {
         report_unserved(member, "C++", context_.report);
       }
@@ -53,7 +49,6 @@ class MemberMaker {
       if (view.is_served) make_served(view, member);
       views.push_back(std::move(view));
     }
-    object.member_rows = table_rows(rows_, 4);
   }
 
  private:
@@ -78,17 +73,22 @@ class MemberMaker {
     std::vector<std::string> names;
     for (const ParameterView& parameter : view.parameters) names.push_back(parameter.name);
     view.arguments = join(names, ", ");
-    view.token = context_.names.local("Token", taken);
-    view.getter = "get_" + code_name(member);
-    view.setter = "set_" + code_name(member);
+    constexpr std::string_view token = "Token";
+    view.type_mark = context_.names.local(token, taken).substr(token.size());
+    view.code = code_name(member);
+    view.getter = "get_" + view.code;
+    view.setter = "set_" + view.code;
     if (member.kind == MemberKind::objref) {
       make_reference(view, member);
     } else if (member.kind != MemberKind::event) {
       const CppType type = spell(member.type);
       view.type = type.text;
       view.passed = type.passed();
+      view.is_by_value = type.is_by_value;
       view.descriptor = type.descriptor;
-      view.value = context_.names.local("value", taken);
+      constexpr std::string_view value = "value";
+      view.value = context_.names.local(value, taken);
+      view.value_mark = view.value.substr(value.size());
       if (view.has_result) view.local = variable(type, view.value, 8);
       if (view.is_property) make_stored(view, type);
       if (view.is_memory) make_item(view, member);
@@ -102,6 +102,7 @@ class MemberMaker {
     describe(view, parameter, context_.names.local(code_name(parameter), taken));
     view.type = type.text;
     view.passed = type.passed();
+    view.is_by_value = type.is_by_value;
     view.local = variable(type, view.name, 6);
     view.descriptor = type.descriptor;
     return view;
@@ -153,39 +154,13 @@ class MemberMaker {
   CppType spell(const Type& type) { return context_.types.spell(type, {.hidden = &hidden_}); }
 
   void make_served(MemberView& view, const Member& member) {
-    const std::string tables = table_name("parameters", object_.name);
-    rows_.push_back(member_row(view, tables, access_text(member.access)));
-    if (view.has_parameters) view.parameter_table = parameter_table(view);
-    lay_out(view, member);
-  }
-
-  void lay_out(MemberView& view, const Member& member) {
-    switch (member.kind) {
-      case MemberKind::property:
-        return lay_out_property(view, context_.names);
-      case MemberKind::function:
-        return view.is_generator ? lay_out_generator(view, context_.names)
-                                 : lay_out_function(view, context_.names);
-      case MemberKind::event:
-        return lay_out_event(view);
-      case MemberKind::objref:
-        return lay_out_objref(view, context_.names, stub_name(object_));
-      case MemberKind::pipe:
-        return lay_out_pipe(view);
-      case MemberKind::callback:
-        return lay_out_callback(view, context_.names);
-      case MemberKind::wire:
-        return lay_out_wire(view);
-      case MemberKind::memory:
-        return lay_out_memory(view);
-    }
+    make_row(view, access_text(member.access));
+    make_forms(view, context_.names);
   }
 
   const Object& object_;
   const Context& context_;
   std::set<std::string> hidden_;
-  std::string member_table_;
-  std::vector<std::string> rows_;  // of that table
 };
 
 }  // namespace

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "compiler/backends/cpp/layout.hpp"
 #include "compiler/backends/cpp/view_parts.hpp"
 #include "compiler/backends/words.hpp"
+#include "compiler/output/cpp_layout.hpp"
 
 namespace robdef::cpp {
 namespace {
@@ -76,7 +76,7 @@ void make_names(ObjectView& view, const model::Object& object) {
   view.wire_name = object.qualified_name();
   view.short_name = object.name;
   view.name = identifier(code_name(object));
-  view.stub = stub_name(object);
+  view.stub = view.stub_class = stub_name(object);
   view.skeleton = skeleton_name(object);
   view.default_class = default_name(object);
   view.qualified_stub = qualified(*object.definition, view.stub);
@@ -100,44 +100,10 @@ void make_counts(ObjectView& view) {
   view.has_calls =
       has([](const MemberView& member) { return member.is_property || member.is_function; });
   view.has_objrefs = has([](const MemberView& member) { return member.is_objref; });
+  view.uses_index = has([](const MemberView& member) { return member.has_index; });
   view.has_memories = has([](const MemberView& member) { return member.is_memory; });
   view.member_count = std::to_string(std::ranges::count_if(
       view.members, [](const MemberView& member) { return member.is_served; }));
-}
-
-void make_dispatch(ObjectView& view) {
-  const auto type_of = [&](const std::string& class_name) {
-    return definition({.before = "const ",
-                       .result = "::rr::ObjectType&",
-                       .name = class_name + "::rr_object_type",
-                       .parameters = {},
-                       .after = " const"},
-                      "return " + view.table + ";", 0);
-  };
-  view.stub_type = type_of(view.stub);
-  view.skeleton_type = type_of(view.skeleton);
-  const std::string member = "::std::size_t";
-  const auto named = [](const std::string& type, const char* name, bool is_used) {
-    return is_used ? type + " " + name : type;
-  };
-  view.dispatch_head =
-      opening({.result = "void",
-               .name = view.skeleton + "::rr_dispatch",
-               .parameters = {named(member, "rr_member", view.has_calls),
-                              named("::rr::Request&", "rr_request", view.has_calls)}},
-              0);
-  const bool uses_index = std::ranges::any_of(
-      view.members, [](const MemberView& one) { return one.is_served && one.has_index; });
-  view.child_head =
-      opening({.result = "::std::shared_ptr<::rr::Skeleton>",
-               .name = view.skeleton + "::rr_child",
-               .parameters = {named(member, "rr_member", view.has_objrefs),
-                              named("const ::rr::ObjectIndex&", "rr_index", uses_index)}},
-              0);
-  view.memory_head = opening({.result = "::std::shared_ptr<::rr::MemorySource>",
-                              .name = view.skeleton + "::rr_memory",
-                              .parameters = {member + " rr_member"}},
-                             0);
 }
 
 }  // namespace
@@ -152,7 +118,6 @@ ObjectView make_object(const model::Object& object, const Context& context) {
   make_members(view, object, context);
   make_counts(view);
   make_docs(view, object);
-  make_dispatch(view);
   return view;
 }
 

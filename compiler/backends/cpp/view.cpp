@@ -8,11 +8,11 @@
 #include <utility>
 #include <variant>
 
-#include "compiler/backends/cpp/layout.hpp"
 #include "compiler/backends/cpp/literal_text.hpp"
 #include "compiler/backends/cpp/order.hpp"
 #include "compiler/backends/cpp/view_parts.hpp"
 #include "compiler/backends/words.hpp"
+#include "compiler/output/cpp_layout.hpp"
 #include "compiler/output/prose.hpp"
 
 namespace robdef::cpp {

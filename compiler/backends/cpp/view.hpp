@@ -69,22 +69,23 @@ struct FieldView {
 /// A struct, pod or namedarray.
 struct RecordView : RecordFacts {
   std::string name;
+  std::string class_name;  ///< the same, where a field has a `name`
   std::string qualified;
   std::vector<std::string> doc;
   std::string number_type;  ///< namedarray: of its numbers, `double`
   std::vector<ConstantView> constants;
   std::vector<FieldView> fields;
-  std::string table;                    ///< name of its RecordType
-  std::string field_table;              ///< name of the array of its fields
-  std::vector<std::string> field_rows;  ///< what the array holds
-  std::string table_definition;         ///< of the RecordType
-  std::string specialization;           ///< of rr::type_of
+  std::string table;             ///< name of its RecordType
+  std::string field_table;       ///< name of the array of its fields
+  std::string table_definition;  ///< of the RecordType
+  std::string specialization;    ///< of rr::type_of
 };
 
 struct ParameterView : ParameterFacts {
   std::string type;
-  std::string passed;  ///< `double`, `const ::std::string&`
-  std::string local;   ///< a variable for it: `double pan = 0;`
+  std::string passed;        ///< `double`, `const ::std::string&`
+  bool is_by_value = false;  ///< passed as it is, and not as a reference to a constant
+  std::string local;         ///< a variable for it: `double pan = 0;`
   std::string descriptor;
 };
 
@@ -92,20 +93,19 @@ struct ParameterView : ParameterFacts {
 struct MemberView : MemberFacts {
   std::string name;
   std::vector<std::string> doc;
-  std::string entry;  ///< the table's entry: `rr_members_PanTilt[3]`
 
   std::string type;    ///< property, pipe, wire, memory: the value; function, callback: the result
   std::string passed;  ///< the value as a parameter
-  std::string descriptor;  ///< what rr::type_of is asked for
-  std::string value;       ///< a name for a variable that holds it
-  std::string local;       ///< the variable: `double value = 0;`
-  std::string item;        ///< memory: one of its items, `double`
+  bool is_by_value = false;  ///< which is a `type` then, otherwise a reference to one
+  std::string value;         ///< a name for a variable that holds it
+  std::string descriptor;    ///< what rr::type_of is asked for
+  std::string local;         ///< the variable: `double value = 0;`
+  std::string item;          ///< memory: one of its items, `double`
   std::string handle;  ///< what the stub's method gives: `::rr::Pipe<Frame>`, `::rr::Event<double>`
   std::string served;  ///< what the skeleton's gives: `::rr::PipeServer<Frame>`
   std::string stored;  ///< property, memory: what a Default class keeps
   std::vector<ParameterView> parameters;
   std::string arguments;                             ///< names of the parameters: `pan, tilt`
-  std::string parameter_table;                       ///< its definition; empty without parameters
   bool yields = false;                               ///< generator: each step returns a `type`
   std::optional<ParameterView> generator_parameter;  ///< what each step takes
 
@@ -114,40 +114,25 @@ struct MemberView : MemberFacts {
   std::string qualified_stub;
   std::string qualified_skeleton;
 
+  std::string code;    ///< property, objref: what `get_` and `set_` stand before
   std::string getter;  ///< `get_pan`: properties and objrefs
   std::string setter;  ///< `set_pan`
-  std::string token;   ///< name of the template parameter of async_ forms
 
-  // Laid out, for the inside of a class.
-  std::string stub_get;
-  std::string stub_set;
-  std::string stub_call;             ///< function
-  std::string stub_handle;           ///< event, pipe, callback, wire, memory
-  std::string stub_find;             ///< objref: declared in the class
-  std::string stub_find_definition;  ///< objref: outside of it
-  // Asynchronous forms take the terms of the call; the plain ones do not.
-  std::string async_get;
-  std::string plain_async_get;
-  std::string async_set;
-  std::string plain_async_set;
-  std::string async_call;
-  std::string plain_async_call;  ///< function, callback
-  std::string async_find;
-  std::string plain_async_find;
-  std::string skeleton_get;
-  std::string skeleton_set;
-  std::string skeleton_handle;  ///< pipe, wire, memory
-  std::string skeleton_call;    ///< function, callback
-  std::string skeleton_async;   ///< function without generators, callback
-  std::string skeleton_fire;
-  std::string skeleton_find;
-  std::string dispatch_read;  ///< function: reads its parameters in rr_dispatch
-  std::string dispatch_call;  ///< function: the call there
-  std::string dispatch_find;  ///< objref: the case in rr_child; memory: in rr_memory
-  std::string default_get;
-  std::string default_set;
-  std::string default_call;
-  std::string default_find;  ///< objref, memory
+  // What is behind the names of further parameters where a parameter of the member has the name:
+  // usually nothing.
+  std::string token_mark;  ///< `token`, of a completion token
+  std::string type_mark;   ///< `Token`, its type
+  std::string options_mark;
+  std::string answer_mark;  ///< function: `answer`, of what takes the result
+  std::string client_mark;  ///< callback: `client`, of the endpoint that is called
+  std::string index_mark;   ///< objref
+  std::string value_mark;
+  std::string described;      ///< types that its row in the table is given: `double, void`
+  std::string access;         ///< what the row says of modifiers: `::rr::readonly | ::rr::nolock`
+  bool has_no_table = false;  ///< it has none of parameters, but modifiers behind it
+  std::string called;         ///< function: how it is called where a parameter may have its name
+  std::string taken;          ///< generator: the type that each step takes, or `void`
+  bool has_handle = false;    ///< event, pipe, callback, wire, memory
 };
 
 struct BaseView {
@@ -164,6 +149,7 @@ struct ObjectView {
   std::vector<std::string> skeleton_doc;
   std::vector<std::string> default_doc;
   std::string stub;
+  std::string stub_class;  ///< the same, where a member has a `stub`
   std::string skeleton;
   std::string default_class;
   std::string qualified_stub;
@@ -182,19 +168,14 @@ struct ObjectView {
   bool has_parameters = false;  ///< one of them has parameters
   bool has_calls = false;       ///< properties or functions
   bool has_objrefs = false;
+  bool uses_index = false;  ///< one of them has an index
   bool has_memories = false;
   bool has_stored = false;  ///< the Default class stores something
   std::string member_count;
-  std::string table;                     ///< name of its ObjectType
-  std::string member_table;              ///< of the array of its members
-  std::vector<std::string> member_rows;  ///< what the array holds
+  std::string table;         ///< name of its ObjectType
+  std::string member_table;  ///< of the array of its members
   std::string implements_table;
   std::string parameter_tables;  ///< of the struct with its parameters' tables
-  std::string stub_type;         ///< definitions of rr_object_type
-  std::string skeleton_type;
-  std::string dispatch_head;
-  std::string child_head;
-  std::string memory_head;
 };
 
 /// A declaration in the order of the generated header: one of these is there.

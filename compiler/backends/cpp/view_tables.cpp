@@ -13,26 +13,21 @@ ROBDEF_VIEW_TYPE(EnumValueView, wire_name, name, value, doc);
 ROBDEF_VIEW_TYPE(EnumView, wire_name, name, qualified, doc, has_values, values);
 ROBDEF_VIEW_TYPE(ExceptionView, wire_name, name, qualified, doc, constructor, parameter, error);
 ROBDEF_VIEW_TYPE(FieldView, wire_name, name, doc, type, descriptor, robdef_type, declaration);
-ROBDEF_VIEW_TYPE(RecordView, name, qualified, doc, number_type, constants, fields, table,
-                 field_table, field_rows, table_definition, specialization);
-ROBDEF_VIEW_TYPE(ParameterView, type, passed, local, descriptor);
-ROBDEF_VIEW_TYPE(MemberView, name, doc, entry, type, passed, descriptor, value, local, item, handle,
-                 served, stored, parameters, arguments, parameter_table, yields,
-                 generator_parameter, stub, skeleton, qualified_stub, qualified_skeleton, getter,
-                 setter, token, stub_get, stub_set, stub_call, stub_handle, stub_find,
-                 stub_find_definition, async_get, plain_async_get, async_set, plain_async_set,
-                 async_call, plain_async_call, async_find, plain_async_find, skeleton_get,
-                 skeleton_set, skeleton_handle, skeleton_call, skeleton_async, skeleton_fire,
-                 skeleton_find, dispatch_read, dispatch_call, dispatch_find, default_get,
-                 default_set, default_call, default_find);
+ROBDEF_VIEW_TYPE(RecordView, name, class_name, qualified, doc, number_type, constants, fields,
+                 table, field_table, table_definition, specialization);
+ROBDEF_VIEW_TYPE(ParameterView, type, passed, local, descriptor, is_by_value);
+ROBDEF_VIEW_TYPE(MemberView, name, doc, type, descriptor, local, item, handle, served, stored,
+                 parameters, arguments, yields, generator_parameter, stub, skeleton, qualified_stub,
+                 qualified_skeleton, called, taken, has_handle, described, access, has_no_table,
+                 is_by_value, passed, value, code, getter, setter, token_mark, type_mark,
+                 options_mark, answer_mark, client_mark, index_mark, value_mark);
 ROBDEF_VIEW_TYPE(BaseView, wire_name, stub, skeleton);
 ROBDEF_VIEW_TYPE(ObjectView, wire_name, short_name, name, stub_doc, skeleton_doc, default_doc, stub,
-                 skeleton, default_class, qualified_stub, qualified_skeleton, qualified_default,
-                 stub_head, skeleton_head, default_head, has_default, implements, has_implements,
-                 constants, has_constants, members, has_members, has_parameters, has_calls,
-                 has_objrefs, has_memories, has_stored, member_count, table, member_table,
-                 member_rows, implements_table, parameter_tables, stub_type, skeleton_type,
-                 dispatch_head, child_head, memory_head);
+                 stub_class, skeleton, default_class, qualified_stub, qualified_skeleton,
+                 qualified_default, stub_head, skeleton_head, default_head, has_default, implements,
+                 has_implements, constants, has_constants, members, has_members, has_parameters,
+                 has_calls, has_objrefs, uses_index, has_memories, has_stored, member_count, table,
+                 member_table, implements_table, parameter_tables);
 ROBDEF_VIEW_TYPE(DeclarationView, constant, exception, enumeration, record, object, ends_group,
                  is_early);
 ROBDEF_VIEW_TYPE(ForwardView, declaration);

@@ -5,16 +5,8 @@
 
 namespace robdef::csharp {
 
-/// A memory in a list or map means nothing on the wire.
-inline constexpr Abilities runtime_abilities{.properties = true,
-                                             .functions = true,
-                                             .generators = true,
-                                             .events = true,
-                                             .objrefs = true,
-                                             .pipes = true,
-                                             .callbacks = true,
-                                             .wires = true,
-                                             .memories = true};
+/// Everything that has a meaning on the wire.
+inline constexpr Abilities runtime_abilities = all_members;
 
 /// C# for .NET 8 and later on Robdef.Runtime (README.md in this folder says what is generated).
 class CSharpBackend final : public Backend {

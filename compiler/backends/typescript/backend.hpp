@@ -5,16 +5,8 @@
 
 namespace robdef::typescript {
 
-/// A memory in a list or map means nothing on the wire.
-inline constexpr Abilities runtime_abilities{.properties = true,
-                                             .functions = true,
-                                             .generators = true,
-                                             .events = true,
-                                             .objrefs = true,
-                                             .pipes = true,
-                                             .callbacks = true,
-                                             .wires = true,
-                                             .memories = true};
+/// Everything that has a meaning on the wire.
+inline constexpr Abilities runtime_abilities = all_members;
 
 /// TypeScript on @robdef/runtime (README.md in this folder says what is generated).
 class TypeScriptBackend final : public Backend {

@@ -19,6 +19,8 @@ set(forbidden
   "compiler/model/d.cpp|antlr4-runtime.h"
   "compiler/backends/cpp/e.cpp|compiler/driver/options.hpp"
   "compiler/model/f.cpp|rr/value.hpp"
+  "compiler/driver/n.cpp|rr/value.hpp"
+  "compiler/driver/o.cpp|cli/commands.hpp"
   "runtime/cpp/src/codec/g.cpp|boost/asio.hpp"
   "runtime/cpp/src/codec/h.cpp|runtime/cpp/src/channel/tcp.hpp"
   "runtime/cpp/include/rr/i.hpp|runtime/cpp/src/codec/cursor.hpp"

@@ -18,8 +18,10 @@ import subprocess
 import sys
 import tempfile
 
+import cpp_lines
+
 LANGUAGES = ["cpp", "csharp", "typescript", "matlab", "arduino", "cbus"]
-TAG = re.compile(r"\{\{([#^/>!]?)(.*?)\}\}", re.DOTALL)
+TAG = re.compile(r"\{\{(?!\{)([#^/>!]?)(.*?)\}\}", re.DOTALL)
 
 
 def tokens(source):
@@ -109,7 +111,11 @@ class Renderer:
             else:
                 if blanks is None:
                     self.begin(indent)
+                first = len(self.out)
                 self.section(sign, name, inside, indent)
+                if name in ("@c++", "@columns"):
+                    change = cpp_lines.broken_lines if name == "@c++" else cpp_lines.columns
+                    self.out[first:] = [change("".join(self.out[first:]))]
 
     def section(self, sign, name, inside, indent):
         begins = self.line_begins
@@ -139,6 +145,8 @@ class Renderer:
 
     def repeats(self, sign, name):
         """For each time that a section is printed: a new frame, or None where names stay."""
+        if name in ("@c++", "@columns"):
+            return [None]
         if name in ("@first", "@last"):
             is_there = self.frames[-1][1 if name == "@first" else 2]
             return [None] if is_there == (sign == "#") else []

@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/driver/end_signals.hpp"
-#include "compiler/driver/live/commands.hpp"
-#include "compiler/driver/live/complete.hpp"
-#include "compiler/driver/live/describe.hpp"
-#include "compiler/driver/live/members.hpp"
-#include "compiler/driver/live/watch.hpp"
+#include "cli/end_signals.hpp"
+#include "cli/live/commands.hpp"
+#include "cli/live/complete.hpp"
+#include "cli/live/describe.hpp"
+#include "cli/live/members.hpp"
+#include "cli/live/watch.hpp"
 #include "rr/dynamic.hpp"
 #include "rr/printable.hpp"
 #include "runtime/cpp/fuzz/client_programs.hpp"

@@ -185,20 +185,20 @@ class Connection {
   /// still in there, because it is about to wait for something that they may have to bring. False,
   /// and nothing happens, on a thread that does not handle a message of this connection, and when
   /// too many are in there already. Until it comes back the thread may not call reply().
-  virtual bool give_up_turn() = 0;
-  /// Must follow give_up_turn(): waits until this is again the thread that handles messages. False
+  virtual bool step_out() = 0;
+  /// Must follow step_out(): waits until this is again the thread that handles messages. False
   /// when that was not so in time: then this thread goes on beside the one that is, as far as the
-  /// next await_turn().
-  virtual bool take_turn_again(Time deadline) = 0;
+  /// next await_strand().
+  virtual bool step_in(Time deadline) = 0;
   /// Before what only the thread does that handles messages: waits until this is that thread, if it
   /// has been. The connection calls it when Receiver::handle() has returned.
-  virtual void await_turn() = 0;
+  virtual void await_strand() = 0;
 
   /// From Receiver::handle(), which then returns: the message is handled once more, and those
   /// behind it wait, after resume(). False, and nothing happens, on a thread that does not handle a
   /// message of this connection in its turn.
-  virtual bool put_off() { return false; }
-  /// Once for each put_off(), on any thread, even before the handler has returned.
+  virtual bool suspend() { return false; }
+  /// Once for each suspend(), on any thread, even before the handler has returned.
   virtual void resume() {}
 
   /// Ends the connection. Never blocks; Receiver::closed() follows.

@@ -2,7 +2,6 @@
 #include "runtime/cpp/src/channel/listening_socket.hpp"
 
 #include <fcntl.h>
-#include <sys/epoll.h>
 #include <sys/socket.h>
 
 #include <cerrno>
@@ -38,7 +37,7 @@ ListeningSocket::ListeningSocket(ChannelContext context, Descriptor socket, Link
 
 ListeningSocket::~ListeningSocket() { context_.reactor->cancel(*this); }
 
-void ListeningSocket::start() { context_.reactor->add(socket_.get(), EPOLLIN, *this); }
+void ListeningSocket::start() { context_.reactor->add(socket_.get(), ready::input, *this); }
 
 void ListeningSocket::stop() {
   is_stopped_ = true;
@@ -111,7 +110,7 @@ bool ListeningSocket::take_with_spare() {
 // The reactor tells of those who are left once more, behind what else there is.
 void ListeningSocket::ask_again() {
   try {
-    context_.reactor->change(socket_.get(), EPOLLIN, *this);
+    context_.reactor->change(socket_.get(), ready::input, *this);
   } catch (const std::system_error&) {
     // It has been stopped.
   }
@@ -120,7 +119,7 @@ void ListeningSocket::ask_again() {
 void ListeningSocket::on_timer() { look_again(); }
 
 void ListeningSocket::look_again() {
-  context_.reactor->post([self = shared_from_this()] { self->on_ready(EPOLLIN); });
+  context_.reactor->post([self = shared_from_this()] { self->on_ready(ready::input); });
 }
 
 // Whoever may write to a private folder is still not its user.

@@ -16,6 +16,9 @@
 namespace rr::channel {
 namespace {
 
+static_assert(ready::input == EPOLLIN && ready::room == EPOLLOUT && ready::closing == EPOLLRDHUP &&
+              ready::end == (EPOLLRDHUP | EPOLLHUP | EPOLLERR));
+
 // How often the polling thread is looked at while it is active; in how many looks it must be found
 // in the same handler before another thread takes over; after how many looks without anything new
 // the watching thread sleeps.

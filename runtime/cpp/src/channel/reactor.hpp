@@ -21,6 +21,7 @@
 #include "runtime/cpp/src/channel/thread_share.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/channel/timer_heap.hpp"
+#include "runtime/cpp/src/channel/watcher.hpp"
 
 struct epoll_event;
 
@@ -29,7 +30,7 @@ namespace rr::channel {
 /// Something with a file descriptor that the reactor watches.
 class Pollable {
  public:
-  /// On the polling thread: what epoll says, edge-triggered. May run user code.
+  /// On the polling thread: bits of rr::channel::ready, edge-triggered. May run user code.
   virtual void on_ready(std::uint32_t events) = 0;
   /// While on_ready() has been in user code for long on another thread: what was held back to leave
   /// together with more is to leave now.
@@ -55,7 +56,7 @@ class Pollable {
 ///
 /// A thread that has found one busy connection alone may stay with it, in receive calls that block,
 /// which are a third cheaper than epoll's; somebody else polls from then on.
-class Reactor {
+class Reactor final : public Watcher {
  public:
   /// What a program, or a test, says of the threads.
   struct Terms {
@@ -82,11 +83,9 @@ class Reactor {
   /// True on a thread that belongs to this reactor, work posted after stop() included.
   [[nodiscard]] bool is_own_thread() const;
 
-  // The descriptor's interest: EPOLL bits, to which edge-triggered is added. Throw
-  // std::system_error.
-  void add(int descriptor, std::uint32_t events, Pollable& pollable);
-  void change(int descriptor, std::uint32_t events, Pollable& pollable);
-  void remove(int descriptor);
+  void add(int descriptor, std::uint32_t events, Pollable& pollable) override;
+  void change(int descriptor, std::uint32_t events, Pollable& pollable) override;
+  void remove(int descriptor) override;
   /// Keeps what is no longer watched until no event can name it any more.
   void retire(std::shared_ptr<Pollable> pollable);
 

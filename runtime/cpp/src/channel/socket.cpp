@@ -200,4 +200,16 @@ bool wait_for(int descriptor, short events, Time deadline) {
   }
 }
 
+void set_receive_timeout(int descriptor, Milliseconds time) {
+  timeval pause{};
+  pause.tv_sec = time.count() / 1000;
+  pause.tv_usec = std::chrono::microseconds(time % std::chrono::seconds(1)).count();
+  setsockopt(descriptor, SOL_SOCKET, SO_RCVTIMEO, &pause, sizeof pause);
+}
+
+void acknowledge_with_next_segment(int descriptor) {
+  const int at_once = 0;
+  setsockopt(descriptor, IPPROTO_TCP, TCP_QUICKACK, &at_once, sizeof at_once);
+}
+
 }  // namespace rr::channel

@@ -68,6 +68,11 @@ Address remote_address(int descriptor);
 /// What every stream of ours has set: no delay of small segments (04, section 2).
 void set_stream_options(int descriptor);
 
+/// A receive that blocks returns after this time without bytes.
+void set_receive_timeout(int descriptor, Milliseconds time);
+/// TCP acknowledges what comes next with what is sent, or later. Other sockets refuse.
+void acknowledge_with_next_segment(int descriptor);
+
 /// Waits for POLLIN or POLLOUT; false at the deadline.
 bool wait_for(int descriptor, short events, Time deadline);
 /// Milliseconds for poll(): rounded up, -1 for never.

@@ -5,6 +5,7 @@
 
 #include "rr/printable.hpp"
 #include "runtime/cpp/src/channel/stream_connection.hpp"
+#include "runtime/cpp/src/channel/tls.hpp"
 
 namespace rr::channel {
 namespace {
@@ -15,26 +16,22 @@ bool is_nothing_yet(std::ptrdiff_t size) {
 
 }  // namespace
 
-Carrier* StreamConnection::sending_carrier() {
-  const std::lock_guard lock(sending_);
-  return carrier_.get();
-}
-
 StreamConnection::Received StreamConnection::receive_carried(Scratch& scratch, bool may_block,
                                                              bool& is_full) {
-  if (carrier_->carries_messages()) return receive_messages(scratch, may_block);
+  if (layers_.carrier()->carries_messages()) return receive_messages(scratch, may_block);
   const Received received = receive_bytes(scratch, may_block, is_full);
   // Words of its own: of a handshake, answers to pings.
-  if (carrier_->unsent() != 0) flush();
+  if (layers_.carrier()->unsent() != 0) flush();
   return received;
 }
 
 // All messages that are there.
 StreamConnection::Received StreamConnection::receive_messages(Scratch& scratch, bool may_block) {
   Received result = Received::nothing;
+  Carrier* const carrier = layers_.carrier();
   do {
     Frame frame;
-    const std::ptrdiff_t size = carrier_->receive(frame, may_block);
+    const std::ptrdiff_t size = carrier->receive(frame, may_block);
     if (is_nothing_yet(size)) return result;
     if (size <= 0) {
       return fail_reading({ErrorCode::connection_error, "the other side closed the connection"});
@@ -47,7 +44,7 @@ StreamConnection::Received StreamConnection::receive_messages(Scratch& scratch, 
       return fail_reading(
           {ErrorCode::protocol_error, "the other side sent bytes that are no message"});
     }
-  } while (carrier_->has_received());
+  } while (carrier->has_received());
   return result;
 }
 
@@ -58,10 +55,12 @@ StreamConnection::Received StreamConnection::receive_bytes(Scratch& scratch, boo
   do {
     if (!inbox_.may_grow()) return wait_for_memory();
     const std::span<std::byte> room = this->room(scratch);
-    const std::ptrdiff_t size = carrier_->receive(room, may_block);
+    // Another one when the bytes before asked for a layer.
+    Carrier* const carrier = layers_.carrier();
+    const std::ptrdiff_t size = carrier->receive(room, may_block);
     if (is_nothing_yet(size)) return result;
     if (size <= 0) {
-      const std::string failure = carrier_->failure();
+      const std::string failure = carrier->failure();
       if (failure.empty()) {
         return fail_reading({ErrorCode::connection_error, "the other side closed the connection"});
       }
@@ -74,11 +73,47 @@ StreamConnection::Received StreamConnection::receive_bytes(Scratch& scratch, boo
     last_received_.store(coarse_now(), std::memory_order_relaxed);
     may_block = false;
     is_full = true;  // the socket may have more
-    if (!was_heard_ && is_layered_ && !is_proven_) note_peer();
+    if (!was_heard_ && layers_.is_layered() && !layers_.is_proven()) note_peer();
     result = take_bytes(scratch, static_cast<std::size_t>(size));
     if (result != Received::some) return result;
-  } while (carrier_->has_received());
+  } while (layers_.carrier()->has_received());
   return result;
+}
+
+// What was received is for a layer, not for the inbox.
+StreamConnection::Received StreamConnection::upgrade(Scratch& scratch, std::size_t size,
+                                                     std::unique_ptr<Layer> layer) {
+  layers_.add(std::move(layer), std::span(scratch.bytes).first(size));
+  bool is_full = false;
+  const Received received = receive_bytes(scratch, false, is_full);
+  if (layers_.carrier()->unsent() != 0) flush();
+  return received == Received::nothing ? Received::some : received;
+}
+
+// With the read lease: what the other side has proved to be, and will be looked at again for.
+void StreamConnection::note_peer() {
+  auto proof = layers_.take_proof();
+  if (proof && terms_.tls) terms_.tls->watch(shared_from_this(), std::move(proof));
+}
+
+// What follows on the connection is TLS. Bytes that came together with the request in clear are not
+// taken for something that was said inside.
+StreamConnection::Received StreamConnection::begin_tls() {
+  layers_.forget_tls();
+  was_heard_ = false;  // so that the handshake has its time limit too
+  const Carrier* const carrier = layers_.carrier();
+  const bool has_more = inbox_.is_assembling() || !inbox_.kept().empty() ||
+                        (carrier != nullptr && carrier->has_received()) ||
+                        layers_.has_bytes_behind();
+  if (has_more || !sending_.is_empty()) {
+    return fail_reading({ErrorCode::protocol_error, "the other side speaks before it uses TLS"});
+  }
+  try {
+    layers_.begin_tls();
+  } catch (const Error& error) {
+    return fail_reading(error);
+  }
+  return Received::some;
 }
 
 }  // namespace rr::channel

@@ -2,11 +2,9 @@
 // The life of a connection: start, heartbeats and limits of time, end.
 #include "runtime/cpp/src/channel/stream_connection.hpp"
 
-#include <sys/epoll.h>
 #include <sys/socket.h>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "runtime/cpp/src/channel/remote_address.hpp"
@@ -40,22 +38,29 @@ StreamConnection::StreamConnection(Role role, Descriptor socket, std::shared_ptr
       largest_size_(terms_.traits.message_limit == 0
                         ? options_->limits.message_size
                         : std::min(options_->limits.message_size, terms_.traits.message_limit)),
-      many_answers_(role_ == Role::server ? std::min(stream_chunk, options_->answer_queue_limit)
-                                          : std::numeric_limits<std::size_t>::max()),
-      carrier_(std::move(carrier)),
       remote_address_(remote_address_of(socket_.get(), terms_)),
-      tap_(options_->tap.get()),
-      last_sent_(coarse_now()),
+      tap_(*options_, role_ == Role::client),
+      sending_({.socket = socket_.get(),
+                .limit = options_->send_queue_limit,
+                .answer_limit = options_->answer_queue_limit,
+                .is_server = role_ == Role::server},
+               tap_),
+      layers_({.socket = socket_.get(),
+               .is_server = role_ == Role::server,
+               .must_certify_clients = options_->tls.must_certify_clients},
+              terms_, sending_, std::move(carrier)),
+      strand_(options_->request_queue_limit),
       last_received_(coarse_now()),
-      created_(coarse_now()) {
+      created_(coarse_now()),
+      watch_(*reactor_, socket_.get(), *this) {
   set_stream_options(socket_.get());
   if (role_ == Role::server) threads_ = reactor_->open_share(remote_key(remote_address_));
-  if (tap_ != nullptr) open_tap();
+  tap_.open(socket_.get());
 }
 
 StreamConnection::~StreamConnection() {
   reactor_->cancel(life_timer_);
-  reactor_->cancel(park_timer_);
+  reactor_->cancel(watch_timer_);
   reactor_->cancel(look_timer_);
 }
 
@@ -67,40 +72,35 @@ void StreamConnection::set_agreement(const NodeId& remote_node, std::string remo
   may_combine_ = agreement.combined_connect;
   has_local_strings_ = agreement.local_strings;
   has_standard_strings_ = agreement.standard_strings;
-  if (tap_ == nullptr) return;
-  const bool is_client = role_ == Role::client;
-  tap_->agreed(tap_number_, {.client_node = is_client ? options_->id : remote_node_,
-                             .service_node = is_client ? remote_node_ : options_->id,
-                             .client_name = is_client ? options_->name : remote_name_,
-                             .service_name = is_client ? remote_name_ : options_->name,
-                             .version = agreement.version,
-                             .combined_connect = agreement.combined_connect,
-                             .local_strings = agreement.local_strings,
-                             .standard_strings = agreement.standard_strings});
+  tap_.agreed(remote_node_, remote_name_, agreement);
+}
+
+void StreamConnection::tell_handshake(std::span<const std::byte> request,
+                                      std::span<const std::byte> answer) const {
+  if (!tap_.is_open()) return;
+  const Piece sent{request.data(), request.size()};
+  tap_.sent({&sent, 1});
+  tap_.received(answer);
 }
 
 void StreamConnection::start(std::shared_ptr<Receiver> receiver) {
   was_heard_ = role_ == Role::client;
   {
-    const std::lock_guard lock(turns_);
+    const std::lock_guard lock(mutex_);
     if (is_closing_) return;
     receiver_ = std::move(receiver);
     // A message on its way to a client is one at most, and may be what a caller waits for.
     if (role_ == Role::server) inbox_.set_account(account_);
-    outbox_charge_ = Charge(account_);
-    if (carrier_) {
-      carrier_->set_on_room([reactor = reactor_.get(), weak = weak_from_this()] {
+    strand_.set_account(account_);
+    sending_.set_account(account_);
+    if (layers_.carrier() != nullptr) {
+      layers_.carrier()->set_on_room([reactor = reactor_.get(), weak = weak_from_this()] {
         if (const auto self = weak.lock()) reactor->post([self] { self->flush(); });
       });
     }
     reactor_->begin_connection();
     self_ = shared_from_this();
-    // A client's first call follows at once and reads by itself.
-    if (role_ == Role::client) {
-      watch_ = Watch::parked;
-    } else {
-      set_watch(Watch::full);
-    }
+    watch_.begin(role_ == Role::client, sending_.has_unsent());
   }
   constexpr Milliseconds first_look{400};  // 04, section 5
   const Milliseconds soon = role_ == Role::server ? options_->first_message_timeout : first_look;
@@ -110,13 +110,13 @@ void StreamConnection::start(std::shared_ptr<Receiver> receiver) {
 
 std::string StreamConnection::local_url() const {
   if (!terms_.local_url.empty()) return terms_.local_url;
-  return url_of(local_address(socket_.get()), scheme());
+  return url_of(local_address(socket_.get()), layers_.scheme());
 }
 
 ChannelTraits StreamConnection::traits() const {
   ChannelTraits traits = terms_.traits;
   traits.message_limit = largest_size_;
-  traits.is_encrypted = is_encrypted();
+  traits.is_encrypted = layers_.is_encrypted();
   return traits;
 }
 
@@ -148,13 +148,13 @@ void StreamConnection::look_after() {
     close(Error(ErrorCode::connection_error, "the other side has not said who it is"));
     return;
   }
-  const Time last_sent = last_sent_;
-  bool is_stalled = false;  // then it is not the other side that is slow
+  const Time last_sent = sending_.last_sent();
+  bool is_full = false;  // then it is not the other side that is slow
   {
-    const std::lock_guard lock(turns_);
-    is_stalled = is_stalled_;
+    const std::lock_guard lock(mutex_);
+    is_full = strand_.is_full();
   }
-  if (!is_stalled && last_sent - last_received_.load() > terms_.receive_timeout) {
+  if (!is_full && last_sent - last_received_.load() > terms_.receive_timeout) {
     close(Error(ErrorCode::connection_error, "the other side does not answer any more"));
     return;
   }
@@ -177,48 +177,47 @@ void StreamConnection::close_after(Milliseconds delay) {
 }
 
 void StreamConnection::close(const Error& why) {
-  bool has_turn = false;
+  bool has_lease = false;
   {
-    const std::lock_guard lock(turns_);
+    const std::lock_guard lock(mutex_);
     begin_close(why);
-    has_turn = !std::exchange(is_read_, true);
+    has_lease = lease_.take();
   }
-  if (has_turn) finish_close();
+  if (has_lease) finish_close();
 }
 
-// Under turns_. Whoever has the read turn, or gets it now, keeps it for ever and finishes.
+// Under mutex_. Whoever has the read lease, or gets it now, keeps it for ever and finishes.
 void StreamConnection::begin_close(const Error& why) {
   if (is_closing_) return;
   is_closing_ = true;
+  sending_.close();
   why_closed_ = std::make_unique<const Error>(why);
   ::shutdown(socket_.get(), SHUT_RDWR);  // wakes a thread that receives
 }
 
-// With the read turn, which is not given back.
+// With the read lease, which is not given back.
 void StreamConnection::finish_close() {
   reactor_->cancel(life_timer_);
-  reactor_->cancel(park_timer_);
+  reactor_->cancel(watch_timer_);
   reactor_->cancel(look_timer_);
   inbox_.clear();
-  drop_unsent();
+  sending_.clear();
   DeferredCallbacks deferred;
-  if (tap_ != nullptr) tap_->closed(tap_number_, why_closed_->code(), why_closed_->message());
+  if (tap_.is_open()) tap_.closed(*why_closed_);
   if (receiver_) receiver_->lost(*why_closed_, deferred);  // receiver_ stays until closed() is due
   std::shared_ptr<StreamConnection> self;
   bool must_post = false;
   std::unique_ptr<std::deque<Frame>> dropped;
   std::shared_ptr<ThreadShare> callbacks;
   {
-    const std::lock_guard lock(turns_);
-    if (is_departed()) dropped = take_queue();
+    const std::lock_guard lock(mutex_);
+    if (is_departed()) dropped = strand_.take_queue();
     callbacks = callback_threads_;
     self = std::move(self_);
-    if (is_watched_) reactor_->remove(socket_.get());
-    is_watched_ = false;
-    watch_ = Watch::off;
-    is_closed_pending_ = receiver_ != nullptr;
-    must_post = is_closed_pending_ && !is_dispatched_ && absent_ == 0;
-    if (must_post) loosen_turn();
+    watch_.end();
+    if (receiver_) strand_.owe_end();
+    must_post = strand_.is_end_due() && !strand_.is_taken();
+    if (must_post) strand_.orphan();
   }
   dropped.reset();
   for (const auto& share : {threads_, callbacks}) {
@@ -226,7 +225,7 @@ void StreamConnection::finish_close() {
     share->depart();
     reactor_->reconsider();
   }
-  if (carrier_) carrier_->end();
+  if (layers_.carrier() != nullptr) layers_.carrier()->end();
   if (on_gone_) on_gone_(*this);
   if (must_post) deferred.emplace_back([keep = shared_from_this()] { keep->drain_posted(); });
   for (std::function<void()>& later : deferred) reactor_->post(std::move(later));

@@ -3,7 +3,6 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
-#include <sys/epoll.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -43,7 +42,7 @@ class DatagramReceiver::Socket final : public channel::Pollable,
       : reactor_(std::move(reactor)), socket_(std::move(socket)), handler_(std::move(handler)) {}
   ~Socket() { reactor_->cancel(*this); }
 
-  void start() { reactor_->add(socket_.get(), EPOLLIN, *this); }
+  void start() { reactor_->add(socket_.get(), channel::ready::input, *this); }
   void stop() {
     is_stopped_ = true;
     reactor_->remove(socket_.get());

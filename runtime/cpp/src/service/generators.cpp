@@ -73,7 +73,7 @@ Generators::Use::Use(Generators& generators, const ServedObject& object, std::in
   const std::uint32_t step = generator_->next_step++;
   if (generator_->current_step == step) return;
   lock.unlock();
-  const bool has_given_up = connection.give_up_turn();
+  const bool has_given_up = connection.step_out();
   if (has_given_up) channel::Reactor::about_to_wait();
   lock.lock();
   if (!has_given_up) {
@@ -82,7 +82,7 @@ Generators::Use::Use(Generators& generators, const ServedObject& object, std::in
   }
   while (generator_->current_step != step) generators_.stepped_.wait(lock);
   lock.unlock();
-  connection.take_turn_again(channel::never);
+  connection.step_in(channel::never);
 }
 
 Generators::Use::~Use() {

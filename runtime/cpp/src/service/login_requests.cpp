@@ -53,7 +53,7 @@ bool ServerEndpoint::begin_login(const Message& message, const Entry& entry,
   } catch (const std::exception&) {
     return false;
   }
-  if (!connection_->put_off()) return false;
+  if (!connection_->suspend()) return false;
   const bool is_new = entry.type == EntryType::connect_client_combined;
   Logins::Request request{.address = connection_->remote_address(),
                           .user = name,

@@ -95,7 +95,7 @@ void ServerEndpoint::handle_session(const Message& message, const Entry& first,
   for (Entry entry; entries.next(entry);) {
     if (connection_->is_closed()) return;
     handle_question({message, entry, owner, state.batch, state.next++});
-    connection_->await_turn();
+    connection_->await_strand();
     state.offset = entries.offset();
     if (state.next == message.entry_count) break;
     if (const channel::Time now = channel::Clock::now(); now >= until) {
@@ -124,7 +124,7 @@ bool ServerEndpoint::must_yield() {
 // A message with so many requests that others have to wait for long: they come first, now and
 // then. Not with the outcome of a login, which is for this time only.
 bool ServerEndpoint::put_off(const Unfinished& state) {
-  if (has_outcome_ || !connection_->put_off()) return false;
+  if (has_outcome_ || !connection_->suspend()) return false;
   unfinished_.push_back(state);
   directory_->core()->reactor().post([connection = connection_] { connection->resume(); });
   return true;

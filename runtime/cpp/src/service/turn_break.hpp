@@ -13,12 +13,12 @@ class TurnBreak {
  public:
   explicit TurnBreak(channel::Time deadline) : deadline_(deadline) {
     ServerEndpoint* const endpoint = ServerEndpoint::current();
-    if (endpoint != nullptr && endpoint->connection().give_up_turn()) {
+    if (endpoint != nullptr && endpoint->connection().step_out()) {
       connection_ = &endpoint->connection();
     }
   }
   ~TurnBreak() {
-    if (connection_ != nullptr) connection_->take_turn_again(deadline_);
+    if (connection_ != nullptr) connection_->step_in(deadline_);
   }
   TurnBreak(const TurnBreak&) = delete;
   TurnBreak& operator=(const TurnBreak&) = delete;

@@ -75,12 +75,12 @@ class TestReceiver final : public channel::Receiver {
       const std::lock_guard lock(mutex_);
       waiter_ = &waiter;
     }
-    const bool has_given_up = connection_->give_up_turn();
+    const bool has_given_up = connection_->step_out();
     connection_->claim(waiter);
     connection_->wait(waiter, channel::Clock::now() + std::chrono::seconds(20),
                       channel::coarse_now());
     was_answered = waiter.is_done();
-    if (has_given_up) connection_->take_turn_again(channel::never);
+    if (has_given_up) connection_->step_in(channel::never);
   }
   [[nodiscard]] ErrorCode code() {
     const std::lock_guard lock(mutex_);

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/output/cpp_lines.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "compiler/output/cpp_layout.hpp"
+
+namespace robdef::cpp {
+namespace {
+
+constexpr std::size_t nowhere = std::string_view::npos;
+
+/// Finds places of a text that are in no brackets and no string.
+class Reader {
+ public:
+  explicit Reader(std::string_view text) : text_(text) {}
+
+  /// Whether there is another one; `at` is its place then.
+  bool next() {
+    while (++at < text_.size()) {
+      const char c = text_[at];
+      if (is_in_string_) {
+        if (c == '\\') ++at;
+        is_in_string_ = c != '"';
+        continue;
+      }
+      if (c == '"') {
+        is_in_string_ = true;
+        continue;
+      }
+      const bool is_arrow = c == '>' && at > 0 && text_[at - 1] == '-';
+      if (is_open(c)) {
+        if (depth_++ == 0) return true;
+        continue;
+      }
+      if (is_close(c) && !is_arrow && depth_ > 0) {
+        if (--depth_ == 0) return true;
+        continue;
+      }
+      if (depth_ == 0) return true;
+    }
+    return false;
+  }
+
+  std::size_t at = nowhere;
+
+ private:
+  static bool is_open(char c) { return c == '(' || c == '<' || c == '{' || c == '['; }
+  static bool is_close(char c) { return c == ')' || c == '>' || c == '}' || c == ']'; }
+
+  std::string_view text_;
+  std::size_t depth_ = 0;
+  bool is_in_string_ = false;
+};
+
+std::size_t find_outside(std::string_view text, char wanted) {
+  Reader reader(text);
+  while (reader.next()) {
+    if (text[reader.at] == wanted) return reader.at;
+  }
+  return nowhere;
+}
+
+std::size_t find_last_outside(std::string_view text, char wanted) {
+  std::size_t found = nowhere;
+  Reader reader(text);
+  while (reader.next()) {
+    if (text[reader.at] == wanted) found = reader.at;
+  }
+  return found;
+}
+
+/// The parts between the commas of a list.
+std::vector<std::string> items_of(std::string_view text) {
+  std::vector<std::string> items;
+  while (!text.empty()) {
+    const std::size_t comma = find_outside(text, ',');
+    items.emplace_back(text.substr(0, comma));
+    if (comma == nowhere) break;
+    text.remove_prefix(std::min(comma + 2, text.size()));
+  }
+  return items;
+}
+
+/// `before(items)after`, with the first parentheses that are in no brackets.
+std::optional<List> list_of(std::string_view text) {
+  const std::size_t open = find_outside(text, '(');
+  if (open == nowhere) return std::nullopt;
+  const std::size_t close = open + find_outside(text.substr(open), ')');
+  return List{.before = std::string(text.substr(0, open + 1)),
+              .items = items_of(text.substr(open + 1, close - open - 1)),
+              .after = std::string(text.substr(close))};
+}
+
+/// A call whose only argument is a call, `return answer(f(a, b));`, as the list of the inner one.
+std::optional<List> inner_list(const List& outer) {
+  if (outer.items.size() != 1) return std::nullopt;
+  std::optional<List> inner = list_of(outer.items.front());
+  if (!inner || inner->after != ")" || inner->items.empty()) return std::nullopt;
+  return inner;
+}
+
+std::string call(std::string_view text, std::size_t indent) {
+  const std::optional<List> outer = list_of(text);
+  if (!outer) return std::string(text);
+  const std::optional<List> inner = inner_list(*outer);
+  if (!inner) return list(*outer, indent);
+  std::string result = list({.before = outer->before + inner->before,
+                             .items = inner->items,
+                             .after = inner->after + outer->after},
+                            indent);
+  // When the inner one cannot be broken behind its parenthesis, the outer one is.
+  const std::size_t end = result.find('\n');
+  if (end == nowhere || result[end - 1] != '(') return result;
+  constexpr std::size_t deeper = 4;
+  return outer->before + "\n" + blanks(indent + deeper) +
+         list(
+             {.before = inner->before, .items = inner->items, .after = inner->after + outer->after},
+             indent + deeper);
+}
+
+/// A type that is longer than a line: a list of types.
+std::string type(std::string_view text, std::size_t indent) {
+  if (indent + text.size() <= line_width || !text.ends_with('>')) return std::string(text);
+  const std::size_t open = text.find('<');
+  std::string_view inside = text.substr(open + 1, text.size() - open - 2);
+  std::string before(text.substr(0, open + 1));
+  std::string after = ">";
+  const std::size_t parameters = find_outside(inside, '(');
+  if (parameters != nowhere && inside.ends_with(')')) {
+    before += inside.substr(0, parameters + 1);
+    after = ")>";
+    inside = inside.substr(parameters + 1, inside.size() - parameters - 2);
+  }
+  std::vector<std::string> items = items_of(inside);
+  if (items.size() < 2 && parameters == nowhere && before.find("Event<") == nowhere) {
+    return std::string(text);
+  }
+  return list({.before = std::move(before), .items = std::move(items), .after = std::move(after)},
+              indent);
+}
+
+/// `virtual double get(int a) const`, to what is behind the parameters.
+std::optional<Signature> signature_of(std::string_view text, std::size_t indent) {
+  const std::optional<List> parts = list_of(text);
+  if (!parts) return std::nullopt;
+  std::string_view head = parts->before;
+  head.remove_suffix(1);
+  const std::size_t blank = find_last_outside(head, ' ');
+  if (blank == nowhere) return std::nullopt;
+  std::string_view result = head.substr(0, blank);
+  if (result == "return") return std::nullopt;
+  Signature signature{.name = std::string(head.substr(blank + 1)),
+                      .parameters = parts->items,
+                      .after = parts->after.substr(1)};
+  constexpr std::string_view keyword = "virtual ";
+  if (result.starts_with(keyword)) {
+    signature.before = keyword;
+    result.remove_prefix(keyword.size());
+  }
+  signature.result = type(result, indent);
+  return signature;
+}
+
+/// A function with one statement.
+std::optional<std::string> function(std::string_view text, std::size_t indent) {
+  constexpr std::string_view end = " }";
+  if (!text.ends_with(end)) return std::nullopt;
+  const std::size_t body = find_last_outside(text.substr(0, text.size()), '{');
+  if (body == nowhere || body + 2 > text.size() - end.size()) return std::nullopt;
+  const auto signature = signature_of(text.substr(0, body - 1), indent);
+  if (!signature) return std::nullopt;
+  const std::string_view statement = text.substr(body + 2, text.size() - end.size() - body - 2);
+  return opening(*signature, indent) + "\n" + blanks(indent + 2) + call(statement, indent + 2) +
+         "\n" + blanks(indent) + "}";
+}
+
+/// The initial values of an array: `int a[] = {1, 2};`.
+std::optional<std::string> array(std::string_view text, std::size_t indent) {
+  constexpr std::string_view begin = " = {";
+  constexpr std::string_view end = "};";
+  const std::size_t open = text.find(begin);
+  if (open == nowhere || !text.ends_with(end)) return std::nullopt;
+  const std::size_t first = open + begin.size();
+  List values{.before = std::string(text.substr(0, first)),
+              .items = items_of(text.substr(first, text.size() - end.size() - first)),
+              .after = std::string(end)};
+  constexpr std::size_t deeper = 4;
+  for (std::string& item : values.items) {
+    if (indent + deeper + item.size() > line_width) item = call(item, indent + deeper);
+  }
+  return braced_list(values, indent);
+}
+
+}  // namespace
+
+std::string broken(std::string_view line) {
+  if (line.size() <= line_width) return std::string(line);
+  const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
+  const std::string_view text = line.substr(indent);
+  if (text.starts_with("//")) return std::string(line);
+  std::string result = blanks(indent);
+  constexpr std::string_view empty = " {}";
+  if (text.ends_with(empty)) {
+    const auto signature = signature_of(text.substr(0, text.size() - empty.size()), indent);
+    if (signature) return result + opening(*signature, indent) + "}";
+  }
+  if (const auto whole = function(text, indent)) return result + *whole;
+  if (const auto values = array(text, indent)) return result + *values;
+  for (const std::string_view end : {" {", ";"}) {
+    if (!text.ends_with(end)) continue;
+    const auto signature = signature_of(text.substr(0, text.size() - end.size()), indent);
+    if (!signature) continue;
+    return result + (end == ";" ? declaration(*signature, indent) : opening(*signature, indent));
+  }
+  return result + call(text, indent);
+}
+
+bool has_long_line(std::string_view text) {
+  while (text.size() > line_width) {
+    // The last line end that a line of allowed length could have.
+    const std::size_t end = text.substr(0, line_width + 1).rfind('\n');
+    if (end == nowhere) return true;
+    text.remove_prefix(end + 1);
+  }
+  return false;
+}
+
+std::string broken_lines(std::string_view text) {
+  std::string result;
+  result.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = text.substr(0, end);
+    if (line.size() <= line_width) {
+      result += line;
+    } else {
+      result += broken(line);
+    }
+    if (end == nowhere) break;
+    result += '\n';
+    text.remove_prefix(end + 1);
+  }
+  return result;
+}
+
+std::string columns(std::string_view text) {
+  const std::size_t indent = std::min(text.find_first_not_of(' '), text.size());
+  std::vector<std::string> items;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    items.push_back(broken(text.substr(0, end)).substr(indent));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  std::string result;
+  for (const std::string& row : table_rows(items, indent)) {
+    result.append(blanks(indent)).append(row).append("\n");
+  }
+  return result;
+}
+
+}  // namespace robdef::cpp

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace robdef::cpp {
+
+/// A line of C++ that a template has printed, broken into lines of 100 columns where it is longer:
+/// a function with one statement, a declaration, the first line of a function, an array with its
+/// values, or a call. What
+/// groups its parts are its own brackets, and it can be broken behind them and behind commas.
+/// Anything else stays as it is. `line` is without its line end, as is the result.
+std::string broken(std::string_view line);
+
+/// Whether a line of a text is longer than 100 columns.
+bool has_long_line(std::string_view text);
+
+/// Breaks each line of a text.
+std::string broken_lines(std::string_view text);
+
+/// The lines of a text, rows of a table with one indentation, in as many columns as are worth it.
+std::string columns(std::string_view text);
+
+}  // namespace robdef::cpp

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compiler/output/cpp_lines.hpp"
+
+#include <gtest/gtest.h>
+
+namespace robdef::cpp {
+namespace {
+
+const std::string a_name(36, 'a');
+const std::string b_name(36, 'b');
+
+TEST(CppLines, WhatFitsStays) {
+  const std::string text = "  int f(int a) { return g(a); }\n\n// " + std::string(97, 'x');
+  EXPECT_EQ(broken_lines(text + "\n"), text + "\n");
+}
+
+TEST(CppLines, AFunctionWithOneStatementGetsLinesOfItsOwn) {
+  EXPECT_EQ(broken("  int get() { return rr_get<int>(" + a_name + ", " + b_name + "); }"),
+            "  int get() {\n    return rr_get<int>(" + a_name + ", " + b_name + ");\n  }");
+  EXPECT_EQ(broken("  void f(int " + a_name + ", int " + b_name + ") { g(" + a_name + "); }"),
+            "  void f(int " + a_name + ", int " + b_name + ") {\n    g(" + a_name + ");\n  }");
+}
+
+TEST(CppLines, ParametersAreAlignedBehindTheirParenthesis) {
+  EXPECT_EQ(broken("  virtual int function(int " + a_name + ", ::M<int, int> " + b_name + ") = 0;"),
+            "  virtual int function(int " + a_name + ",\n" + std::string(23, ' ') +
+                "::M<int, int> " + b_name + ") = 0;");
+}
+
+TEST(CppLines, ArgumentsStandBelowWhereThatSavesLines) {
+  EXPECT_EQ(broken("  return " + a_name + b_name + "(" + a_name + ", \"text, and (more\");"),
+            "  return " + a_name + b_name + "(\n      " + a_name + ", \"text, and (more\");");
+}
+
+TEST(CppLines, OfTwoCallsTheInnerOneIsBroken) {
+  EXPECT_EQ(broken("    answer(call(" + a_name + ", " + b_name + ", " + a_name + "));"),
+            "    answer(call(" + a_name + ", " + b_name + ",\n                " + a_name + "));");
+}
+
+TEST(CppLines, AResultThatIsTooLongGetsALineOfItsOwn) {
+  const std::string result = "::std::shared_ptr<" + a_name + b_name + ">";
+  EXPECT_EQ(broken("  " + result + " get_it(int index);"),
+            "  " + result + "\n  get_it(int index);");
+}
+
+TEST(CppLines, TheValuesOfAnArrayAreItsItems) {
+  EXPECT_EQ(broken("  int array[] = {" + a_name + ", " + b_name + ", \"" + a_name + "\"};"),
+            "  int array[] = {" + a_name + ", " + b_name + ",\n" + std::string(17, ' ') + "\"" +
+                a_name + "\"};");
+}
+
+TEST(CppLines, RowsAreInColumns) {
+  EXPECT_EQ(columns("  a(1),\n  long_name(2),\n  b(3),\n  c(4),\n  d(5),\n  e(6),\n"),
+            "  a(1), long_name(2), b(3), c(4), d(5), e(6),\n");
+  EXPECT_EQ(columns("  a,\n  b,\n"), "  a,\n  b,\n");
+}
+
+TEST(CppLines, WhatHasNoListStays) {
+  const std::string text = "  constexpr auto " + a_name + b_name + " = " + a_name + ";";
+  EXPECT_EQ(broken(text), text);
+}
+
+}  // namespace
+}  // namespace robdef::cpp

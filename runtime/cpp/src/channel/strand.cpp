@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/cpp/src/channel/strand.hpp"
+
+#include <array>
+#include <cassert>
+#include <cstring>
+
+#include "runtime/cpp/src/channel/strand_turn.hpp"
+#include "runtime/cpp/src/channel/stream_sizes.hpp"
+
+namespace rr::channel {
+
+/// A thread that wants the strand back, on its stack.
+struct Strand::Returning {
+  std::condition_variable wake;
+  Returning* next = nullptr;
+};
+
+std::span<const Strand::Transition> Strand::transitions() {
+  using enum State;
+  static constexpr std::array rows = {
+      Transition{free, "enter", held},
+      Transition{free, "orphan", orphaned},
+      Transition{free, "step_in", held},
+      Transition{held, "finish, leave, step_out", free},
+      Transition{held, "orphan, step_out", orphaned},
+      Transition{held, "suspend", suspended},
+      Transition{orphaned, "adopt, step_in", held},
+      Transition{suspended, "resume", orphaned},
+  };
+  return rows;
+}
+
+void Strand::become(State state) {
+#ifndef NDEBUG
+  bool is_known = state == state_;
+  for (const Transition& row : transitions()) {
+    is_known = is_known || (row.from == state_ && row.to == state);
+  }
+  assert(is_known);
+#endif
+  state_ = state;
+}
+
+bool Strand::enter() {
+  if (is_taken() || queue_) return false;
+  become(State::held);
+  return true;
+}
+
+void Strand::orphan() {
+  become(State::orphaned);
+  if (returning_ != nullptr) returning_->wake.notify_one();
+}
+
+bool Strand::adopt() {
+  if (!is_orphaned()) return false;
+  become(State::held);
+  return true;
+}
+
+bool Strand::finish() {
+  queue_.reset();
+  become(State::free);
+  return std::exchange(is_full_, false);
+}
+
+// The queue
+
+std::deque<Frame>& Strand::queue() {
+  if (!queue_) queue_ = std::make_unique<std::deque<Frame>>();
+  return *queue_;
+}
+
+void Strand::push(Frame frame) {
+  queued_bytes_ += frame.bytes.size();
+  queue().push_back(keep(std::move(frame)));
+  charge(queue_->back());
+}
+
+void Strand::push_first(Frame frame) {
+  queue().push_front(keep(std::move(frame)));
+  queued_bytes_ += queue_->front().bytes.size();
+  charge(queue_->front());
+}
+
+Frame Strand::pop() {
+  Frame frame = std::move(queue_->front());
+  queue_->pop_front();
+  queued_bytes_ -= frame.bytes.size();
+  return frame;
+}
+
+std::unique_ptr<std::deque<Frame>> Strand::take_queue() {
+  queued_bytes_ = 0;
+  return std::exchange(queue_, nullptr);
+}
+
+// What waits is its sender's, who is not read further when it is too much.
+void Strand::charge(Frame& frame) {
+  if (account_ == nullptr || frame.charge.bytes() != 0) return;
+  const std::size_t size = frame.bytes.size() + bytes_beside_frame;
+  frame.charge = Charge(account_);
+  if (frame.charge.add(size)) return;
+  frame.charge.add_anyway(size);
+  is_full_ = true;
+}
+
+Frame Strand::keep(Frame frame) {
+  if (frame.owner) return frame;
+  Allocation memory = allocate(frame.bytes.size());
+  std::memcpy(memory.bytes, frame.bytes.data(), frame.bytes.size());
+  return {{memory.bytes, frame.bytes.size()}, std::move(memory.owner), {}};
+}
+
+void Strand::push_rest(StrandTurn& turn) {
+  while (turn.has_next()) push_first(turn.take_last());
+  check_limit();
+}
+
+// Waiting inside a handler
+
+bool Strand::step_out(StrandTurn& turn) {
+  ++outside_;
+  turn.set_held(false);
+  push_rest(turn);
+  const bool must_post = is_full_ || has_queued();
+  if (must_post || returning_ != nullptr) {
+    orphan();
+  } else {
+    become(State::free);
+  }
+  return must_post;
+}
+
+bool Strand::step_in(StrandTurn& turn, std::unique_lock<std::mutex>& lock, Time deadline) {
+  Returning self;
+  Returning** link = &returning_;
+  while (*link != nullptr) link = &(*link)->next;
+  *link = &self;
+  // Posted work may come too late, as when the node is shut down: then this thread is faster.
+  const auto is_elsewhere = [this] { return state_ == State::held || state_ == State::suspended; };
+  while (is_elsewhere() && Clock::now() < deadline) wait_until(self.wake, lock, deadline);
+  for (link = &returning_; *link != &self;) link = &(*link)->next;
+  *link = self.next;
+  if (is_elsewhere()) return false;
+  become(State::held);
+  --outside_;
+  turn.set_held(true);
+  return true;
+}
+
+// Suspending
+
+bool Strand::suspend(StrandTurn& turn, Frame frame) {
+  push_rest(turn);
+  push_first(std::move(frame));
+  turn.scratch().waiting.clear();
+  if (std::exchange(suspension_, Suspension::no) == Suspension::resumed) return false;
+  become(State::suspended);
+  return true;
+}
+
+bool Strand::resume() {
+  if (suspension_ == Suspension::begun) {
+    suspension_ = Suspension::resumed;
+    return false;
+  }
+  if (state_ != State::suspended) return false;
+  orphan();
+  return true;
+}
+
+// A thread's turn
+
+constinit thread_local StrandTurn* StrandTurn::innermost = nullptr;
+
+StrandTurn::StrandTurn(const Strand& strand, Scratch& scratch, std::chrono::microseconds longest)
+    : strand_(&strand),
+      scratch_(scratch),
+      longest_(longest),
+      outer_(std::exchange(innermost, this)) {}
+
+StrandTurn::~StrandTurn() { innermost = outer_; }
+
+}  // namespace rr::channel

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <utility>
+
+#include "runtime/cpp/src/channel/account.hpp"
+#include "runtime/cpp/src/channel/scratch.hpp"
+#include "runtime/cpp/src/channel/time.hpp"
+
+namespace rr::channel {
+
+class StrandTurn;
+
+/// Serial execution of the messages of one connection: one thread at a time hands them to the
+/// receiver, in the order in which they came. What comes meanwhile is queued, and charged to its
+/// sender.
+///
+/// A handler that waits for something which a later message may have to bring steps out of the
+/// strand for as long: another thread goes on with the queue. It steps in again before its handler
+/// goes on. A handler may also suspend the strand: its message is handled once more later.
+///
+/// All of it under the connection's lock.
+class Strand {
+ public:
+  /// Who hands on messages.
+  enum class State : std::uint8_t {
+    free,       ///< nobody, and nothing is queued, unless answers have to leave first
+    held,       ///< a thread
+    orphaned,   ///< a thread that is on its way: posted work, or one that steps in again
+    suspended,  ///< nobody until resume()
+  };
+
+  /// One row for each change of the state that there is; a test compares it with the diagram in
+  /// docs/architecture.md, and a debug build ends at any other change.
+  struct Transition {
+    State from;
+    const char* by;
+    State to;
+  };
+  static std::span<const Transition> transitions();
+
+  /// `limit`: bytes that may be queued before the connection is not read on.
+  explicit Strand(std::size_t limit) : limit_(limit) {}
+  Strand(const Strand&) = delete;
+  Strand& operator=(const Strand&) = delete;
+  /// Before it is used: who is charged for what is queued; null for nobody.
+  void set_account(std::shared_ptr<Account> account) { account_ = std::move(account); }
+
+  [[nodiscard]] State state() const { return state_; }
+  [[nodiscard]] bool is_taken() const { return state_ != State::free; }
+  [[nodiscard]] bool is_orphaned() const { return state_ == State::orphaned; }
+
+  /// The free strand with an empty queue goes to the calling thread. False when it is not that.
+  bool enter();
+  /// Somebody has to go on with it who does not have it yet: a thread that waits in step_in() is
+  /// woken; if there is none, the caller posts work that calls adopt().
+  void orphan();
+  /// The calling thread goes on with the strand. False when another one was faster.
+  bool adopt();
+  /// Nobody hands on messages, though some may be queued: they wait for what calls orphan().
+  void leave() { become(State::free); }
+  /// The queue is empty: the strand is free. True when the connection had to stop reading because
+  /// of what was queued.
+  bool finish();
+
+  // The queue.
+  void push(Frame frame);
+  /// The next one is this, again.
+  void push_first(Frame frame);
+  /// What the thread of the turn has not handled is next again.
+  void push_rest(StrandTurn& turn);
+  [[nodiscard]] bool has_queued() const { return queue_ && !queue_->empty(); }
+  Frame pop();
+  [[nodiscard]] std::unique_ptr<std::deque<Frame>> take_queue();
+  /// So much is queued, or the account of the sender is so full, that no more is to be read.
+  [[nodiscard]] bool is_full() const { return is_full_; }
+  /// Called when a receive has been queued: looks whether the queue is too long now.
+  void check_limit() { is_full_ = is_full_ || queued_bytes_ > limit_; }
+
+  // Waiting inside a handler.
+  [[nodiscard]] unsigned outside() const { return outside_; }
+  /// The thread of the turn waits outside; what it has not handled is queued first. True when
+  /// somebody has to be made to go on.
+  bool step_out(StrandTurn& turn);
+  /// Waits until the calling thread hands on messages again. False at the deadline: it is still
+  /// outside.
+  bool step_in(StrandTurn& turn, std::unique_lock<std::mutex>& lock, Time deadline);
+  [[nodiscard]] bool is_anybody_returning() const { return returning_ != nullptr; }
+  /// A thread handles a message beside the strand.
+  void go_beside() { ++outside_; }
+  void come_from_beside() { --outside_; }
+
+  // Suspending.
+  /// From a handler: its message is to be handled again after resume().
+  void begin_suspending() { suspension_ = Suspension::begun; }
+  /// After that handler: the message is queued first. False when it may be handled at once.
+  bool suspend(StrandTurn& turn, Frame frame);
+  /// True when the caller has to make somebody go on.
+  bool resume();
+
+  // The end of the connection, which the receiver is notified of after its last message.
+  void owe_end() { owes_end_ = true; }
+  [[nodiscard]] bool is_end_due() const { return owes_end_ && outside_ == 0; }
+  [[nodiscard]] bool take_end() { return outside_ == 0 && std::exchange(owes_end_, false); }
+
+  /// The frame with bytes that stay.
+  [[nodiscard]] static Frame keep(Frame frame);
+
+ private:
+  enum class Suspension : std::uint8_t { no, begun, resumed };
+  struct Returning;
+
+  void become(State state);
+  std::deque<Frame>& queue();
+  void charge(Frame& frame);
+
+  const std::size_t limit_;
+  std::shared_ptr<Account> account_;
+  State state_ = State::free;
+  Suspension suspension_ = Suspension::no;
+  bool is_full_ = false;
+  bool owes_end_ = false;
+  unsigned outside_ = 0;  // threads in the receiver, now or soon, without the strand
+  Returning* returning_ = nullptr;
+  std::unique_ptr<std::deque<Frame>> queue_;
+  std::size_t queued_bytes_ = 0;
+};
+
+}  // namespace rr::channel
