@@ -68,7 +68,7 @@ struct CommandTable {
   /// Does a command; nothing for one of the compiler.
   std::optional<ExitStatus> (*run)(const Options& options, std::ostream& out,
                                    std::ostream& err) = nullptr;
-  /// What the help of a command says behind its options; empty: what that of the compiler says.
+  /// Text after the options in the help of a command. Empty: the compiler's own.
   std::string_view (*notes)(Command command) = nullptr;
   /// Whether a version of definitions is sent or recorded, and not in files.
   bool (*is_sent)(const std::string& version) = nullptr;

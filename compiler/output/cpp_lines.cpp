@@ -90,7 +90,9 @@ std::vector<std::string> items_of(std::string_view text) {
 std::optional<List> list_of(std::string_view text) {
   const std::size_t open = find_outside(text, '(');
   if (open == nowhere) return std::nullopt;
-  const std::size_t close = open + find_outside(text.substr(open), ')');
+  const std::size_t length = find_outside(text.substr(open), ')');
+  if (length == nowhere) return std::nullopt;
+  const std::size_t close = open + length;
   return List{.before = std::string(text.substr(0, open + 1)),
               .items = items_of(text.substr(open + 1, close - open - 1)),
               .after = std::string(text.substr(close))};

@@ -8,9 +8,9 @@ namespace robdef::cpp {
 
 /// A line of C++ that a template has printed, broken into lines of 100 columns where it is longer:
 /// a function with one statement, a declaration, the first line of a function, an array with its
-/// values, or a call. What
-/// groups its parts are its own brackets, and it can be broken behind them and behind commas.
-/// Anything else stays as it is. `line` is without its line end, as is the result.
+/// values, or a call. Its own brackets group its parts; it can be broken after them and after
+/// commas. Anything else stays as it is, also what has brackets that do not close. `line` is
+/// without its line end, as is the result.
 std::string broken(std::string_view line);
 
 /// Whether a line of a text is longer than 100 columns.

@@ -14,6 +14,15 @@ TEST(CppLines, WhatFitsStays) {
   EXPECT_EQ(broken_lines(text + "\n"), text + "\n");
 }
 
+// Templates of users can print anything.
+TEST(CppLines, BracketsThatDoNotCloseStay) {
+  for (const char* begin :
+       {"  f(", "  return a < f(", "  int f(", "  virtual void f(int (", "  x)("}) {
+    const std::string text = begin + a_name + ", " + b_name + ", " + a_name + ";";
+    EXPECT_EQ(broken(text), text);
+  }
+}
+
 TEST(CppLines, AFunctionWithOneStatementGetsLinesOfItsOwn) {
   EXPECT_EQ(broken("  int get() { return rr_get<int>(" + a_name + ", " + b_name + "); }"),
             "  int get() {\n    return rr_get<int>(" + a_name + ", " + b_name + ");\n  }");

@@ -129,7 +129,7 @@ struct MemberView : MemberFacts {
   std::string value_mark;
   std::string described;      ///< types that its row in the table is given: `double, void`
   std::string access;         ///< what the row says of modifiers: `::rr::readonly | ::rr::nolock`
-  bool has_no_table = false;  ///< it has none of parameters, but modifiers behind it
+  bool has_no_table = false;  ///< no table of parameters, but modifiers after it
   std::string called;         ///< function: how it is called where a parameter may have its name
   std::string taken;          ///< generator: the type that each step takes, or `void`
   bool has_handle = false;    ///< event, pipe, callback, wire, memory

@@ -50,7 +50,10 @@ def split_list(text):
     if not found:
         return None
     first = found[0]
-    last = first + places(text[first:], ")")[0]
+    closing = places(text[first:], ")")
+    if not closing:
+        return None
+    last = first + closing[0]
     return text[:first + 1], split_items(text[first + 1:last]), text[last:]
 
 

@@ -13,7 +13,7 @@
 #include "rr/buffer.hpp"
 #include "rr/url.hpp"
 
-/// Ways of one's own to carry messages between nodes; docs/howto/channels.md has an example.
+/// Custom transports between nodes; docs/howto/channels.md has an example.
 namespace rr {
 
 /// What a channel is like.

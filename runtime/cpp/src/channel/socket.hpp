@@ -70,7 +70,7 @@ void set_stream_options(int descriptor);
 
 /// A receive that blocks returns after this time without bytes.
 void set_receive_timeout(int descriptor, Milliseconds time);
-/// TCP acknowledges what comes next with what is sent, or later. Other sockets refuse.
+/// Delays TCP's next acknowledgement until it can travel with data. No effect on other sockets.
 void acknowledge_with_next_segment(int descriptor);
 
 /// Waits for POLLIN or POLLOUT; false at the deadline.

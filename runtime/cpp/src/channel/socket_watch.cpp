@@ -3,30 +3,25 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <utility>
 
 namespace rr::channel {
 
-std::span<const SocketWatch::Transition> SocketWatch::transitions() {
+std::span<const Transition<SocketWatch::State>> SocketWatch::transitions() {
   using enum State;
-  static constexpr std::array rows = {
-      Transition{off, "begin", full},         Transition{off, "begin", idle},
-      Transition{full, "go_idle, pin", idle}, Transition{idle, "go_full, end_call, look", full},
-      Transition{full, "end", off},           Transition{idle, "end", off},
-  };
+  static constexpr std::array<Transition<State>, 6> rows = {{
+      {off, "begin", full},
+      {off, "begin", idle},
+      {full, "go_idle, pin", idle},
+      {idle, "go_full, end_call, look", full},
+      {full, "end", off},
+      {idle, "end", off},
+  }};
   return rows;
 }
 
 void SocketWatch::become(State state, bool has_unsent) {
-#ifndef NDEBUG
-  bool is_known = state == state_;
-  for (const Transition& row : transitions()) {
-    is_known = is_known || (row.from == state_ && row.to == state);
-  }
-  assert(is_known);
-#endif
-  state_ = state;
+  change(state_, state, transitions());
   std::uint32_t events = 0;
   if (state == State::full) {
     events = ready::input | ready::room | ready::closing;

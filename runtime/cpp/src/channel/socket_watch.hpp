@@ -5,6 +5,7 @@
 #include <span>
 
 #include "runtime/cpp/src/channel/time.hpp"
+#include "runtime/cpp/src/channel/transition.hpp"
 #include "runtime/cpp/src/channel/watcher.hpp"
 
 namespace rr::channel {
@@ -25,13 +26,8 @@ class SocketWatch {
     full,  ///< for input and for room to send
     idle,  ///< for room only, and only while something waits to be sent
   };
-  /// One row for each change of the state that there is; as Strand::transitions().
-  struct Transition {
-    State from;
-    const char* by;
-    State to;
-  };
-  static std::span<const Transition> transitions();
+  /// All changes of the state; as Strand::transitions().
+  static std::span<const Transition<State>> transitions();
 
   /// Functions that return "must_look" want look() to be called after period().
   SocketWatch(Watcher& watcher, int socket, Pollable& pollable)
@@ -48,7 +44,7 @@ class SocketWatch {
   void end();
   /// Whoever has the read lease waits for input itself.
   void go_idle(bool has_unsent);
-  /// Nobody reads: input that has come already is told of, too.
+  /// Nobody reads. The reactor also reports input that has already arrived.
   void go_full(bool has_unsent);
   /// Room is watched for, or is no longer.
   void update(bool has_unsent);

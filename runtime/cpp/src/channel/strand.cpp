@@ -2,7 +2,6 @@
 #include "runtime/cpp/src/channel/strand.hpp"
 
 #include <array>
-#include <cassert>
 #include <cstring>
 
 #include "runtime/cpp/src/channel/strand_turn.hpp"
@@ -16,31 +15,22 @@ struct Strand::Returning {
   Returning* next = nullptr;
 };
 
-std::span<const Strand::Transition> Strand::transitions() {
+std::span<const Transition<Strand::State>> Strand::transitions() {
   using enum State;
-  static constexpr std::array rows = {
-      Transition{free, "enter", held},
-      Transition{free, "orphan", orphaned},
-      Transition{free, "step_in", held},
-      Transition{held, "finish, leave, step_out", free},
-      Transition{held, "orphan, step_out", orphaned},
-      Transition{held, "suspend", suspended},
-      Transition{orphaned, "adopt, step_in", held},
-      Transition{suspended, "resume", orphaned},
-  };
+  static constexpr std::array<Transition<State>, 8> rows = {{
+      {free, "enter", held},
+      {free, "orphan", orphaned},
+      {free, "step_in", held},
+      {held, "finish, leave, step_out", free},
+      {held, "orphan, step_out", orphaned},
+      {held, "suspend", suspended},
+      {orphaned, "adopt, step_in", held},
+      {suspended, "resume", orphaned},
+  }};
   return rows;
 }
 
-void Strand::become(State state) {
-#ifndef NDEBUG
-  bool is_known = state == state_;
-  for (const Transition& row : transitions()) {
-    is_known = is_known || (row.from == state_ && row.to == state);
-  }
-  assert(is_known);
-#endif
-  state_ = state;
-}
+void Strand::become(State state) { change(state_, state, transitions()); }
 
 bool Strand::enter() {
   if (is_taken() || queue_) return false;

@@ -13,13 +13,14 @@
 #include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
+#include "runtime/cpp/src/channel/transition.hpp"
 
 namespace rr::channel {
 
 class StrandTurn;
 
 /// Serial execution of the messages of one connection: one thread at a time hands them to the
-/// receiver, in the order in which they came. What comes meanwhile is queued, and charged to its
+/// receiver, in order of arrival. Messages that arrive meanwhile are queued and charged to their
 /// sender.
 ///
 /// A handler that waits for something which a later message may have to bring steps out of the
@@ -37,14 +38,8 @@ class Strand {
     suspended,  ///< nobody until resume()
   };
 
-  /// One row for each change of the state that there is; a test compares it with the diagram in
-  /// docs/architecture.md, and a debug build ends at any other change.
-  struct Transition {
-    State from;
-    const char* by;
-    State to;
-  };
-  static std::span<const Transition> transitions();
+  /// All changes of the state. A test compares them with the table in docs/architecture.md.
+  static std::span<const Transition<State>> transitions();
 
   /// `limit`: bytes that may be queued before the connection is not read on.
   explicit Strand(std::size_t limit) : limit_(limit) {}
