@@ -140,6 +140,7 @@ class Charge {
   }
 
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
+  [[nodiscard]] bool has_account() const { return account_ != nullptr; }
   /// False, and nothing happens, when the account refuses. Without an account there is no limit.
   [[nodiscard]] bool add(std::size_t bytes);
   /// The same with Account::draw_part().

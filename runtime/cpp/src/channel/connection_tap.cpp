@@ -15,13 +15,13 @@ void ConnectionTap::open(int socket) {
                           .service_url = is_client_ ? remote : own});
 }
 
-void ConnectionTap::agreed(const NodeId& remote_node, const std::string& remote_name,
-                           const Agreement& agreement) const {
+void ConnectionTap::agreed(const NodeOptions& own, const NodeId& remote_node,
+                           const std::string& remote_name, const Agreement& agreement) const {
   if (tap_ == nullptr) return;
-  tap_->agreed(number_, {.client_node = is_client_ ? options_.id : remote_node,
-                         .service_node = is_client_ ? remote_node : options_.id,
-                         .client_name = is_client_ ? options_.name : remote_name,
-                         .service_name = is_client_ ? remote_name : options_.name,
+  tap_->agreed(number_, {.client_node = is_client_ ? own.id : remote_node,
+                         .service_node = is_client_ ? remote_node : own.id,
+                         .client_name = is_client_ ? own.name : remote_name,
+                         .service_name = is_client_ ? remote_name : own.name,
                          .version = agreement.version,
                          .combined_connect = agreement.combined_connect,
                          .local_strings = agreement.local_strings,

@@ -18,13 +18,13 @@ struct Agreement;
 class ConnectionTap {
  public:
   ConnectionTap(const NodeOptions& options, bool is_client)
-      : options_(options), tap_(options.tap.get()), is_client_(is_client) {}
+      : tap_(options.tap.get()), is_client_(is_client) {}
 
   [[nodiscard]] bool is_open() const { return tap_ != nullptr; }
   /// Before anything else: which sockets it connects.
   void open(int socket);
   /// What the two sides have agreed on.
-  void agreed(const NodeId& remote_node, const std::string& remote_name,
+  void agreed(const NodeOptions& own, const NodeId& remote_node, const std::string& remote_name,
               const Agreement& agreement) const;
   /// A message of this side leaves. Returns its mark for replaced().
   std::uint64_t sent(std::span<const Piece> message) const { return tell(true, message); }
@@ -39,7 +39,6 @@ class ConnectionTap {
  private:
   std::uint64_t tell(bool is_own, std::span<const Piece> message) const;
 
-  const NodeOptions& options_;
   Tap* const tap_;
   const bool is_client_;
   std::uint32_t number_ = 0;

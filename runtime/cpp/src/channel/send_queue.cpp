@@ -20,8 +20,7 @@ SendQueue::SendQueue(const Terms& terms, const ConnectionTap& tap)
 
 void SendQueue::set_account(std::shared_ptr<Account> account) {
   const std::lock_guard lock(mutex_);
-  account_ = std::move(account);
-  charge_ = Charge(account_);
+  charge_ = Charge(std::move(account));
 }
 
 void SendQueue::set_carrier(Carrier* carrier) {
@@ -48,7 +47,7 @@ bool SendQueue::send_under_lock(Writer& message, const How& how, bool& has_rest)
   const bool is_unsent = has_unsent_.load(std::memory_order_relaxed);
   // A small one that is sent at once costs nothing; of a large one something is mostly left.
   const bool may_wait = is_unsent || message.size() >= Writer::attach_threshold;
-  if (account_ != nullptr && may_wait && !admit(message.size(), how.refusal)) return false;
+  if (charge_.has_account() && may_wait && !admit(message.size(), how.refusal)) return false;
   const bool may_replace = is_unsent && how.newest != nullptr;
   std::optional<std::uint64_t> mark;
   if (!tap_.is_open() || may_replace) {
@@ -97,7 +96,7 @@ bool SendQueue::admit(std::size_t size, ErrorCode refusal) {
 
 // Under mutex_: the account is charged for what the socket did not take, and nothing else.
 void SendQueue::settle() {
-  if (account_ == nullptr) return;
+  if (!charge_.has_account()) return;
   const std::size_t waiting = has_unsent() ? unsent() : 0;
   const std::size_t charged = charge_.bytes();
   if (waiting > charged && !charge_.add(waiting - charged)) {
@@ -136,7 +135,7 @@ void SendQueue::queue_newest_and_tell(Writer& message, const Newest& newest) {
 
 bool SendQueue::hold_back(Writer& message, Priority priority) {
   const std::lock_guard lock(mutex_);
-  if (account_ != nullptr && has_unsent() &&
+  if (charge_.has_account() && has_unsent() &&
       !admit(message.size(), ErrorCode::out_of_system_resource)) {
     return false;
   }

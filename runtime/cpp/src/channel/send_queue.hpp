@@ -146,7 +146,6 @@ class SendQueue {
   mutable std::mutex mutex_;
   // Under mutex_.
   Carrier* carrier_ = nullptr;
-  std::shared_ptr<Account> account_;
   Outbox outbox_;
   Charge charge_;                 // for what the socket did not take
   std::size_t answer_bytes_ = 0;  // of answers, since nothing has waited

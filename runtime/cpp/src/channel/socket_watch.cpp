@@ -83,7 +83,7 @@ bool SocketWatch::must_look(std::uint32_t uses) {
 SocketWatch::Look SocketWatch::look(std::uint32_t uses, bool is_read, bool has_unsent) {
   const bool is_quiet = std::exchange(seen_uses_, uses) == uses;
   if (!is_quiet || (is_pinned_ && is_read)) {
-    period_ = std::min(2 * period_, longest_period);
+    period_ = std::min<std::uint8_t>(2 * period_, longest_period);
     return Look::later;
   }
   is_looked_at_ = false;

@@ -71,25 +71,28 @@ class SocketWatch {
   /// How long a socket stays idle without a call, or in the same handler. Grows while calls go on:
   /// each look takes some microseconds from the caller's processor, and with one in a hundred calls
   /// it would show in their p99.
-  [[nodiscard]] Milliseconds period() const { return is_pinned_ ? pinned_period : period_; }
+  [[nodiscard]] Milliseconds period() const {
+    return Milliseconds(is_pinned_ ? pinned_period : period_);
+  }
 
  private:
   void become(State state, bool has_unsent);
   bool must_look(std::uint32_t uses);
 
-  static constexpr Milliseconds first_period{1};
-  static constexpr Milliseconds longest_period{4};
-  static constexpr Milliseconds pinned_period{5};
+  // Milliseconds; small, as there is one for each connection.
+  static constexpr std::uint8_t first_period = 1;
+  static constexpr std::uint8_t longest_period = 4;
+  static constexpr std::uint8_t pinned_period = 5;
 
   Watcher& watcher_;
   const int socket_;
   Pollable& pollable_;
   State state_ = State::off;
+  std::uint8_t period_ = first_period;
   bool is_registered_ = false;  // with the watcher, for anything
   bool is_looked_at_ = false;   // look() will be called
   bool is_pinned_ = false;
   std::uint32_t seen_uses_ = 0;
-  Milliseconds period_ = first_period;
   Time last_call_{};
 };
 

@@ -41,12 +41,12 @@ class Strand {
   /// All changes of the state. A test compares them with the table in docs/architecture.md.
   static std::span<const Transition<State>> transitions();
 
-  /// `limit`: bytes that may be queued before the connection is not read on.
-  explicit Strand(std::size_t limit) : limit_(limit) {}
+  /// `limit`: bytes that may be queued before the connection is not read on. `account`: of who is
+  /// charged for what is queued, null for nobody; it outlives this, and changes before it is used.
+  Strand(std::size_t limit, const std::shared_ptr<Account>& account)
+      : limit_(limit), account_(account) {}
   Strand(const Strand&) = delete;
   Strand& operator=(const Strand&) = delete;
-  /// Before it is used: who is charged for what is queued; null for nobody.
-  void set_account(std::shared_ptr<Account> account) { account_ = std::move(account); }
 
   [[nodiscard]] State state() const { return state_; }
   [[nodiscard]] bool is_taken() const { return state_ != State::free; }
@@ -117,7 +117,7 @@ class Strand {
   void charge(Frame& frame);
 
   const std::size_t limit_;
-  std::shared_ptr<Account> account_;
+  const std::shared_ptr<Account>& account_;
   State state_ = State::free;
   Suspension suspension_ = Suspension::no;
   bool is_full_ = false;

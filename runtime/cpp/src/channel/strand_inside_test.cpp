@@ -30,7 +30,8 @@ class StrandTest : public ::testing::Test {
   std::string next() { return text_of(strand_.pop()); }
 
   std::mutex lock_;
-  Strand strand_{100};
+  std::shared_ptr<Account> account_;
+  Strand strand_{100, account_};
   ScratchLease scratch_;
 };
 
@@ -99,16 +100,15 @@ TEST_F(StrandTest, IsFullBeyondItsLimit) {
 
 TEST_F(StrandTest, ChargesTheSenderAndGivesBack) {
   const auto pool = std::make_shared<Pool>(1'000'000, 0);
-  const auto account = std::make_shared<Account>(pool, 400);
-  strand_.set_account(account);
+  account_ = std::make_shared<Account>(pool, 400);
   strand_.push(message(std::string(200, 'x')));
-  EXPECT_GE(account->held(), 200U);
+  EXPECT_GE(account_->held(), 200U);
   EXPECT_FALSE(strand_.is_full());
   strand_.push(message(std::string(200, 'x')));
   EXPECT_TRUE(strand_.is_full());  // the account is, which pays all the same
-  EXPECT_GE(account->held(), 400U);
+  EXPECT_GE(account_->held(), 400U);
   strand_.take_queue().reset();
-  EXPECT_EQ(account->held(), 0U);
+  EXPECT_EQ(account_->held(), 0U);
 }
 
 TEST_F(StrandTest, GoesOnWithoutAThreadThatStepsOut) {
@@ -206,7 +206,7 @@ TEST_F(StrandTest, ATurnIsTheInnermostOfItsThread) {
   EXPECT_EQ(StrandTurn::current(strand_), nullptr);
   StrandTurn turn(strand_, *scratch_, longest_turn);
   EXPECT_EQ(StrandTurn::current(strand_), &turn);
-  const Strand other(100);
+  const Strand other(100, account_);
   {
     const ScratchLease scratch;
     StrandTurn inner(other, *scratch, longest_turn);

@@ -49,7 +49,7 @@ StreamConnection::StreamConnection(Role role, Descriptor socket, std::shared_ptr
                .is_server = role_ == Role::server,
                .must_certify_clients = options_->tls.must_certify_clients},
               terms_, sending_, std::move(carrier)),
-      strand_(options_->request_queue_limit),
+      strand_(options_->request_queue_limit, account_),
       last_received_(coarse_now()),
       created_(coarse_now()),
       watch_(*reactor_, socket_.get(), *this) {
@@ -72,7 +72,7 @@ void StreamConnection::set_agreement(const NodeId& remote_node, std::string remo
   may_combine_ = agreement.combined_connect;
   has_local_strings_ = agreement.local_strings;
   has_standard_strings_ = agreement.standard_strings;
-  tap_.agreed(remote_node_, remote_name_, agreement);
+  tap_.agreed(*options_, remote_node_, remote_name_, agreement);
 }
 
 void StreamConnection::tell_handshake(std::span<const std::byte> request,
@@ -91,7 +91,6 @@ void StreamConnection::start(std::shared_ptr<Receiver> receiver) {
     receiver_ = std::move(receiver);
     // A message on its way to a client is one at most, and may be what a caller waits for.
     if (role_ == Role::server) inbox_.set_account(account_);
-    strand_.set_account(account_);
     sending_.set_account(account_);
     if (layers_.carrier() != nullptr) {
       layers_.carrier()->set_on_room([reactor = reactor_.get(), weak = weak_from_this()] {
