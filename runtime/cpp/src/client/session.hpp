@@ -208,7 +208,7 @@ class Session final : public channel::Receiver,
   };
   [[nodiscard]] Writer& write(const Outgoing& request) const;
   Numbers draw_numbers(bool has_name);
-  Numbers draw(endpoint::Pending& call, const Outgoing& request);
+  Numbers draw(endpoint::Pending& call, const Outgoing& request, endpoint::Asked asked);
   Numbers draw(const Outgoing& request, bool has_number);
   void number(const Outgoing& request, Writer& writer, const Numbers& numbers) const;
   void write_packet_message(Writer& writer, const EntryHeader& header, std::uint32_t element_count,

@@ -44,13 +44,30 @@ Writer& Session::write(const Outgoing& request) const {
   return writer;
 }
 
+namespace {
+
+using endpoint::Asked;
+
+Asked asked(const Outgoing& request) {
+  return request.opens_generator ? Asked::opening(request.type, request.path, request.member)
+                                 : Asked(request.type, request.path, request.member);
+}
+
+// An opening that nobody waits for any more is remembered beyond the call.
+Asked asked_while_open(const Outgoing& request) {
+  return request.opens_generator ? asked(request)
+                                 : Asked::while_open(request.type, request.path, request.member);
+}
+
+}  // namespace
+
 void Session::perform(const Outgoing& request, endpoint::BlockingCall& call, Milliseconds timeout) {
   const CallTerms terms = CallTerms::of_blocking_call();
   const channel::Time now = channel::coarse_now();
   const channel::Time deadline = channel::after(now, timeout_for(timeout, terms));
   Writer& writer = write(request);
   call.perform(terms, deadline, now, [&](endpoint::Pending& open) {
-    number(request, writer, draw(open, request));
+    number(request, writer, draw(open, request, asked_while_open(request)));
     connection_->send_call(writer, now, endpoint::priority_of(request.type, request.is_urgent));
   });
 }
@@ -75,7 +92,7 @@ void Session::start(const Outgoing& request, AnswerReader read, Milliseconds tim
   call->start(
       timeout_for(timeout, terms), terms, [&]() -> Writer& { return write(request); },
       [&](endpoint::Pending& open, Writer& writer) {
-        number(request, writer, draw(open, request));
+        number(request, writer, draw(open, request, asked(request)));
         const auto priority = endpoint::priority_of(request.type, request.is_urgent);
         if (priority == channel::Priority::usual) {
           connection_->stream(writer);  // it may be one of many
@@ -128,10 +145,8 @@ bool is_special(EntryType type) { return static_cast<std::uint16_t>(type) < 500;
 }  // namespace
 
 // A request that waits for its answer is open from now on.
-Session::Numbers Session::draw(endpoint::Pending& call, const Outgoing& request) {
-  using endpoint::Asked;
-  Asked asked = request.opens_generator ? Asked::opening(request.type, request.path, request.member)
-                                        : Asked(request.type, request.path, request.member);
+Session::Numbers Session::draw(endpoint::Pending& call, const Outgoing& request,
+                               endpoint::Asked asked) {
   const std::lock_guard lock(mutex_);
   Numbers numbers = draw_numbers(is_special(request.type));
   numbers.request = pending_.add(call, std::move(asked));

@@ -26,7 +26,7 @@ std::uint64_t rest(std::string_view text) {
   return letter(0) | letter(text.size() / 2) << 8 | letter(text.size() - 1) << 16;
 }
 
-// Quick, since there are four of them in each call.
+// Quick, since there are four of them in each asynchronous call.
 std::size_t hash(std::string_view text) {
   constexpr std::uint64_t odd = 0x9e37'79b9'7f4a'7c15;
   constexpr std::size_t step = sizeof(std::uint64_t);
@@ -51,12 +51,22 @@ bool may_answer(EntryType answer, EntryType request) {
 }
 
 // Implementations spell what is escaped in an index in different ways: it does not count.
-std::size_t hash_of_path(std::string_view path) { return hash(path.substr(0, path.find('%'))); }
+std::string_view before_escapes(std::string_view path) { return path.substr(0, path.find('%')); }
+
+std::size_t hash_of_path(std::string_view path) { return hash(before_escapes(path)); }
 
 }  // namespace
 
 Asked::Asked(EntryType type, std::string_view path, std::string_view member)
-    : type_(type), path_(hash_of_path(path)), member_(hash(member)) {}
+    : type_(type), path_{nullptr, hash_of_path(path)}, member_{nullptr, hash(member)} {}
+
+Asked Asked::while_open(EntryType type, std::string_view path, std::string_view member) {
+  Asked asked;
+  asked.type_ = type;
+  asked.path_ = {path.data(), path.size()};
+  asked.member_ = {member.data(), member.size()};
+  return asked;
+}
 
 Asked Asked::opening(EntryType type, std::string_view path, std::string_view member) {
   Asked asked(type, path, member);
@@ -64,10 +74,21 @@ Asked Asked::opening(EntryType type, std::string_view path, std::string_view mem
   return asked;
 }
 
+bool Asked::is_path(std::string_view path) const {
+  if (path_.letters == nullptr) return hash_of_path(path) == path_.size_or_hash;
+  const std::string_view asked(path_.letters, path_.size_or_hash);
+  return asked == path || before_escapes(asked) == before_escapes(path);
+}
+
+bool Asked::is_member(std::string_view member) const {
+  if (member_.letters == nullptr) return hash(member) == member_.size_or_hash;
+  return std::string_view(member_.letters, member_.size_or_hash) == member;
+}
+
 bool Asked::is_answered_by(const Entry& entry) const {
   return may_answer(entry.type, type_) &&
-         (entry.service_path.empty() || hash_of_path(entry.service_path) == path_) &&
-         (entry.member.empty() || hash(entry.member) == member_);
+         (entry.service_path.empty() || is_path(entry.service_path)) &&
+         (entry.member.empty() || is_member(entry.member));
 }
 
 // The link that points to the request, or the end of its chain.

@@ -21,7 +21,11 @@ namespace rr::endpoint {
 class Asked {
  public:
   Asked() = default;
+  /// The texts may go before the answer comes.
   Asked(EntryType type, std::string_view path, std::string_view member);
+  /// The texts stay for as long as the request is open: what a blocking call has. They are compared
+  /// as they are, which is quicker.
+  static Asked while_open(EntryType type, std::string_view path, std::string_view member);
 
   /// Where a generator is that a request opens.
   struct Opening {
@@ -36,10 +40,18 @@ class Asked {
   [[nodiscard]] bool is_answered_by(const Entry& entry) const;
 
  private:
+  // A text that stays, or the hash of one that may be gone when the answer comes.
+  struct Text {
+    const char* letters = nullptr;  // null for a hash
+    std::size_t size_or_hash = 0;
+  };
+
+  [[nodiscard]] bool is_path(std::string_view path) const;
+  [[nodiscard]] bool is_member(std::string_view member) const;
+
   EntryType type_ = EntryType::null;
-  // Hashes: the texts may be gone when the answer comes.
-  std::size_t path_ = 0;
-  std::size_t member_ = 0;
+  Text path_;
+  Text member_;
   std::shared_ptr<const Opening> opening_;
 };
 
