@@ -60,6 +60,24 @@ class Blocks(unittest.TestCase):
         self.assertEqual(status, 0, output)
         self.assertIn("left out: line 11: there is no no-such-program", output)
 
+    def test_commands_of_root_have_their_own_prompt(self):
+        status, output = self.run_page("```console\n# echo one\none\n# echo '$ x' \\\n    '# y'\n$ x # y\n```\n")
+        self.assertEqual(status, 0, output)
+
+    def test_sections_are_run_alone_or_left_out(self):
+        text = "# One\n\n```console\n$ true\n```\n\n## Two\n\n```console\n$ false\n```\n"
+        self.assertEqual(self.run_page(text, "--skip", "Two")[0], 0)
+        self.assertEqual(self.run_page(text, "--only", "One")[0], 0)
+        self.assertEqual(self.run_page(text, "--only", "Two")[0], 1)
+        self.assertIn("no block was run", self.run_page(text, "--only", "Three")[1])
+
+    def test_another_system_has_its_own_shell_and_files(self):
+        with tempfile.TemporaryDirectory() as root:
+            text = "`/etc/one`:\n\n```\n1\n```\n\n```console\n# cat etc/one\n1\n```\n"
+            status, output = self.run_page(text, "--keep", root, "--shell", f"bash -c 'cd {root} && exec bash'")
+            self.assertEqual(status, 0, output)
+            self.assertTrue(os.path.exists(root + "/etc/one"))
+
     def test_a_program_runs_on_and_is_ended(self):
         status, output = self.run_page("```console\n$ sh -c 'echo ready; exec sleep 60' &\nready\n$ kill %1\n```\n")
         self.assertEqual(status, 0, output)

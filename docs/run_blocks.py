@@ -7,7 +7,8 @@ A block is one of these:
   a file        the line before the block is its name and a colon: `main.cpp`:
   commands      the language of the block is `console`: lines `$ command`, each followed by its output. A line `...` of
                 the output stands for any lines, `...` inside of a line for any text. A command without output may
-                print anything. One that ends in ` &` runs on; its output is waited for.
+                print anything. One that ends in ` &` runs on; its output is waited for. A block that begins with
+                `# ` has commands for root: all its lines `# command`.
   not run       a comment before the block gives the reason: <!-- not run: needs a board -->
 
 Other comments before a block:
@@ -21,6 +22,7 @@ A block that is none of these is an error: no block of a page goes unseen.
 import argparse
 import os
 import re
+import shlex
 import shutil
 import signal
 import socket
@@ -48,7 +50,8 @@ class Block:
     def __init__(self, line, language, heading):
         self.line = line
         self.language = language
-        self.heading = heading
+        self.heading = heading  # its number, and its words
+        self.section = ""
         self.lines = []
         self.file = None
         self.notes = {}
@@ -56,7 +59,7 @@ class Block:
 
 def read_blocks(text):
     """The fenced blocks of a page, with their captions and comments."""
-    blocks, block, before, notes, heading = [], None, "", {}, 0
+    blocks, block, before, notes, heading, section = [], None, "", {}, 0, ""
     for number, line in enumerate(text.split("\n"), 1):
         if block is not None:
             if line.strip() == "```":
@@ -69,6 +72,7 @@ def read_blocks(text):
             caption = CAPTION.match(before)
             block.file = caption and caption.group(1)
             block.notes = notes
+            block.section = section
         else:
             comment = COMMENT.match(line.strip())
             if comment:
@@ -77,6 +81,7 @@ def read_blocks(text):
                 before, notes = line.strip(), notes if CAPTION.match(line.strip()) else {}
             if line.startswith("#"):
                 heading += 1
+                section = line.lstrip("#").strip()
     if block is not None:
         raise Failure(block.line, "the block has no end")
     return blocks
@@ -85,15 +90,16 @@ def read_blocks(text):
 def read_commands(block):
     """The commands of a block: line, command, lines of expected output."""
     commands = []
+    prompt = "# " if block.lines and block.lines[0].startswith("# ") else "$ "
     for number, line in enumerate(block.lines, block.line + 1):
         if commands and commands[-1][1].endswith("\\"):
             commands[-1][1] += "\n" + line
-        elif line.startswith("$ "):
+        elif line.startswith(prompt):
             commands.append([number, line[2:], []])
         elif commands:
             commands[-1][2].append((number, line.rstrip()))
         else:
-            raise Failure(number, "a block of commands begins with `$ `")
+            raise Failure(number, "a block of commands begins with `$ ` or `# `")
     return commands
 
 
@@ -125,11 +131,11 @@ def first_difference(expected, lines):
 class Shell:
     """One bash for all commands of a page, so that `cd` and variables last."""
 
-    def __init__(self, folder, environment):
+    def __init__(self, folder, environment, program):
         self.folder = folder
         self.count = 0
         self.process = subprocess.Popen(
-            ["bash", "--noprofile", "--norc"], cwd=folder, env=environment, stdin=subprocess.PIPE,
+            program, cwd=folder, env=environment, stdin=subprocess.PIPE,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True, errors="replace")
         self.lines = []
         self.news = threading.Condition()
@@ -194,7 +200,7 @@ class Shell:
 
 def run_block(block, shell, folder, arguments):
     if block.file:
-        path = os.path.join(folder, block.file)
+        path = os.path.join(folder, block.file.lstrip("/") if arguments.shell else block.file)
         os.makedirs(os.path.dirname(path), exist_ok=True)
         with open(path, "w", encoding="utf-8") as file:
             file.write("\n".join(block.lines) + "\n")
@@ -227,13 +233,20 @@ def run_block(block, shell, folder, arguments):
             raise Failure(difference[0], f"`{command}`\n  {difference[1]}\nIts output:\n{shown}")
 
 
+def is_wanted(section, arguments):
+    """Whether a section is one of those that were asked for."""
+    if arguments.only:
+        return section in arguments.only
+    return section not in arguments.skip
+
+
 def run_page(text, folder, environment, arguments):
     """Runs all blocks; returns how many, and what was left out."""
-    shell = Shell(folder, environment)
+    shell = Shell(folder, environment, shlex.split(arguments.shell or "bash --noprofile --norc"))
     count, left_out, closed = 0, [], None
     try:
         for block in read_blocks(text):
-            if block.heading == closed:
+            if block.heading == closed or not is_wanted(block.section, arguments):
                 continue
             missing = [name for name in block.notes.get("needs", "").split()
                        if not shutil.which(name, path=environment["PATH"])]
@@ -262,6 +275,9 @@ def main():
     parser.add_argument("--port", action="append", default=[], help="a port of the page, replaced by a free one")
     parser.add_argument("--seconds", type=float, default=300, help="how long one command may take")
     parser.add_argument("--keep", help="the folder to run in, which stays")
+    parser.add_argument("--shell", help="the command that starts the shell, of another system whose files are in the folder of --keep")
+    parser.add_argument("--only", action="append", default=[], metavar="HEADING", help="run the blocks below this heading alone")
+    parser.add_argument("--skip", action="append", default=[], metavar="HEADING", help="leave out the blocks below this heading")
     parser.add_argument("--verbose", action="store_true")
     arguments = parser.parse_args()
 
@@ -274,7 +290,8 @@ def main():
         folder = os.path.abspath(arguments.keep) if arguments.keep else tempfile.mkdtemp(prefix="robdef-page-")
         home = folder + ".home"
         # Octave complains at its end where its folder is missing.
-        for path in (folder, home, home + "/.local/share/octave"):
+        # With a system of its own, the folder is that one's.
+        for path in ([] if arguments.shell else [folder]) + [home, home + "/.local/share/octave"]:
             shutil.rmtree(path, ignore_errors=True)
             os.makedirs(path)
         # Build servers of .NET would outlive the page.
