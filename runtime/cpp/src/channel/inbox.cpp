@@ -26,7 +26,7 @@ std::span<std::byte> Inbox::room(Scratch& scratch) {
   return std::span(scratch.bytes).subspan(kept_size_);
 }
 
-bool Inbox::may_grow() {
+[[gnu::hot]] bool Inbox::may_grow() {
   if (assembly_ == nullptr || assembly_->have != assembly_->granted) return true;
   const std::size_t left = assembly_->whole - assembly_->have;
   std::size_t step = left;

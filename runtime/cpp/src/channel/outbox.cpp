@@ -221,7 +221,8 @@ void Outbox::fill(Segment& segment, Writer& message) {
   }
 }
 
-std::ptrdiff_t Outbox::send(int socket, std::span<const Piece> more, Carrier* carrier) {
+[[gnu::hot]] std::ptrdiff_t Outbox::send(int socket, std::span<const Piece> more,
+                                         Carrier* carrier) {
   if (empty() && more.size() == 1 && carrier == nullptr) {  // nearly always
     const ssize_t sent = ::send(socket, more[0].data, more[0].size, MSG_DONTWAIT | MSG_NOSIGNAL);
     if (sent == static_cast<ssize_t>(more[0].size)) return sent;

@@ -80,7 +80,7 @@ std::shared_ptr<const PeerProof> PeerLayers::take_proof() {
   return layers().take_proof();
 }
 
-bool PeerLayers::may_send(const Message& message) const {
+[[gnu::hot]] bool PeerLayers::may_send(const Message& message) const {
   return certified_node_.is_any() || !message.has_routing || message.sender_node.is_any() ||
          message.sender_node == certified_node_;
 }

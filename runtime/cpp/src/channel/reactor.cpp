@@ -329,7 +329,7 @@ bool Reactor::next_posted(Posted& next, Handling& admission) {
   return false;
 }
 
-void Reactor::about_to_wait() {
+[[gnu::hot]] void Reactor::about_to_wait() {
   Polling* const polling = current_polling;
   if (polling == nullptr) return;
   Reactor& reactor = *polling->reactor;
@@ -439,7 +439,7 @@ std::size_t Reactor::waiting() const {
 // Watching
 
 // Returns true when this thread is to poll from now on.
-bool Reactor::watch(std::unique_lock<std::mutex>& lock) {
+[[gnu::hot]] bool Reactor::watch(std::unique_lock<std::mutex>& lock) {
   std::uint64_t last_turn = turn_.load();
   int stuck_looks = 0;
   int quiet_looks = 0;
@@ -484,7 +484,7 @@ bool Reactor::take_over(std::uint64_t turn) {
 
 // Timers
 
-void Reactor::schedule(Timer& timer, std::weak_ptr<void> owner, Time when) {
+[[gnu::hot]] void Reactor::schedule(Timer& timer, std::weak_ptr<void> owner, Time when) {
   const std::lock_guard lock(mutex_);
   const bool is_first = timers_.schedule(timer, std::move(owner), is_stopping_ ? never : when);
   if (is_first) watch_.notify_one();
@@ -496,7 +496,7 @@ void Reactor::cancel(Timer& timer) {
 }
 
 // Returns when the next one is due.
-Time Reactor::run_timers(std::unique_lock<std::mutex>& lock) {
+[[gnu::hot]] Time Reactor::run_timers(std::unique_lock<std::mutex>& lock) {
   Time next = timers_.next_due();
   while (next != never && next <= Clock::now()) {
     {

@@ -11,17 +11,17 @@ thread_local std::unique_ptr<Scratch> unused;  // NOLINT
 
 }  // namespace
 
-ScratchLease::ScratchLease() {
+[[gnu::hot]] ScratchLease::ScratchLease() {
   scratch_ = std::move(unused);
   if (!scratch_) scratch_.reset(new Scratch);  // not make_unique, which would clear it
 }
 
-ScratchLease::~ScratchLease() {
+[[gnu::hot]] ScratchLease::~ScratchLease() {
   scratch_->waiting.clear();
   unused = std::move(scratch_);
 }
 
-Writer& thread_writer() {
+[[gnu::hot]] Writer& thread_writer() {
   thread_local Writer writer;
   return writer;
 }

@@ -100,7 +100,7 @@ void SendQueue::gather(Writer& message) {
 }
 
 // Under mutex_: what was gathered is next.
-void SendQueue::take_gathered() {
+[[gnu::hot]] void SendQueue::take_gathered() {
   if (!has_gathered()) return;
   const std::lock_guard lock(gathering_);
   move_gathered();

@@ -42,7 +42,7 @@ SendQueue::Sent SendQueue::send(Writer& message, const How& how) {
 }
 
 // Under mutex_. False when the connection is broken or far too much waits.
-bool SendQueue::send_under_lock(Writer& message, const How& how, bool& has_rest) {
+[[gnu::hot]] bool SendQueue::send_under_lock(Writer& message, const How& how, bool& has_rest) {
   if (is_closed()) return false;
   const bool is_unsent = has_unsent_.load(std::memory_order_relaxed);
   // A small one that is sent at once costs nothing; of a large one something is mostly left.
@@ -193,7 +193,7 @@ std::size_t SendQueue::most_answers() const {
 std::size_t SendQueue::waiting_answers() const { return std::min(answer_bytes_, unsent()); }
 
 // Under mutex_.
-void SendQueue::note_waiting() {
+[[gnu::hot]] void SendQueue::note_waiting() {
   const std::size_t waiting = unsent();
   if (waiting == 0) answer_bytes_ = 0;
   outbox_bytes_.store(waiting, std::memory_order_relaxed);

@@ -10,7 +10,7 @@
 
 namespace rr::channel {
 
-void StreamConnection::claim(Waiter& waiter) {
+[[gnu::hot]] void StreamConnection::claim(Waiter& waiter) {
   const std::lock_guard lock(mutex_);
   if (is_closing_ || lease_.is_taken() || !may_callers_read()) return;
   begin_lead(waiter);
@@ -22,7 +22,7 @@ void StreamConnection::begin_lead(Waiter& waiter) {
   if (watch_.is_full()) watch_.go_idle(sending_.has_unsent());
 }
 
-void StreamConnection::wait(Waiter& waiter, Time deadline, Time now) {
+[[gnu::hot]] void StreamConnection::wait(Waiter& waiter, Time deadline, Time now) {
   bool may_lead = waiter.is_reader();
   if (!may_lead) {
     may_lead = follow(waiter, deadline);
@@ -34,7 +34,7 @@ void StreamConnection::wait(Waiter& waiter, Time deadline, Time now) {
   }
 }
 
-void StreamConnection::resign(Waiter& waiter) {
+[[gnu::hot]] void StreamConnection::resign(Waiter& waiter) {
   bool is_end = false;
   {
     const std::lock_guard lock(mutex_);
@@ -93,7 +93,7 @@ bool StreamConnection::begin_following(Waiter& waiter) {
 }
 
 // False when the connection must not be read for a while.
-bool StreamConnection::lead(Waiter& waiter, Time deadline, Time now) {
+[[gnu::hot]] bool StreamConnection::lead(Waiter& waiter, Time deadline, Time now) {
   Reactor::about_to_wait();
   limit_receive_time();
   // Nearly always the first receive brings the answer.
@@ -169,7 +169,7 @@ void StreamConnection::finish(Waiter& waiter) {
 }
 
 // With the read lease, which is a caller's or the reactor's.
-void StreamConnection::finish_answered(Waiter& waiter) {
+[[gnu::hot]] void StreamConnection::finish_answered(Waiter& waiter) {
   if (waiter.is_reader()) {
     ReadLease::finish_leader(waiter);
     return;

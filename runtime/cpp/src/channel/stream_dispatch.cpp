@@ -38,7 +38,7 @@ void StreamConnection::handle_in_turn(StrandTurn& turn, Handling admission, bool
 
 // Whether what was handled in the turn was slow. A thread that has waited for something else
 // meanwhile does not poll any more, and has blocked nobody.
-void StreamConnection::note_pace(const StrandTurn& turn) {
+[[gnu::hot]] void StreamConnection::note_pace(const StrandTurn& turn) {
   const bool is_slow = turn.is_slow();
   if (is_slow && !threads_->is_slow() && !reactor_->is_polling()) return;
   threads_->ran(is_slow);
@@ -46,7 +46,7 @@ void StreamConnection::note_pace(const StrandTurn& turn) {
 
 // Under mutex_. Messages are handled by this thread if it may and nobody else does; then true.
 // Otherwise they join the queue, and somebody is made to handle it.
-bool StreamConnection::hand_on(Scratch& scratch, bool may_dispatch, bool& must_post) {
+[[gnu::hot]] bool StreamConnection::hand_on(Scratch& scratch, bool may_dispatch, bool& must_post) {
   if (scratch.waiting.empty()) return false;
   if (may_dispatch && strand_.enter()) return true;
   for (Frame& frame : scratch.waiting) strand_.push(std::move(frame));
@@ -66,7 +66,7 @@ bool StreamConnection::must_yield(StrandTurn& turn) const {
 }
 
 // With the strand: the messages in the scratch. False when the handler of one has suspended it.
-bool StreamConnection::dispatch(StrandTurn& turn) {
+[[gnu::hot]] bool StreamConnection::dispatch(StrandTurn& turn) {
   Scratch& scratch = turn.scratch();
   const std::size_t parsed = scratch.parsed;
   const std::size_t count = scratch.waiting.size();
@@ -99,7 +99,7 @@ void StreamConnection::queue_rest(StrandTurn& turn) {
 
 // With the strand, which is given back: the queue. True when reading had to stop because of it.
 // Whoever has stepped out and wants to step in again comes first.
-bool StreamConnection::drain(StrandTurn& turn) {
+[[gnu::hot]] bool StreamConnection::drain(StrandTurn& turn) {
   std::unique_lock lock(mutex_);
   bool is_looked_at = false;
   while (true) {
@@ -175,8 +175,8 @@ void StreamConnection::drain_posted() {
 }
 
 // `turn`: the thread's, or null.
-void StreamConnection::handle_frame(Scratch& scratch, const Frame& frame, bool is_parsed,
-                                    StrandTurn* turn) {
+[[gnu::hot]] void StreamConnection::handle_frame(Scratch& scratch, const Frame& frame,
+                                                 bool is_parsed, StrandTurn* turn) {
   Message& message = scratch.message;
   // It could be read once, so it can be read again.
   const Limits any_size{.message_size = largest_size_, .depth = options_->limits.depth};

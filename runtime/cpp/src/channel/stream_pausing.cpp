@@ -21,7 +21,7 @@ constexpr std::size_t largest_receive = std::size_t{128} * 1024;
 }  // namespace
 
 // Under mutex_.
-bool StreamConnection::is_paused() const {
+[[gnu::hot]] bool StreamConnection::is_paused() const {
   return strand_.is_full() || is_refused_ || sending_.do_answers_wait();
 }
 
@@ -43,7 +43,7 @@ bool StreamConnection::is_departed() const { return role_ == Role::server && is_
 // Memory
 
 // With the read lease: where to receive.
-std::span<std::byte> StreamConnection::room(Scratch& scratch) {
+[[gnu::hot]] std::span<std::byte> StreamConnection::room(Scratch& scratch) {
   const std::span<std::byte> room = inbox_.room(scratch);
   if (account_ == nullptr || role_ == Role::client) return room;
   const bool is_stranger =
@@ -66,7 +66,7 @@ StreamConnection::Received StreamConnection::wait_for_memory() {
 }
 
 // With the read lease, after bytes have come.
-void StreamConnection::note_assembly() {
+[[gnu::hot]] void StreamConnection::note_assembly() {
   const std::size_t size = inbox_.assembled_size();
   refused_since_ = never;
   if (message_deadline_.is_set() == (size != 0)) return;

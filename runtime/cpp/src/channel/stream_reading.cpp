@@ -132,8 +132,9 @@ StreamConnection::Received StreamConnection::receive(Scratch& scratch, bool may_
 }
 
 // Receives and takes all whole messages.
-StreamConnection::Received StreamConnection::receive_once(Scratch& scratch, bool may_block,
-                                                          bool& is_full) {
+[[gnu::hot]] StreamConnection::Received StreamConnection::receive_once(Scratch& scratch,
+                                                                       bool may_block,
+                                                                       bool& is_full) {
   scratch.waiting.clear();
   scratch.parsed = 0;
   if (is_closed()) return Received::end;
@@ -168,7 +169,8 @@ StreamConnection::Received StreamConnection::fail_reading(const Error& why) {
 }
 
 // Cuts what was received into the inbox's room.
-StreamConnection::Received StreamConnection::take_bytes(Scratch& scratch, std::size_t received) {
+[[gnu::hot]] StreamConnection::Received StreamConnection::take_bytes(Scratch& scratch,
+                                                                     std::size_t received) {
   scratch.received += received;
   bool is_right = true;
   const bool fits = inbox_.receive(scratch, received, limits(), [&](Frame& frame) {
@@ -221,7 +223,7 @@ void StreamConnection::refuse_stream(const Scratch& scratch, std::size_t size) {
 }
 
 // Reads a message and does with it what does not have to wait. False when it is none.
-bool StreamConnection::take(Scratch& scratch, Frame& frame) {
+[[gnu::hot]] bool StreamConnection::take(Scratch& scratch, Frame& frame) {
   if (tap_.is_open()) tap_.received(frame.bytes);
   Message& message = scratch.message;
   Entry& first = scratch.first;
@@ -263,8 +265,9 @@ bool StreamConnection::take_packet(Scratch& scratch, const Frame& frame) {
   return receiver_->take_packet(scratch.message, scratch.first, frame.owner, scratch.deferred);
 }
 
-void StreamConnection::take_answers(const Message& message, const Entry& first,
-                                    const MemoryRef& owner, DeferredCallbacks& deferred) {
+[[gnu::hot]] void StreamConnection::take_answers(const Message& message, const Entry& first,
+                                                 const MemoryRef& owner,
+                                                 DeferredCallbacks& deferred) {
   if (message.entry_count == 1) {
     receiver_->take_answer(message, first, owner, deferred);
     return;
@@ -274,7 +277,7 @@ void StreamConnection::take_answers(const Message& message, const Entry& first,
 }
 
 // Gives back the read lease, then does what was found. True when there is more to read.
-bool StreamConnection::leave_read_lease(Scratch& scratch, bool may_dispatch) {
+[[gnu::hot]] bool StreamConnection::leave_read_lease(Scratch& scratch, bool may_dispatch) {
   bool must_post = false;
   bool has_strand = false;
   bool is_again = false;

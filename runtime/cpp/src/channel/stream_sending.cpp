@@ -36,7 +36,7 @@ class LargeArrays {
 
 }  // namespace
 
-void StreamConnection::check_size(const Writer& message) const {
+[[gnu::hot]] void StreamConnection::check_size(const Writer& message) const {
   if (message.failed()) throw Error(message.code(), message.Latch::message());
   if (message.size() + size_margin > largest_message()) {
     throw Error(ErrorCode::protocol_error,
@@ -55,7 +55,7 @@ std::vector<std::byte> StreamConnection::with_strings(Writer& message) const {
 
 // One message
 
-void StreamConnection::send(Writer& message, Time now, Priority priority) {
+[[gnu::hot]] void StreamConnection::send(Writer& message, Time now, Priority priority) {
   send(message, {.now = now, .priority = priority});
 }
 
@@ -65,7 +65,7 @@ void StreamConnection::send_newest(Writer& message, const Newest& newest, Time n
 
 // One receive often brings the answers of several callers, which then ask again one after the
 // other. The first of them waits for the rest, and sends what all of them ask.
-void StreamConnection::send_call(Writer& message, Time now, Priority priority) {
+[[gnu::hot]] void StreamConnection::send_call(Writer& message, Time now, Priority priority) {
   if (lease_.arrive() && priority == Priority::usual && !has_strings()) {
     check_size(message);
     const unsigned expected = lease_.expected_callers().load(std::memory_order_relaxed);
@@ -80,7 +80,7 @@ void StreamConnection::send_call(Writer& message, Time now, Priority priority) {
   send(message, now, priority);
 }
 
-void StreamConnection::send(Writer& message, const SendQueue::How& how) {
+[[gnu::hot]] void StreamConnection::send(Writer& message, const SendQueue::How& how) {
   check_size(message);
   if (message.version() == MessageVersion::v4 && has_strings()) {
     const std::vector<std::byte> coded = with_strings(message);
@@ -92,7 +92,7 @@ void StreamConnection::send(Writer& message, const SendQueue::How& how) {
   }
 }
 
-void StreamConnection::send_or_queue(Writer& message, const SendQueue::How& how) {
+[[gnu::hot]] void StreamConnection::send_or_queue(Writer& message, const SendQueue::How& how) {
   if (is_closed()) throw Error(ErrorCode::connection_error, "the connection is closed");
   const LargeArrays arrays(message);
   const SendQueue::Sent sent = sending_.send(message, how);
@@ -116,7 +116,7 @@ void StreamConnection::fail_later() {
       [self = shared_from_this()] { self->close(Error(ErrorCode::connection_error, not_taken)); });
 }
 
-void StreamConnection::reply(Writer& message, Priority priority) {
+[[gnu::hot]] void StreamConnection::reply(Writer& message, Priority priority) {
   try {
     const StrandTurn* const turn = StrandTurn::current(strand_);
     const bool has_strand = turn == nullptr || turn->is_held();

@@ -16,7 +16,7 @@ void StreamConnection::watch_input() {
 }
 
 // Under mutex_: a caller has ended reading, and nobody goes on.
-void StreamConnection::end_call() {
+[[gnu::hot]] void StreamConnection::end_call() {
   const bool has_more = lease_.is_asked_again();
   const Time last_received = last_received_.load(std::memory_order_relaxed);
   if (watch_.end_call(last_received, lease_.uses(), has_more, sending_.has_unsent())) {
@@ -25,7 +25,7 @@ void StreamConnection::end_call() {
 }
 
 // Under mutex_.
-void StreamConnection::schedule_watch_timer() {
+[[gnu::hot]] void StreamConnection::schedule_watch_timer() {
   reactor_->schedule(watch_timer_, weak_from_this(), Clock::now() + watch_.period());
 }
 
@@ -63,7 +63,7 @@ void StreamConnection::acknowledge_late() { acknowledge_with_next_segment(socket
 
 // Pinned threads
 
-void StreamConnection::read_pinned(Scratch& scratch) {
+[[gnu::hot]] void StreamConnection::read_pinned(Scratch& scratch) {
   if (!reactor_->begin_stay()) return;
   std::uint32_t uses = 0;
   unsigned receives = 0;
@@ -90,7 +90,7 @@ bool StreamConnection::begin_pinned(std::uint32_t& uses) {
   return true;
 }
 
-bool StreamConnection::go_on_pinned(Received received, std::uint32_t& uses) {
+[[gnu::hot]] bool StreamConnection::go_on_pinned(Received received, std::uint32_t& uses) {
   answers_wait();
   const std::lock_guard lock(mutex_);
   const bool is_lone = lease_.uses() == uses;
@@ -105,7 +105,7 @@ bool StreamConnection::go_on_pinned(Received received, std::uint32_t& uses) {
 }
 
 // Under mutex_. Returns what the uses of the lease will be as long as no caller reads.
-std::uint32_t StreamConnection::pin() {
+[[gnu::hot]] std::uint32_t StreamConnection::pin() {
   lease_.take();
   lease_.count_use();
   if (watch_.pin(lease_.uses(), sending_.has_unsent())) schedule_watch_timer();

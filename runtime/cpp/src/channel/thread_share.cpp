@@ -32,7 +32,7 @@ ThreadShare::ThreadShare(std::shared_ptr<AddressThreads> address) : address_(std
   if (last != Time::min() && coarse_now() - last < stall_memory) add_slowness(slow_from);
 }
 
-void ThreadShare::ran(bool is_long) {
+[[gnu::hot]] void ThreadShare::ran(bool is_long) {
   if (is_long) {
     add_slowness(cost_of_long);
     return;

@@ -5,7 +5,7 @@
 
 namespace rr::channel {
 
-bool TimerHeap::schedule(Timer& timer, std::weak_ptr<void> owner, Time when) {
+[[gnu::hot]] bool TimerHeap::schedule(Timer& timer, std::weak_ptr<void> owner, Time when) {
   cancel(timer);
   if (when == never) return false;
   timer.due_ = when;
@@ -16,7 +16,7 @@ bool TimerHeap::schedule(Timer& timer, std::weak_ptr<void> owner, Time when) {
   return timer.place_ == 0;
 }
 
-void TimerHeap::cancel(Timer& timer) {
+[[gnu::hot]] void TimerHeap::cancel(Timer& timer) {
   const std::size_t place = std::exchange(timer.place_, Timer::unscheduled);
   if (place == Timer::unscheduled) return;
   timer.owner_.reset();

@@ -21,7 +21,8 @@ Session::Milliseconds Session::timeout_for(Milliseconds timeout, const CallTerms
   return core_->options().request_timeout;
 }
 
-void Session::call(const Outgoing& request, const Incoming& answer, Milliseconds timeout) {
+[[gnu::hot]] void Session::call(const Outgoing& request, const Incoming& answer,
+                                Milliseconds timeout) {
   const auto read = [&](Decoder& decoder, const Message&, const Entry& entry) {
     if (answer.type != nullptr) {
       endpoint::read_value(decoder, entry, answer.element, *answer.type, answer.value);
@@ -31,12 +32,13 @@ void Session::call(const Outgoing& request, const Incoming& answer, Milliseconds
   perform(request, call, timeout);
 }
 
-void Session::call(const Outgoing& request, const AnswerReader& read, Milliseconds timeout) {
+[[gnu::hot]] void Session::call(const Outgoing& request, const AnswerReader& read,
+                                Milliseconds timeout) {
   endpoint::BlockingCallOf call(*this, read);
   perform(request, call, timeout);
 }
 
-Writer& Session::write(const Outgoing& request) const {
+[[gnu::hot]] Writer& Session::write(const Outgoing& request) const {
   Writer& writer = channel::thread_writer();
   writer.reset(connection_->version());
   endpoint::write_values(writer, request.parameters, request.values);
@@ -61,7 +63,8 @@ Asked asked_while_open(const Outgoing& request) {
 
 }  // namespace
 
-void Session::perform(const Outgoing& request, endpoint::BlockingCall& call, Milliseconds timeout) {
+[[gnu::hot]] void Session::perform(const Outgoing& request, endpoint::BlockingCall& call,
+                                   Milliseconds timeout) {
   const CallTerms terms = CallTerms::of_blocking_call();
   const channel::Time now = channel::coarse_now();
   const channel::Time deadline = channel::after(now, timeout_for(timeout, terms));
@@ -145,15 +148,15 @@ bool is_special(EntryType type) { return static_cast<std::uint16_t>(type) < 500;
 }  // namespace
 
 // A request that waits for its answer is open from now on.
-Session::Numbers Session::draw(endpoint::Pending& call, const Outgoing& request,
-                               endpoint::Asked asked) {
+[[gnu::hot]] Session::Numbers Session::draw(endpoint::Pending& call, const Outgoing& request,
+                                            endpoint::Asked asked) {
   const std::lock_guard lock(mutex_);
   Numbers numbers = draw_numbers(is_special(request.type));
   numbers.request = pending_.add(call, std::move(asked));
   return numbers;
 }
 
-Session::Numbers Session::draw(const Outgoing& request, bool has_number) {
+[[gnu::hot]] Session::Numbers Session::draw(const Outgoing& request, bool has_number) {
   const std::lock_guard lock(mutex_);
   Numbers numbers = draw_numbers(is_special(request.type));
   if (has_number) numbers.request = pending_.skip();
@@ -161,7 +164,8 @@ Session::Numbers Session::draw(const Outgoing& request, bool has_number) {
 }
 
 // Puts a request's headers in front of its elements.
-void Session::number(const Outgoing& request, Writer& writer, const Numbers& numbers) const {
+[[gnu::hot]] void Session::number(const Outgoing& request, Writer& writer,
+                                  const Numbers& numbers) const {
   writer.entry({.type = request.type,
                 .service_path = request.path,
                 .member = request.member,
@@ -262,8 +266,9 @@ void Session::end_abandoned(const Message& message, const Entry& entry, const Me
   });
 }
 
-void Session::take_answer(const Message& message, const Entry& entry, const MemoryRef& owner,
-                          channel::DeferredCallbacks& deferred) {
+[[gnu::hot]] void Session::take_answer(const Message& message, const Entry& entry,
+                                       const MemoryRef& owner,
+                                       channel::DeferredCallbacks& deferred) {
   endpoint::PendingTable::Answered answered;
   {
     const std::lock_guard lock(mutex_);

@@ -87,7 +87,7 @@ Stub::~Stub() {
   if (rr_session_) rr_session_->forget(*this);
 }
 
-void Stub::rr_get(const Member& member, const CallOptions& options, void* value) {
+[[gnu::hot]] void Stub::rr_get(const Member& member, const CallOptions& options, void* value) {
   const CallOptionsScope scope(options);
   need(*this, member)
       .call(get_request(rr_path_, member), {"value", member.type, value}, rr_timeout_);
@@ -98,8 +98,8 @@ void Stub::rr_set(const Member& member, const CallOptions& options, const void* 
   need(*this, member).call(SetRequest(rr_path_, member, value), Incoming{}, rr_timeout_);
 }
 
-void Stub::rr_invoke(const Member& member, const CallOptions& options, const void* const* arguments,
-                     void* result) {
+[[gnu::hot]] void Stub::rr_invoke(const Member& member, const CallOptions& options,
+                                  const void* const* arguments, void* result) {
   const CallOptionsScope scope(options);
   need(*this, member)
       .call(function_request(rr_path_, member, arguments), {"return", member.type, result},

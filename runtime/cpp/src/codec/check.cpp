@@ -16,8 +16,9 @@ struct Level {
 };
 
 template <class Parse>
-const char* walk(std::span<const std::byte> bytes, std::uint32_t left, std::size_t least,
-                 std::uint32_t deepest, void (*progress)(), const Parse& parse) {
+[[gnu::hot]] const char* walk(std::span<const std::byte> bytes, std::uint32_t left,
+                              std::size_t least, std::uint32_t deepest, void (*progress)(),
+                              const Parse& parse) {
   if (std::uint64_t{left} * least > bytes.size()) return "more elements than bytes";
   const std::byte* at = bytes.data();
   const std::byte* end = at + bytes.size();

@@ -23,13 +23,13 @@ void Decoder::set_budget(ContainerBudget& budget) {
   reserved_ = 0;
 }
 
-bool Decoder::reserve_more(std::size_t bytes, std::string_view element) {
+[[gnu::hot]] bool Decoder::reserve_more(std::size_t bytes, std::string_view element) {
   if (budget_ != nullptr && budget_->draw(bytes)) return true;
   return fail(ErrorCode::out_of_system_resource,
               "the containers of the message need more memory than they may take", element);
 }
 
-bool ElementReader::next(Element& element) {
+[[gnu::hot]] bool ElementReader::next(Element& element) {
   return decoder_->version() == MessageVersion::v4 ? next_v4(element) : next_v2(element);
 }
 
@@ -61,8 +61,8 @@ bool ElementReader::stop(const char* wrong) {
   return decoder_->fail(ErrorCode::protocol_error, wrong);
 }
 
-bool find_element(Decoder& decoder, std::span<const std::byte> bytes, std::uint32_t count,
-                  std::string_view name, Element& element) {
+[[gnu::hot]] bool find_element(Decoder& decoder, std::span<const std::byte> bytes,
+                               std::uint32_t count, std::string_view name, Element& element) {
   ElementReader reader(decoder, bytes, count);
   while (reader.next(element)) {
     if (element.has_name && element.name == name) return true;

@@ -97,8 +97,8 @@ const char* parse_header(std::span<const std::byte> bytes, const Limits& limits,
   return parse_begun_header(bytes, size, message);
 }
 
-const char* parse_begun_header(std::span<const std::byte> begun, std::size_t whole,
-                               Message& message) {
+[[gnu::hot]] const char* parse_begun_header(std::span<const std::byte> begun, std::size_t whole,
+                                            Message& message) {
   if (begun.size() < smallest_message || begun.size() > whole) return "too short for a message";
   const bool is_v2 = std::to_integer<int>(begun[8]) == 2;
   static_cast<MessageHeader&>(message) = {};
@@ -114,8 +114,9 @@ const char* parse_begun_header(std::span<const std::byte> begun, std::size_t who
   return is_v2 ? parse_header_v2(in, message) : parse_header_v4(in, message);
 }
 
-const char* check_message(std::span<const std::byte> bytes, const Limits& limits,
-                          UnknownCode unknown, Message& message, Entry& first, void (*progress)()) {
+[[gnu::hot]] const char* check_message(std::span<const std::byte> bytes, const Limits& limits,
+                                       UnknownCode unknown, Message& message, Entry& first,
+                                       void (*progress)()) {
   if (const char* wrong = parse_header(bytes, limits, message)) return wrong;
   if (message.entry_count == 0 && unknown == UnknownCode::refuse) return "no entries";
   Cursor entries{message.entries.data(), message.entries.data() + message.entries.size()};
@@ -139,7 +140,7 @@ const char* check_message(std::span<const std::byte> bytes, const Limits& limits
 
 }  // namespace codec
 
-std::size_t message_size(std::span<const std::byte> bytes, const Limits& limits) {
+[[gnu::hot]] std::size_t message_size(std::span<const std::byte> bytes, const Limits& limits) {
   codec::Cursor in{bytes.data(), bytes.data() + bytes.size()};
   std::uint32_t magic = 0;
   std::uint32_t size = 0;
@@ -194,8 +195,8 @@ bool can_be_message(std::span<const std::byte> begun, std::size_t whole) {
   return message.entry_count != 0 && rest == 0;
 }
 
-bool read_message(std::span<const std::byte> bytes, const Limits& limits, bool standard_strings,
-                  Message& message, const char** what) {
+[[gnu::hot]] bool read_message(std::span<const std::byte> bytes, const Limits& limits,
+                               bool standard_strings, Message& message, const char** what) {
   message.strings.reset(standard_strings);
   Entry first;
   const char* wrong =
@@ -204,8 +205,9 @@ bool read_message(std::span<const std::byte> bytes, const Limits& limits, bool s
   return wrong == nullptr;
 }
 
-bool read_message(std::span<const std::byte> bytes, const Limits& limits, bool standard_strings,
-                  Message& message, Entry& first, void (*progress)()) {
+[[gnu::hot]] bool read_message(std::span<const std::byte> bytes, const Limits& limits,
+                               bool standard_strings, Message& message, Entry& first,
+                               void (*progress)()) {
   message.strings.reset(standard_strings);
   return codec::check_message(bytes, limits, codec::UnknownCode::refuse, message, first,
                               progress) == nullptr;

@@ -265,7 +265,8 @@ inline const char* parse_entry_v2(Cursor& siblings, Entry& entry) {
 
 /// Source: 02, section 3.
 template <UnknownCode unknown>
-const char* parse_entry_v4(Cursor& siblings, const StringTable* strings, Entry& entry) {
+[[gnu::hot]] const char* parse_entry_v4(Cursor& siblings, const StringTable* strings,
+                                        Entry& entry) {
   Cursor in = siblings;
   std::uint32_t size = 0;
   if (!in.uint_x(size) || size < least_entry(MessageVersion::v4) || size > siblings.left()) {

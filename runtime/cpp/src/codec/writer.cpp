@@ -45,7 +45,7 @@ struct Decimal {
 Writer::Writer() = default;
 Writer::~Writer() = default;
 
-void Writer::reset(MessageVersion version) {
+[[gnu::hot]] void Writer::reset(MessageVersion version) {
   if (capacity() > most_kept) {
     last_large_ = capacity();
     buffer_ = {};
@@ -76,7 +76,7 @@ void Writer::grow(std::size_t size) {
   begin_ = end - kept;
 }
 
-void Writer::prepend_array(std::span<const std::byte> data, const MemoryRef& owner) {
+[[gnu::hot]] void Writer::prepend_array(std::span<const std::byte> data, const MemoryRef& owner) {
   if (data.size() < attach_threshold) {
     prepend_bytes(data.data(), data.size());
     return;
@@ -85,8 +85,9 @@ void Writer::prepend_array(std::span<const std::byte> data, const MemoryRef& own
   attached_bytes_ += data.size();
 }
 
-void Writer::element(const ElementName& name, ElementType type, std::string_view type_name,
-                     std::uint32_t count, std::size_t end) {
+[[gnu::hot]] void Writer::element(const ElementName& name, ElementType type,
+                                  std::string_view type_name, std::uint32_t count,
+                                  std::size_t end) {
   if (version_ == MessageVersion::v2) {
     element_v2(name, type, type_name, {}, count, end);
     return;
@@ -120,9 +121,10 @@ void Writer::element(const ElementName& name, ElementType type, std::string_view
   commit(back.at);
 }
 
-void Writer::element(const ElementName& name, ElementType type, std::string_view type_name,
-                     std::string_view metadata, std::span<const std::byte> extended,
-                     std::uint32_t count, std::size_t end) {
+[[gnu::hot]] void Writer::element(const ElementName& name, ElementType type,
+                                  std::string_view type_name, std::string_view metadata,
+                                  std::span<const std::byte> extended, std::uint32_t count,
+                                  std::size_t end) {
   if (version_ == MessageVersion::v2) {
     element_v2(name, type, type_name, metadata, count, end);
     return;
@@ -172,7 +174,7 @@ void Writer::element_v2(const ElementName& name, ElementType type, std::string_v
   commit(back.at);
 }
 
-void Writer::string_element(const ElementName& name, std::string_view text) {
+[[gnu::hot]] void Writer::string_element(const ElementName& name, std::string_view text) {
   const std::size_t end = position();
   if (text.size() > longest_message) {
     fail(ErrorCode::protocol_error, too_long, name.text);
@@ -186,7 +188,8 @@ void Writer::string_element(const ElementName& name, std::string_view text) {
   element(name, ElementType::string, {}, static_cast<std::uint32_t>(text.size()), end);
 }
 
-void Writer::entry(const EntryHeader& header, std::uint32_t element_count, std::size_t end) {
+[[gnu::hot]] void Writer::entry(const EntryHeader& header, std::uint32_t element_count,
+                                std::size_t end) {
   const std::size_t texts =
       header.service_path.size() + header.member.size() + header.metadata.size();
   const std::size_t elements = position() - end;
@@ -224,8 +227,8 @@ void Writer::entry_v2(const EntryHeader& header, std::uint32_t element_count,
   commit(back.at);
 }
 
-void Writer::entry_v4(const EntryHeader& header, std::uint32_t element_count,
-                      std::size_t elements) {
+[[gnu::hot]] void Writer::entry_v4(const EntryHeader& header, std::uint32_t element_count,
+                                   std::size_t elements) {
   // Path and member are always there, even when empty (02, section 3).
   std::uint8_t flags = codec::entry_flag::path_text | codec::entry_flag::member_text;
   Back back{begin_};
@@ -251,7 +254,7 @@ void Writer::entry_v4(const EntryHeader& header, std::uint32_t element_count,
   commit(back.at);
 }
 
-void Writer::message(const MessageHeader& header, std::uint32_t entry_count) {
+[[gnu::hot]] void Writer::message(const MessageHeader& header, std::uint32_t entry_count) {
   const std::size_t texts =
       header.sender_name.size() + header.receiver_name.size() + header.metadata.size();
   if (!fits(header.sender_name) || !fits(header.receiver_name) || !fits(header.metadata) ||
@@ -298,7 +301,7 @@ void Writer::message_v2(const MessageHeader& header, std::uint32_t entry_count) 
   commit(back.at);
 }
 
-void Writer::message_v4(const MessageHeader& header, std::uint32_t entry_count) {
+[[gnu::hot]] void Writer::message_v4(const MessageHeader& header, std::uint32_t entry_count) {
   Back back{reserve(message_fields + header.sender_name.size() + header.receiver_name.size() +
                     header.metadata.size())};
   const std::byte* const behind = back.at;
@@ -333,7 +336,7 @@ void Writer::message_v4(const MessageHeader& header, std::uint32_t entry_count) 
   commit(back.at);
 }
 
-std::span<const Piece> Writer::pieces() {
+[[gnu::hot]] std::span<const Piece> Writer::pieces() {
   pieces_.clear();
   const std::byte* at = begin_;
   const auto add_until = [&](const std::byte* stop) {

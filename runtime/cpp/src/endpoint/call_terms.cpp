@@ -10,16 +10,16 @@ thread_local const CallOptionsScope* innermost_scope = nullptr;
 
 }  // namespace
 
-CallOptionsScope::CallOptionsScope(const CallOptions& options, Reach reach)
+[[gnu::hot]] CallOptionsScope::CallOptionsScope(const CallOptions& options, Reach reach)
     : options_(&options), outer_(std::exchange(innermost_scope, this)), reach_(reach) {}
-CallOptionsScope::~CallOptionsScope() { innermost_scope = outer_; }
+[[gnu::hot]] CallOptionsScope::~CallOptionsScope() { innermost_scope = outer_; }
 
 void CallTerms::add(const CallOptions& options) {
   if (timeout.count() == 0) timeout = options.timeout;
   if (!stop.stop_possible()) stop = options.stop;
 }
 
-CallTerms CallTerms::of_blocking_call() {
+[[gnu::hot]] CallTerms CallTerms::of_blocking_call() {
   CallTerms terms;
   for (auto* scope = innermost_scope; scope != nullptr; scope = scope->outer_) {
     terms.add(*scope->options_);

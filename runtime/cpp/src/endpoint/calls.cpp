@@ -59,8 +59,9 @@ std::exception_ptr take_in(const Caller& caller, const Message& message, const E
 
 }  // namespace
 
-void BlockingCall::answer(const Message& message, const Entry& entry, const MemoryRef& owner,
-                          channel::DeferredCallbacks& /*deferred*/) {
+[[gnu::hot]] void BlockingCall::answer(const Message& message, const Entry& entry,
+                                       const MemoryRef& owner,
+                                       channel::DeferredCallbacks& /*deferred*/) {
   error_ = take_in(caller_, message, entry, owner,
                    [&](Decoder& decoder) { read(decoder, message, entry); });
   caller_.connection().finish_answered(waiter_);  // after which this may be gone
@@ -78,7 +79,7 @@ void BlockingCall::wait_after_failure(channel::Time now) {
   if (!is_ours && was_added()) caller_.connection().wait(waiter_, channel::never, now);
 }
 
-void BlockingCall::wait(channel::Time deadline, channel::Time now) {
+[[gnu::hot]] void BlockingCall::wait(channel::Time deadline, channel::Time now) {
   channel::Connection& connection = caller_.connection();
   connection.wait(waiter_, deadline, now);
   if (!waiter_.is_done()) {

@@ -22,7 +22,9 @@ std::uint64_t rest(std::string_view text) {
     return std::uint64_t{last} << 32 | first;
   }
   if (text.empty()) return 0;
-  const auto letter = [text](std::size_t at) { return static_cast<unsigned char>(text[at]); };
+  const auto letter = [text](std::size_t at) {
+    return std::uint64_t{static_cast<unsigned char>(text[at])};
+  };
   return letter(0) | letter(text.size() / 2) << 8 | letter(text.size() - 1) << 16;
 }
 
@@ -60,7 +62,8 @@ std::size_t hash_of_path(std::string_view path) { return hash(before_escapes(pat
 Asked::Asked(EntryType type, std::string_view path, std::string_view member)
     : type_(type), path_{nullptr, hash_of_path(path)}, member_{nullptr, hash(member)} {}
 
-Asked Asked::while_open(EntryType type, std::string_view path, std::string_view member) {
+[[gnu::hot]] Asked Asked::while_open(EntryType type, std::string_view path,
+                                     std::string_view member) {
   Asked asked;
   asked.type_ = type;
   asked.path_ = {path.data(), path.size()};
@@ -74,7 +77,7 @@ Asked Asked::opening(EntryType type, std::string_view path, std::string_view mem
   return asked;
 }
 
-bool Asked::is_path(std::string_view path) const {
+[[gnu::hot]] bool Asked::is_path(std::string_view path) const {
   if (path_.letters == nullptr) return hash_of_path(path) == path_.size_or_hash;
   const std::string_view asked(path_.letters, path_.size_or_hash);
   return asked == path || before_escapes(asked) == before_escapes(path);
@@ -85,7 +88,7 @@ bool Asked::is_member(std::string_view member) const {
   return std::string_view(member_.letters, member_.size_or_hash) == member;
 }
 
-bool Asked::is_answered_by(const Entry& entry) const {
+[[gnu::hot]] bool Asked::is_answered_by(const Entry& entry) const {
   return may_answer(entry.type, type_) &&
          (entry.service_path.empty() || is_path(entry.service_path)) &&
          (entry.member.empty() || is_member(entry.member));
@@ -109,7 +112,7 @@ void PendingTable::grow() {
   }
 }
 
-std::uint32_t PendingTable::add(Pending& request, Asked asked) {
+[[gnu::hot]] std::uint32_t PendingTable::add(Pending& request, Asked asked) {
   if (size_ == buckets_.size()) grow();
   request.asked_ = std::move(asked);
   request.id_ = skip();
@@ -134,7 +137,7 @@ Pending* PendingTable::take(Pending** link) {
   return request;
 }
 
-PendingTable::Answered PendingTable::take_answered(const Entry& entry) {
+[[gnu::hot]] PendingTable::Answered PendingTable::take_answered(const Entry& entry) {
   Pending** const link = size_ != 0 ? find(entry.request_id) : nullptr;
   if (link == nullptr || *link == nullptr) return {nullptr, false, take_abandoned(entry)};
   if (!(*link)->asked_.is_answered_by(entry)) return {nullptr, true};

@@ -15,7 +15,7 @@ EntryHeader answer_header(const Entry& request, ErrorCode error) {
           .error = static_cast<std::uint16_t>(error)};
 }
 
-channel::Priority priority_of(EntryType type, bool is_urgent) {
+[[gnu::hot]] channel::Priority priority_of(EntryType type, bool is_urgent) {
   switch (type) {
     case EntryType::client_session_op_req:
     case EntryType::client_session_op_ret:

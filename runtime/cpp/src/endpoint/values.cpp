@@ -16,15 +16,15 @@ void read_element(Decoder& decoder, const Element& element, const Type& type, vo
 
 }  // namespace
 
-void write_values(Writer& writer, std::span<const Parameter> parameters,
-                  const void* const* values) {
+[[gnu::hot]] void write_values(Writer& writer, std::span<const Parameter> parameters,
+                               const void* const* values) {
   for (std::size_t i = parameters.size(); i-- != 0;) {
     parameters[i].type->write(writer, parameters[i].name, values[i]);
   }
 }
 
-void read_value(Decoder& decoder, const Entry& entry, std::string_view name, const Type& type,
-                void* value) {
+[[gnu::hot]] void read_value(Decoder& decoder, const Entry& entry, std::string_view name,
+                             const Type& type, void* value) {
   Element element;
   if (!find_element(decoder, entry.elements, entry.element_count, name, element)) {
     throw Error(ErrorCode::message_element_not_found,
@@ -33,8 +33,8 @@ void read_value(Decoder& decoder, const Entry& entry, std::string_view name, con
   read_element(decoder, element, type, value);
 }
 
-void read_values(Decoder& decoder, const Entry& entry, std::span<const Parameter> parameters,
-                 void* const* values) {
+[[gnu::hot]] void read_values(Decoder& decoder, const Entry& entry,
+                              std::span<const Parameter> parameters, void* const* values) {
   // They nearly always come in their order.
   ElementReader reader(decoder, entry.elements, entry.element_count);
   Element element;

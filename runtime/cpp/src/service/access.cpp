@@ -22,7 +22,7 @@ std::uint8_t access_of(const ServedObject& object, std::string_view member) {
 
 std::shared_ptr<const User> ServerEndpoint::user() const { return access_.user(); }
 
-void ServerEndpoint::check_access(Question& question) {
+[[gnu::hot]] void ServerEndpoint::check_access(Question& question) {
   const Entry& entry = question.entry;
   question.row = &row_of_received(entry.type, entry.member);
   question.login = access_.login();
@@ -38,7 +38,7 @@ void ServerEndpoint::check_access(Question& question) {
 }
 
 // A row of requests to one member asks the rules once.
-void ServerEndpoint::check_rights(const Question& question) {
+[[gnu::hot]] void ServerEndpoint::check_rights(const Question& question) {
   const Entry& entry = question.entry;
   if (granted_.standing == question.standing && question.row->needs == Needs::user &&
       granted_.member == entry.member && granted_.path == entry.service_path &&
@@ -57,7 +57,7 @@ void ServerEndpoint::check_member(const Question& question, const Member& member
   check_locks(question, member.name);
 }
 
-void ServerEndpoint::check_locks(const Question& question, std::string_view member) {
+[[gnu::hot]] void ServerEndpoint::check_locks(const Question& question, std::string_view member) {
   const Locked locked = question.row->locked;
   ServiceHost& host = *host_;
   if (locked == Locked::passes) return;

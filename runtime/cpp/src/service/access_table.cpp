@@ -102,7 +102,7 @@ const AccessRow& find(const std::array<AccessRow, Size>& rows, const Index& inde
 
 }  // namespace
 
-const AccessRow& row_of_received(EntryType type, std::string_view member) {
+[[gnu::hot]] const AccessRow& row_of_received(EntryType type, std::string_view member) {
   if (type != client_session_op_req) return find(received, received_index, type);
   for (const OperationRow& each : operations) {
     if (each.operation == member) return each.row;

@@ -14,7 +14,7 @@ DecodedMemory::DecodedMemory(ServerEndpoint& endpoint, const Question& question)
       request_bytes_(question.entry.elements.size() + quantum),
       may_wait_(!question.batch) {}
 
-bool DecodedMemory::draw(std::size_t bytes) {
+[[gnu::hot]] bool DecodedMemory::draw(std::size_t bytes) {
   if (bytes <= free_bytes && bytes_ <= free_bytes - bytes) {
     bytes_ += bytes;
     return true;

@@ -28,8 +28,8 @@ bool may_log_in(const Entry& entry) {
 }  // namespace
 
 // True when the message is to be handled later: it has been put off.
-bool ServerEndpoint::must_wait_for_login(const Message& message, const Entry& first,
-                                         const MemoryRef& owner) {
+[[gnu::hot]] bool ServerEndpoint::must_wait_for_login(const Message& message, const Entry& first,
+                                                      const MemoryRef& owner) {
   if (message.entry_count == 1 && !may_log_in(first)) return false;
   if (has_outcome_) return connection_->is_closed();
   if (!unfinished_.empty()) return false;  // it has been looked through before its first request

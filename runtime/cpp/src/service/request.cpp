@@ -18,14 +18,14 @@ void Request::read_value(void* value) const {
   endpoint::read_value(decoder, question.entry, "value", *source_->member.type, value);
 }
 
-void Request::read_arguments(void* const* values) const {
+[[gnu::hot]] void Request::read_arguments(void* const* values) const {
   const service::Question& question = source_->question;
   Decoder decoder = question.decoder(&source_->types);
   endpoint::read_values(decoder, question.entry, source_->member.parameters, values);
   source_->made.expect();
 }
 
-void Request::answer(const void* value) {
+[[gnu::hot]] void Request::answer(const void* value) {
   Source& source = *source_;
   if (source.state != Source::State::open) {
     throw Error(ErrorCode::invalid_operation, "the request has been answered already");

@@ -37,8 +37,9 @@ ServerEndpoint::~ServerEndpoint() {
 }
 
 // Ends a message of answers, or of one packet, with its header, and sends it.
-void ServerEndpoint::send_answer(Writer& writer, std::uint32_t entry_count, EntryType single_type,
-                                 Way way, std::string_view metadata, bool is_urgent) {
+[[gnu::hot]] void ServerEndpoint::send_answer(Writer& writer, std::uint32_t entry_count,
+                                              EntryType single_type, Way way,
+                                              std::string_view metadata, bool is_urgent) {
   const endpoint::Core& core = *directory_->core();
   const auto type = static_cast<std::uint16_t>(single_type);
   const bool is_single = entry_count == 1;
@@ -131,7 +132,8 @@ Writer& ServerEndpoint::begin_answer(const Question& question) const {
 }
 
 // A user who has gone meanwhile, or may not have it any more, gets an error instead.
-void ServerEndpoint::finish(const Question& question, Writer& writer, std::string_view metadata) {
+[[gnu::hot]] void ServerEndpoint::finish(const Question& question, Writer& writer,
+                                         std::string_view metadata) {
   if (!is_still_allowed(question)) throw no_longer_allowed();
   deliver(question, writer, metadata);
 }
@@ -156,8 +158,8 @@ void ServerEndpoint::answer_value(const Question& question, std::string_view nam
   finish(question, writer);
 }
 
-void ServerEndpoint::answer_result(const Question& question, const Member& member,
-                                   HandlerMemory& made, const void* value) {
+[[gnu::hot]] void ServerEndpoint::answer_result(const Question& question, const Member& member,
+                                                HandlerMemory& made, const void* value) {
   const channel::OfferedCharge made_before(made.end());
   // What the request has brought goes when its handler has returned, which is soon.
   const channel::OfferedCharge decoded(question.decoded != nullptr ? question.decoded->end()

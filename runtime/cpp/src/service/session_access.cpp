@@ -114,8 +114,8 @@ RightSet SessionAccess::rights_of(std::string_view path, std::string_view member
   return granted ? granted->of(path, member) : all_rights;
 }
 
-bool SessionAccess::allows(const AccessRow& row, std::string_view path,
-                           std::string_view member) const {
+[[gnu::hot]] bool SessionAccess::allows(const AccessRow& row, std::string_view path,
+                                        std::string_view member) const {
   const std::uint32_t now = standing();
   if (!suffices(row, now)) return false;
   if (row.rights == 0 || (now & ruled) == 0) return true;

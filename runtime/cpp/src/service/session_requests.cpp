@@ -53,7 +53,8 @@ bool is_special(EntryType type) {
 ServerEndpoint* ServerEndpoint::current() { return current_endpoint; }
 std::string_view ServerEndpoint::current_path() { return path_of_request; }
 
-void ServerEndpoint::handle(const Message& message, const Entry& first, const MemoryRef& owner) {
+[[gnu::hot]] void ServerEndpoint::handle(const Message& message, const Entry& first,
+                                         const MemoryRef& owner) {
   if (connection_->is_closed()) return;  // nobody is left for whom this could be done
   last_heard_.store(channel::coarse_now(), std::memory_order_relaxed);
   if (must_wait_for_login(message, first, owner)) return;
@@ -83,8 +84,8 @@ bool ServerEndpoint::take_packet(const Message& message, const Entry& entry, con
   return wires_.take(message, entry, owner, deferred);
 }
 
-void ServerEndpoint::handle_session(const Message& message, const Entry& first,
-                                    const MemoryRef& owner) {
+[[gnu::hot]] void ServerEndpoint::handle_session(const Message& message, const Entry& first,
+                                                 const MemoryRef& owner) {
   if (message.entry_count == 1) {
     handle_question({message, first, owner, nullptr, 0});
     return;
@@ -130,7 +131,7 @@ bool ServerEndpoint::put_off(const Unfinished& state) {
   return true;
 }
 
-void ServerEndpoint::handle_question(Question question) {
+[[gnu::hot]] void ServerEndpoint::handle_question(Question question) {
   const Entry& entry = question.entry;
   const bool is_answered =
       is_odd(entry.type) && static_cast<ErrorCode>(entry.error) != ErrorCode::invalid_endpoint;
@@ -162,7 +163,7 @@ void ServerEndpoint::handle_question(Question question) {
   }
 }
 
-void ServerEndpoint::answer_question(Question& question) {
+[[gnu::hot]] void ServerEndpoint::answer_question(Question& question) {
   check_access(question);
   switch (question.entry.type) {
     case EntryType::property_get_req:
@@ -234,7 +235,8 @@ void ServerEndpoint::answer_session_object_type(const Question& question) {
   answer_value(question, "objecttype", type_of<std::string>, &*type);
 }
 
-std::shared_ptr<const ServedObject> ServerEndpoint::find_object(std::string_view path) {
+[[gnu::hot]] std::shared_ptr<const ServedObject> ServerEndpoint::find_object(
+    std::string_view path) {
   ObjectTree& objects = host_->objects();
   const std::uint32_t generation = objects.generation();
   if (last_path_ == path && last_generation_ == generation) {
@@ -248,8 +250,8 @@ std::shared_ptr<const ServedObject> ServerEndpoint::find_object(std::string_view
   return object;
 }
 
-const Member& ServerEndpoint::find_member(const ServedObject& object, std::string_view name,
-                                          MemberKind kind) {
+[[gnu::hot]] const Member& ServerEndpoint::find_member(const ServedObject& object,
+                                                       std::string_view name, MemberKind kind) {
   if (last_member_ != nullptr && last_member_->name == name && last_member_->kind == kind) {
     return *last_member_;
   }
@@ -261,7 +263,7 @@ const Member& ServerEndpoint::find_member(const ServedObject& object, std::strin
   return *last_member_;
 }
 
-void ServerEndpoint::answer_member(Question& question, MemberKind kind) {
+[[gnu::hot]] void ServerEndpoint::answer_member(Question& question, MemberKind kind) {
   const auto object = find_object(question.entry.service_path);
   const Member& member = find_member(*object, question.entry.member, kind);
   question.is_urgent = (member.access & urgent) != 0;

@@ -42,11 +42,13 @@ bool ArrayType::read(Decoder& decoder, const Element& element, void* value) cons
 
 ElementType FixedArrayType::element_type() const { return value::element_type(*item_); }
 
-void FixedArrayType::write(Writer& writer, const ElementName& name, const void* value) const {
+[[gnu::hot]] void FixedArrayType::write(Writer& writer, const ElementName& name,
+                                        const void* value) const {
   value::write_items(writer, name, *item_, value, count_, {});
 }
 
-bool FixedArrayType::read(Decoder& decoder, const Element& element, void* value) const {
+[[gnu::hot]] bool FixedArrayType::read(Decoder& decoder, const Element& element,
+                                       void* value) const {
   return read_in_place(decoder, element, *item_, count_, value);
 }
 

@@ -142,8 +142,8 @@ bool open_items(Decoder& decoder, const Element& element, const ItemType& item,
   return true;
 }
 
-bool read_items(Decoder& decoder, const ReceivedItems& received, const ItemType& item,
-                void* items) {
+[[gnu::hot]] bool read_items(Decoder& decoder, const ReceivedItems& received, const ItemType& item,
+                             void* items) {
   if (received.count == 0) return true;
   const ElementType number = packed_type(item);
   if (number == ElementType::void_) {

@@ -9,13 +9,14 @@
 
 namespace rr {
 
-void NumberType::write(Writer& writer, const ElementName& name, const void* value) const {
+[[gnu::hot]] void NumberType::write(Writer& writer, const ElementName& name,
+                                    const void* value) const {
   const std::size_t end = writer.position();
   writer.prepend_bytes(value, item_size(number_));
   writer.element(name, number_, {}, 1, end);
 }
 
-bool NumberType::read(Decoder& decoder, const Element& element, void* value) const {
+[[gnu::hot]] bool NumberType::read(Decoder& decoder, const Element& element, void* value) const {
   if (element.type != number_) return value::fail_type(decoder, element);
   if (element.count == 0) {
     return decoder.fail(ErrorCode::out_of_range, "no number", element.name);
@@ -33,7 +34,7 @@ void StringType::write(Writer& writer, const ElementName& name, const void* valu
   writer.string_element(name, *static_cast<const std::string*>(value));
 }
 
-bool StringType::read(Decoder& decoder, const Element& element, void* value) const {
+[[gnu::hot]] bool StringType::read(Decoder& decoder, const Element& element, void* value) const {
   if (element.type != ElementType::string) {
     // A null has its own code for every type but this one (03, section 3).
     if (element.type == ElementType::void_) {
