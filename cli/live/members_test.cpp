@@ -81,6 +81,14 @@ TEST_F(Members, PropertiesOfAllTypesAreSetAndRead) {
   EXPECT_EQ(out({"get", "pose"}), "null\n");
 }
 
+TEST_F(Members, NumbersThatAnEnumDoesNotHavePassAndNamesDoNot) {
+  EXPECT_EQ(out({"set", "mode", "12345"}), "");
+  EXPECT_EQ(bench_->get_mode(), static_cast<decltype(bench_->get_mode())>(12345));
+  EXPECT_EQ(out({"get", "mode"}), "12345\n");
+  EXPECT_THAT(err({"set", "mode", "\"faster\""}),
+              AllOf(HasSubstr("DataTypeMismatch"), HasSubstr("fast")));
+}
+
 TEST_F(Members, ReadonlyAndWriteonlyOnesAreTold) {
   EXPECT_EQ(out({"get", "fixed"}), "42.125\n");
   EXPECT_EQ(out({"set", "hidden", "-3"}), "");

@@ -194,6 +194,14 @@ TEST_F(Bridged, EverythingThatABoardServesArrives) {
       eventually([&] { return all->wire("both").peek_in().value.as<std::int16_t>() == -5; }));
 }
 
+TEST_F(Bridged, NumbersThatAnEnumDoesNotHavePass) {
+  plug("everything.elf");
+  const dynamic::Client all = connect("Board");
+  all->set("mode", std::int32_t{12345});
+  EXPECT_EQ(all->get("mode").to_json(), "12345");
+  EXPECT_EQ(error_of([&] { all->set("mode", "walking"); }).code(), ErrorCode::data_type_mismatch);
+}
+
 TEST_F(Bridged, ARefusalSaysWhy) {
   plug("light.elf");
   const dynamic::Client light = connect("Light");

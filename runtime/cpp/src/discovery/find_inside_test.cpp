@@ -77,6 +77,18 @@ TEST_F(Finding, ANodeThatAnnouncesItselfIsDetected) {
   EXPECT_EQ(url.node_id, other.node.id());
 }
 
+TEST(ServiceUrls, HaveAPathAlsoWhereTheHostIsEmpty) {
+  const NodeId id = *NodeId::parse("5f3a1c20-8d64-4b1e-9a77-0c2d4e6f8a01");
+  const std::string rest = "/?nodeid=5f3a1c20-8d64-4b1e-9a77-0c2d4e6f8a01&service=lamp";
+  for (const std::string base :
+       {"rr+local://", "rr+intra://", "rr+local://alice@localhost", "rr+tcp://127.0.0.1:6000"}) {
+    EXPECT_EQ(service_index::service_url(base, id, "lamp"), base + rest);
+    EXPECT_EQ(service_index::service_url(base + "/", id, "lamp"), base + rest);
+  }
+  EXPECT_EQ(service_index::service_url("rr+local:///run/own.sock", id, "lamp"),
+            "rr+local:///run/own.sock" + rest.substr(1));
+}
+
 TEST_F(Finding, ANodeAnswersRequestsWhileItListens) {
   // Announced once before anybody listens, it is heard again only because it was asked.
   Announced other(network_);

@@ -84,13 +84,20 @@ std::string service_url(std::string_view base, const NodeId& node, std::string_v
   std::string url(base);
   const std::size_t scope = url.find('%');
   if (scope != std::string::npos) url.erase(scope, url.find(']', scope) - scope);
+  return own_service_url(std::move(url), node, service);
+}
+
+std::string own_service_url(std::string base, const NodeId& node, std::string_view service) {
   // One of a local socket or the like may say more than a place already.
-  if (url.find('?') == std::string::npos) {
-    url += url.ends_with('/') ? "?" : "/?";
-    url += "nodeid=" + node.text();
+  if (base.find('?') == std::string::npos) {
+    const std::size_t scheme = base.find("://");
+    const std::size_t host = scheme == std::string::npos ? 0 : scheme + 3;
+    const bool has_path = base.find('/', host) != std::string::npos;
+    base += has_path ? "?" : "/?";
+    base += "nodeid=" + node.text();
   }
-  if (!service.empty()) url += "&service=" + std::string(service);
-  return url;
+  if (!service.empty()) base += "&service=" + std::string(service);
+  return base;
 }
 
 std::string exchange_service(std::string_view url, std::string_view service) {

@@ -69,6 +69,8 @@ class IndexStub final : public virtual Stub {
 /// `rr+tcp://10.0.0.5:2355` as the URL of a service of the node; an IPv6 scope, which means nothing
 /// on another machine, is left out. An empty service: none named.
 std::string service_url(std::string_view base, const NodeId& node, std::string_view service);
+/// The same for this machine: an IPv6 scope stays.
+std::string own_service_url(std::string base, const NodeId& node, std::string_view service);
 /// A URL of a service as that of another service of the same node; of none when it is empty.
 std::string exchange_service(std::string_view url, std::string_view service);
 

@@ -101,6 +101,15 @@ TEST_F(LocalSocket, ANodeLeavesFilesThatOthersFindItBy) {
   EXPECT_EQ(content(by_id), "");
 }
 
+TEST_F(LocalSocket, ItsUrlHasAPathAsThatOfOtherImplementations) {
+  Node server(options("local.server"));
+  server.register_service("counter", std::make_shared<Counter>());
+  server.listen("rr+local:///");
+  const std::string expected = "rr+local:///?nodeid=" + server.id().text() + "&service=counter";
+  EXPECT_EQ(server.urls("counter"), std::vector<std::string>{expected});
+  EXPECT_EQ(server.candidate_urls("counter"), std::vector<std::string>{expected});
+}
+
 TEST_F(LocalSocket, ANodeIsFoundByIdByNameAndByPath) {
   Node server(options("local.server"));
   server.register_service("counter", std::make_shared<Counter>());
@@ -185,6 +194,8 @@ TEST_F(LocalSocket, AnExplicitPathIsTakenOverFromADeadNodeOnly) {
   EXPECT_EQ(error_of([&] { second.listen(url); }).code(), ErrorCode::connection_error);
   first.shutdown();
   EXPECT_NO_THROW(second.listen(url));
+  second.register_service("counter", std::make_shared<Counter>());
+  EXPECT_EQ(Node(options()).connect<CounterStub>(second.urls("counter").at(0))->add(1, 2), 3);
   EXPECT_EQ(
       error_of([&] { second.listen("rr+local://" + run + "/" + std::string(120, 'x')); }).code(),
       ErrorCode::invalid_argument);
