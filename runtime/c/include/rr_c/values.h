@@ -12,6 +12,7 @@
 /** Marks what the library exports. */
 #define RR_API __attribute__((visibility("default")))
 #else
+/** Marks what the library exports. */
 #define RR_API
 #endif
 

@@ -110,9 +110,9 @@ class Array : private ArrayStorage {
   /// Throws std::out_of_range.
   const T& at(std::size_t index) const;
   /// A view of the items, valid until this array changes or is destroyed.
+  operator std::span<const T>() const { return {data(), size_}; }  // NOLINT
   /// What keeps the items alive; empty where nothing does. Two arrays that share items have the
   /// same.
-  operator std::span<const T>() const { return {data(), size_}; }  // NOLINT
   using ArrayStorage::owner;
 
   /// Writable items; copies them first unless this is their only user.

@@ -99,8 +99,8 @@ class ClientBase {
   void logout(const CallOptions& options = {});
 
   /// For the runtime: Node::connect makes clients.
-  /// For the runtime: the session; null when there is none.
   explicit ClientBase(std::shared_ptr<Session> session);  // made by Node::connect
+  /// For the runtime: the session; null when there is none.
   [[nodiscard]] const std::shared_ptr<Session>& rr_session() const { return session_; }
   /// Leaves this without its session, which stays open. For subscriptions.
   [[nodiscard]] std::shared_ptr<Session> rr_release() { return std::exchange(session_, nullptr); }

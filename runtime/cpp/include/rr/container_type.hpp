@@ -28,12 +28,12 @@ class Recursive {
   /// No value.
   Recursive() noexcept = default;
   /// No value.
+  Recursive(std::nullopt_t) noexcept {}  // NOLINT
   /// Copies the value.
+  Recursive(const T& value) : value_(std::make_unique<T>(value)) {}  // NOLINT
   /// Takes over the value.
-  /// Copies the value, if there is one.
-  Recursive(std::nullopt_t) noexcept {}                                    // NOLINT
-  Recursive(const T& value) : value_(std::make_unique<T>(value)) {}        // NOLINT
   Recursive(T&& value) : value_(std::make_unique<T>(std::move(value))) {}  // NOLINT
+  /// Copies the value, if there is one.
   Recursive(const Recursive& other) { *this = other; }
   /// Takes over the value; `other` has none afterwards.
   Recursive(Recursive&& other) noexcept = default;

@@ -48,7 +48,8 @@ struct AnnounceOptions {
 
 /// How a node listens to others.
 struct ListenOptions {
-  DiscoveryNetwork network{};  ///< where announcements are listened to
+  /// Where announcements are listened to.
+  DiscoveryNetwork network{};
   /// A way to reach a node is forgotten so long after its last announcement, and the node with the
   /// last of them.
   std::chrono::milliseconds lifetime{60'000};

@@ -65,12 +65,12 @@ class Reply {
 class Steps {
  public:
   /// A coroutine that gives values: co_yield.
+  Steps(Sequence<Value> values);  // NOLINT
   /// A coroutine that takes values: co_await.
+  Steps(Sequence<void, Value> values);  // NOLINT
   /// A coroutine that takes a value for each that it gives.
-  /// A function for each step. `end` is called when the client closes (false) or aborts (true).
-  Steps(Sequence<Value> values);         // NOLINT
-  Steps(Sequence<void, Value> values);   // NOLINT
   Steps(Sequence<Value, Value> values);  // NOLINT
+  /// A function for each step. `end` is called when the client closes (false) or aborts (true).
   explicit Steps(Function<std::optional<Value>(const Value&)> step,
                  Function<void(bool aborts)> end = {});
   /// A function for each step.
@@ -251,8 +251,8 @@ class ServedObject {
   /// As generated code has objects: for Node::register_service and rr::per_client.
   [[nodiscard]] std::shared_ptr<Skeleton> skeleton() const;
   /// The same as skeleton().
-  /// False for no object.
   operator std::shared_ptr<Skeleton>() const { return skeleton(); }  // NOLINT
+  /// False for no object.
   explicit operator bool() const { return skeleton_ != nullptr; }
 
   /// For the runtime.

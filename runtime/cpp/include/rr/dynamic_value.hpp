@@ -138,15 +138,15 @@ class Value {
     set_number(number_of<N>, static_cast<N>(number));
   }
   /// A string.
+  Value(const char* text) : Value(std::string(text)) {}  // NOLINT
   /// A string.
-  /// A string.
-  /// An array of numbers, whose items are shared.
-  /// An array of numbers, which are copied.
-  Value(const char* text) : Value(std::string(text)) {}       // NOLINT
   Value(std::string_view text) : Value(std::string(text)) {}  // NOLINT
-  Value(std::string text);                                    // NOLINT
+  /// A string.
+  Value(std::string text);  // NOLINT
+  /// An array of numbers, whose items are shared.
   template <Number T>
   Value(Array<T> items) : Value(number_of<T>, &items, nullptr) {}  // NOLINT
+  /// An array of numbers, which are copied.
   template <Number T>
   Value(const std::vector<T>& items) : Value(Array<T>(items)) {}  // NOLINT
   /// Throws rr::Error (invalid_argument) when there are not as many items as dims say.
@@ -154,10 +154,10 @@ class Value {
   Value(MultiArray<T> array)  // NOLINT
       : Value(number_of<T>, &array.items, &array.dims) {}
   /// A list.
+  Value(List items);  // NOLINT
   /// A map with int32 keys.
+  Value(IntMap items);  // NOLINT
   /// A map with string keys.
-  Value(List items);       // NOLINT
-  Value(IntMap items);     // NOLINT
   Value(StringMap items);  // NOLINT
   /// What is meant for a struct, pod or namedarray.
   static Value record(Fields fields);

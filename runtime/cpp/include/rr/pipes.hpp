@@ -76,8 +76,8 @@ class PipeEnd {
                                std::size_t bytes = std::size_t{256} * 1024) const;
 
   /// For the runtime.
-  /// For the runtime.
   struct State;  // internal
+  /// For the runtime.
   explicit PipeEnd(std::shared_ptr<State> state) : state_(std::move(state)) {}
 
  protected:

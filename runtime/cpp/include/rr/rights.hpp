@@ -92,8 +92,8 @@ class Rights {
   [[nodiscard]] RightSet of(const User* user, std::string_view path, std::string_view member) const;
 
   /// For the runtime: a rule that has been read.
-  /// For the runtime.
   struct Line;  // internal: a rule that has been read
+  /// For the runtime.
   [[nodiscard]] const std::vector<Line>& rr_lines() const { return lines_; }
 
  private:
