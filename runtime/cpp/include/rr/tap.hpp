@@ -84,10 +84,7 @@ struct RecorderOptions {
   std::size_t buffer_size = std::size_t{16} * 1024 * 1024;
   /// What happens to a message for which there is no room: the thread that sends or reads it waits
   /// for the disk (`wait`), or it is left out and counted in the file (`drop`).
-  enum class WhenFull : std::uint8_t {
-    wait,
-    drop
-  } when_full = WhenFull::wait;  ///< `wait` unless said
+  enum class WhenFull : std::uint8_t { wait, drop } when_full = WhenFull::wait;  ///< see WhenFull
   /// Passwords of logins are written as they are. Otherwise each byte of the values of credentials
   /// is replaced, so that sizes stay.
   bool keeps_credentials = false;
