@@ -49,7 +49,7 @@ def text_of(node):
 def place_of(node, kind, name):
     location = node.find("location")
     file = location.get("file").replace(f"{ROOT}/", "")
-    return Name(file, int(location.get("line") or 0), kind, name)
+    return Name(file, int(location.get("line") or 1), kind, name)
 
 
 def members_of(compound):

@@ -66,7 +66,7 @@ struct MessageTree {
   std::string receiver_name;                    ///< empty for any
   std::uint32_t sender_endpoint = 0;    ///< number of the session's end at the sender; 0: none
   std::uint32_t receiver_endpoint = 0;  ///< the same at the receiver
-  std::uint16_t priority = 0;           ///< not used
+  std::uint16_t priority = 0;           ///< format 4; mostly 0
   std::string metadata;                 ///< mostly empty
   std::uint16_t message_id = 0;         ///< counts the messages of a sender
   std::uint16_t message_res_id = 0;     ///< which message this one answers; 0: none

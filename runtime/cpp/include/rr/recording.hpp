@@ -33,7 +33,7 @@ struct MessageReplaced {
 
 /// A connection has ended.
 struct ConnectionClosed {
-  ErrorCode code = ErrorCode::none;  ///< none when it was closed in order
+  ErrorCode code = ErrorCode::none;  ///< why: connection_error, operation_aborted, ...
   std::string reason;                ///< text for people
   /// Whether all fields are equal.
   bool operator==(const ConnectionClosed&) const = default;

@@ -52,7 +52,7 @@ struct AttributeTest {
 struct AttributeGroup {
   /// Tests of the attribute's texts.
   std::vector<AttributeTest> tests{};
-  /// Further groups of tests, up to 16 deep.
+  /// Further groups of tests.
   std::vector<AttributeGroup> groups{};
   /// How the answers of tests and groups make one.
   Match match = Match::any_of;

@@ -72,7 +72,7 @@ class Tap {
   /// The next message takes the place of an earlier one that still waited to be sent, and never
   /// was: only the newest counts (04, section 3).
   virtual void replaced(std::uint32_t connection, std::uint64_t message) = 0;
-  /// A connection has ended. The code is none when that was in order.
+  /// A connection has ended, and why.
   virtual void closed(std::uint32_t connection, ErrorCode code, std::string_view reason) = 0;
   /// A service definition that the node knows. May be told more than once.
   virtual void definition(std::string_view text) = 0;
