@@ -62,7 +62,7 @@ class Generator : public GeneratorHandle {
   /// Breaks off: the service's generator sees abort_operation. Does not wait.
   void async_abort(Done<> done);
 
-  /// For the runtime.
+  /// For the runtime: Object::generate() makes it.
   Generator(std::shared_ptr<GeneratorState> state, MemberDescription member);  // internal
 
  private:
@@ -79,7 +79,7 @@ class WireConnection : public rr::WireConnection<Value> {
   /// as rr::WireConnection::set_out().
   void set_out(const Value& value);
 
-  /// For the runtime.
+  /// For the runtime: Wire::connect() makes it.
   WireConnection(rr::WireConnection<Value> end, MemberDescription member);  // internal
 
  private:
@@ -124,7 +124,7 @@ class PipeEndpoint : public rr::PipeEndpoint<Value> {
   /// blocks. Throws rr::Error as rr::PipeEndpoint::send().
   std::uint32_t send(const Value& packet);
 
-  /// For the runtime.
+  /// For the runtime: Pipe::connect() makes it.
   PipeEndpoint(rr::PipeEndpoint<Value> end, MemberDescription member);  // internal
 
  private:
@@ -259,7 +259,7 @@ class Object {
   /// The object of such a stub; throws rr::Error (invalid_argument) for one of generated code.
   static Object of(const std::shared_ptr<Stub>& stub);
 
-  /// For the runtime.
+  /// For the runtime: a handle of the object that a stub stands for.
   explicit Object(std::shared_ptr<DynamicStub> stub) : stub_(std::move(stub)) {}  // internal
 
  private:

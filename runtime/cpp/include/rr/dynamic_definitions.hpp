@@ -80,9 +80,9 @@ class Definitions {
   /// Where a Decoder finds the types of what is in varvalues. Lives as long as the definitions.
   [[nodiscard]] const TypeRegistry& registry() const;
 
-  /// For the runtime.
+  /// For the runtime: a handle of definitions that were read.
   explicit Definitions(std::shared_ptr<const Tables> tables) : tables_(std::move(tables)) {}
-  /// For the runtime.
+  /// For the runtime: what was read.
   [[nodiscard]] const std::shared_ptr<const Tables>& tables() const { return tables_; }  // internal
 
  private:

@@ -78,7 +78,7 @@ class Steps {
   requires std::is_invocable_r_v<std::optional<Value>, Step&, const Value&> Steps(Step step)
       : Steps(Function<std::optional<Value>(const Value&)>(std::move(step))) {}  // NOLINT
 
-  /// For the runtime.
+  /// For the runtime: what makes the steps.
   [[nodiscard]] const std::shared_ptr<GeneratorSource>& source() const { return source_; }
   /// For the runtime: none for one that suits any.
   [[nodiscard]] GeneratorForm form() const { return form_; }
@@ -96,7 +96,7 @@ class ServedWire : public rr::ServedWire<Value> {
   /// Sends this client a value, converted to the declared type. Never blocks.
   void set_in(const Value& value);
 
-  /// For the runtime.
+  /// For the runtime: an end of a wire, whose values are converted to the type of `member`.
   ServedWire(rr::ServedWire<Value> end, MemberDescription member);  // internal
 
  private:
@@ -255,7 +255,7 @@ class ServedObject {
   /// False for no object.
   explicit operator bool() const { return skeleton_ != nullptr; }
 
-  /// For the runtime.
+  /// For the runtime: a handle of an object that exists.
   explicit ServedObject(std::shared_ptr<DynamicSkeleton> skeleton)
       : skeleton_(std::move(skeleton)) {}  // internal
 

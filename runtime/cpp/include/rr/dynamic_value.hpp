@@ -88,12 +88,12 @@ class ValueType {
   /// Whether both are spelled the same, as text() gives it.
   friend bool operator==(const ValueType& a, const ValueType& b) { return a.text() == b.text(); }
 
-  /// For the runtime.
+  /// For the runtime: a type of definitions that were read; these are kept.
   ValueType(std::shared_ptr<const Tables> tables, const TypeNode* node)
       : tables_(std::move(tables)), node_(node) {}
-  /// For the runtime.
+  /// For the runtime: what the type is; null for no type.
   [[nodiscard]] const TypeNode* node() const { return node_; }
-  /// For the runtime.
+  /// For the runtime: the definitions that it is of; null for a type that needs none.
   [[nodiscard]] const std::shared_ptr<const Tables>& tables() const { return tables_; }
 
  private:
@@ -230,11 +230,12 @@ class Value {
   /// equal to itself.
   friend bool operator==(const Value& a, const Value& b) { return a.is_same_as(b); }
 
-  /// For the runtime.
+  /// For the runtime: a value of its parts. `bits` is the number, `content` what does not fit into
+  /// it.
   Value(Kind kind, ElementType number, const void* bits, std::shared_ptr<const Content> content);
-  /// For the runtime.
+  /// For the runtime: the number, as it lies in memory.
   [[nodiscard]] const void* bits() const { return bits_.data(); }
-  /// For the runtime.
+  /// For the runtime: texts, items and fields; null for none.
   [[nodiscard]] const std::shared_ptr<const Content>& content() const { return content_; }
 
  private:

@@ -58,7 +58,7 @@ class GeneratorHandle {
     return async_abort(CallOptions(), std::forward<Token>(token));
   }
 
-  /// For the runtime.
+  /// For the runtime: a handle of a generator that was opened.
   explicit GeneratorHandle(std::shared_ptr<GeneratorState> state) : state_(std::move(state)) {}
 
  protected:
@@ -94,7 +94,7 @@ class GeneratorHandle {
 template <class R, class P = void>
 class Generator : public GeneratorHandle {
  public:
-  /// For the runtime.
+  /// For the runtime: a handle of a generator that was opened.
   using GeneratorHandle::GeneratorHandle;
 
   /// The next value; nothing at the end. Throws what the service throws.
@@ -117,7 +117,7 @@ class Generator : public GeneratorHandle {
 template <class P>
 class Generator<void, P> : public GeneratorHandle {
  public:
-  /// For the runtime.
+  /// For the runtime: a handle of a generator that was opened.
   using GeneratorHandle::GeneratorHandle;
 
   /// Gives the service the next value. False when it takes no more.
@@ -138,7 +138,7 @@ class Generator<void, P> : public GeneratorHandle {
 template <class R>
 class Generator<R, void> : public GeneratorHandle {
  public:
-  /// For the runtime.
+  /// For the runtime: a handle of a generator that was opened.
   using GeneratorHandle::GeneratorHandle;
 
   /// The next value; nothing at the end. Throws what the service throws.

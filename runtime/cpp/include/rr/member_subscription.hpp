@@ -56,7 +56,7 @@ class MemberSubscription {
   /// of the node.
   Subscription on_failed(Function<void(const SubscriptionClientId&, const Error&)> function);
 
-  /// For the runtime.
+  /// For the runtime: ServiceSubscription makes it.
   explicit MemberSubscription(std::shared_ptr<subscription::Links> links);  // internal
 
  protected:

@@ -50,17 +50,17 @@ class ArrayMemorySource : public MemorySource {
   /// rr::Error, which the client gets.
   virtual void write(std::uint64_t position, std::span<const T> items) = 0;
 
-  /// For the runtime.
+  /// Calls read().
   void rr_read(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
                void* items) final {
     read(position[0], {static_cast<T*>(items), static_cast<std::size_t>(count[0])});
   }
-  /// For the runtime.
+  /// Calls write().
   void rr_write(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
                 const void* items) final {
     write(position[0], {static_cast<const T*>(items), static_cast<std::size_t>(count[0])});
   }
-  /// For the runtime.
+  /// Calls length().
   [[nodiscard]] std::vector<std::uint64_t> rr_dims() const final { return {length()}; }
 };
 
@@ -79,17 +79,17 @@ class MultiMemorySource : public MemorySource {
   virtual void write(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
                      std::span<const T> items) = 0;
 
-  /// For the runtime.
+  /// Calls read().
   void rr_read(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
                void* items) final {
     read(position, count, {static_cast<T*>(items), size_of(count)});
   }
-  /// For the runtime.
+  /// Calls write().
   void rr_write(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
                 const void* items) final {
     write(position, count, {static_cast<const T*>(items), size_of(count)});
   }
-  /// For the runtime.
+  /// Calls dims().
   [[nodiscard]] std::vector<std::uint64_t> rr_dims() const final { return dims(); }
 
  private:

@@ -75,9 +75,9 @@ class PipeEnd {
   [[nodiscard]] bool wait_sent(std::chrono::milliseconds limit,
                                std::size_t bytes = std::size_t{256} * 1024) const;
 
-  /// For the runtime.
+  /// For the runtime: what the handles of one end share.
   struct State;  // internal
-  /// For the runtime.
+  /// For the runtime: a handle of an end.
   explicit PipeEnd(std::shared_ptr<State> state) : state_(std::move(state)) {}
 
  protected:

@@ -93,7 +93,7 @@ class Rights {
 
   /// For the runtime: a rule that has been read.
   struct Line;  // internal: a rule that has been read
-  /// For the runtime.
+  /// For the runtime: the rules in their order.
   [[nodiscard]] const std::vector<Line>& rr_lines() const { return lines_; }
 
  private:

@@ -42,15 +42,15 @@ class GeneratorOf : public GeneratorSource {
   /// The client breaks off. Not called when it leaves.
   virtual void abort() {}
 
-  /// For the runtime.
+  /// Calls next().
   bool rr_step(const void* parameter, void* result) final {
     std::optional<R> value = next(*static_cast<const P*>(parameter));
     if (value) *static_cast<R*>(result) = std::move(*value);
     return value.has_value();
   }
-  /// For the runtime.
+  /// Calls close().
   void rr_close() final { close(); }
-  /// For the runtime.
+  /// Calls abort().
   void rr_abort() final { abort(); }
 };
 
@@ -65,13 +65,13 @@ class GeneratorOf<void, P> : public GeneratorSource {
   /// The client breaks off. Not called when it leaves.
   virtual void abort() {}
 
-  /// For the runtime.
+  /// Calls next().
   bool rr_step(const void* parameter, void* /*result*/) final {
     return next(*static_cast<const P*>(parameter));
   }
-  /// For the runtime.
+  /// Calls close().
   void rr_close() final { close(); }
-  /// For the runtime.
+  /// Calls abort().
   void rr_abort() final { abort(); }
 };
 
@@ -86,15 +86,15 @@ class GeneratorOf<R, void> : public GeneratorSource {
   /// The client breaks off. Not called when it leaves.
   virtual void abort() {}
 
-  /// For the runtime.
+  /// Calls next().
   bool rr_step(const void* /*parameter*/, void* result) final {
     std::optional<R> value = next();
     if (value) *static_cast<R*>(result) = std::move(*value);
     return value.has_value();
   }
-  /// For the runtime.
+  /// Calls close().
   void rr_close() final { close(); }
-  /// For the runtime.
+  /// Calls abort().
   void rr_abort() final { abort(); }
 };
 
@@ -129,7 +129,7 @@ class YieldingPromise {
 template <>
 class YieldingPromise<void> {
  public:
-  /// For the runtime.
+  /// For the runtime: there is no result.
   void set_result(void* /*result*/) {}
 };
 
@@ -174,7 +174,7 @@ class TakingPromise {
 template <class R>
 class TakingPromise<R, void> {
  public:
-  /// For the runtime.
+  /// For the runtime: nothing is taken.
   void set_parameter(const void* /*parameter*/) {}
   template <class Other>
   void await_transform(Other&& other) = delete;  // nothing here could resume it

@@ -39,9 +39,9 @@ class ReplyHandle {
   /// Answers with an error, which the client gets.
   void fail(std::exception_ptr error);
 
-  /// For the runtime.
+  /// For the runtime: which request is answered.
   struct State;  // internal
-  /// For the runtime.
+  /// For the runtime: Request::defer() makes it.
   explicit ReplyHandle(std::unique_ptr<State> state);
 
  protected:
@@ -56,9 +56,9 @@ class ReplyHandle {
 template <class R>
 class Reply : public ReplyHandle {
  public:
-  /// For the runtime.
+  /// For the runtime: Request::defer() makes it.
   using ReplyHandle::ReplyHandle;
-  /// For the runtime.
+  /// For generated code: Request::defer() with its type.
   explicit Reply(ReplyHandle&& handle) : ReplyHandle(std::move(handle)) {}
   /// Answers with the result. Throws rr::Error when it cannot be sent.
   void operator()(const R& result) { succeed(&result); }
@@ -67,9 +67,9 @@ class Reply : public ReplyHandle {
 template <>
 class Reply<void> : public ReplyHandle {
  public:
-  /// For the runtime.
+  /// For the runtime: Request::defer() makes it.
   using ReplyHandle::ReplyHandle;
-  /// For the runtime.
+  /// For generated code: Request::defer() with its type.
   explicit Reply(ReplyHandle&& handle) : ReplyHandle(std::move(handle)) {}
   /// Answers that it is done.
   void operator()() { succeed(nullptr); }
@@ -104,11 +104,11 @@ class Request {
     answer_generator(std::move(sequence).source(), result, parameter);
   }
 
-  /// For the runtime.
+  /// For the runtime: where the request has come from.
   struct Source;  // internal
-  /// For the runtime.
+  /// For the runtime: one request of a session.
   explicit Request(Source& source) : source_(&source) {}
-  /// For the runtime.
+  /// For the runtime: where the request has come from.
   [[nodiscard]] const Source& rr_source() const { return *source_; }
   /// What answer(Sequence) does, without its types.
   void answer_generator(std::shared_ptr<GeneratorSource> source, const Holding* result,

@@ -47,9 +47,9 @@ class [[nodiscard]] Subscription {
   /// Leaves the handler connected for as long as the stub lives.
   void detach();
 
-  /// For the runtime.
+  /// For the runtime: a function that is connected.
   struct Handler;  // internal
-  /// For the runtime.
+  /// For the runtime: what is made by connecting a function.
   explicit Subscription(std::shared_ptr<Handler> handler);
 
  private:
@@ -63,11 +63,11 @@ class Arguments {
   /// rr::Error (message_element_not_found, data_type_mismatch, ...) naming the parameter.
   void read(const Member& member, void* const* values) const;
 
-  /// For the runtime.
+  /// For the runtime: the bytes, and how they are read.
   struct Source;  // internal
-  /// For the runtime.
+  /// For the runtime: arguments that have arrived.
   explicit Arguments(const Source& source) : source_(&source) {}
-  /// For the runtime.
+  /// For the runtime: the bytes, and how they are read.
   [[nodiscard]] const Source& rr_source() const { return *source_; }
 
  private:

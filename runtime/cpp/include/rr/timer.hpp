@@ -18,7 +18,7 @@ namespace rr {
 /// is destroyed, or when its node is shut down.
 class [[nodiscard]] Timer {
  public:
-  /// For the runtime.
+  /// For the runtime: what the node calls.
   class State;  // internal
 
   /// No timer: not running.

@@ -31,7 +31,7 @@ class Type {
   ~Type() = default;
 };
 
-/// For the runtime.
+/// For the runtime: false for every T, so that only a use fails to compile.
 template <class T>
 inline constexpr bool has_no_wire_type = false;
 /// For the runtime: fails to compile, and says what is missing.
@@ -167,28 +167,28 @@ constexpr Shortcut scalar_shortcut(std::size_t size) {
       return Shortcut::none;
   }
 }
-/// For the runtime.
+/// Numbers are copied by their size.
 template <Number T>
 inline constexpr Shortcut shortcut_of<T> = scalar_shortcut(sizeof(T));
-/// For the runtime.
+/// Any byte but 0 is read as true.
 template <>
 inline constexpr Shortcut shortcut_of<bool> = Shortcut::boolean;
-/// For the runtime.
+/// Enums are copied as four bytes.
 template <class T>
 requires std::is_enum_v<T>
 inline constexpr Shortcut shortcut_of<T> = Shortcut::bytes4;
-/// For the runtime.
+/// Strings have a kind of their own.
 template <>
 inline constexpr Shortcut shortcut_of<std::string> = Shortcut::text;
 
-/// For the runtime.
+/// A number is an array of one item of its type.
 template <Number T>
 inline constexpr ElementType packed_type_of<T> = number_of<T>;
-/// For the runtime.
+/// An enum is an int32.
 template <class T>
 requires std::is_enum_v<T>
 inline constexpr ElementType packed_type_of<T> = ElementType::int32;
-/// For the runtime.
+/// A string is its bytes.
 template <>
 inline constexpr ElementType packed_type_of<std::string> = ElementType::string;
 

@@ -38,9 +38,9 @@ class WireEnd {
   /// On the service's side: number of the client's endpoint in this node. 0 on the client's side.
   [[nodiscard]] std::uint32_t client() const;
 
-  /// For the runtime.
+  /// For the runtime: what the handles of one end share.
   struct State;  // internal
-  /// For the runtime.
+  /// For the runtime: a handle of an end.
   explicit WireEnd(std::shared_ptr<State> state) : state_(std::move(state)) {}
 
  protected:
