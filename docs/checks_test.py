@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests of check_pages.py and run_blocks.py: what is wrong on a page is found, with its line."""
+"""Tests of check_pages.py, run_blocks.py and documented_names.py: what is wrong is found, with its line."""
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -106,6 +107,68 @@ class Pages(unittest.TestCase):
     def test_long_sentences(self):
         self.assertIn("19.0 words a sentence", self.check("Word " + "word " * 18 + "\n")[0])
         self.assertEqual(self.check("Word " + "word " * 17 + "\n"), [])
+
+
+@unittest.skipUnless(shutil.which("doxygen"), "doxygen is not installed")
+class Names(unittest.TestCase):
+    def check(self, text, name="one.hpp"):
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+                file.write(text)
+            status, output = run("documented_names.py", "--input", folder)
+        return status, output.replace(folder + "/", "")
+
+    def test_documented_names_hold(self):
+        status, output = self.check("""/// A.
+namespace a {
+/// Calls.
+class Caller {
+ public:
+  ~Caller();
+  Caller(const Caller&) = delete;
+  /// Does it.
+  virtual void call() = 0;
+ private:
+  void hidden();
+};
+/// One.
+class One : public Caller {
+ public:
+  void call() override;
+};
+/// How: `fast` or `slow`.
+enum class Way { fast, slow };
+/// A place.
+struct Place {
+  int x;  ///< metres
+};
+}  // namespace a
+""")
+        self.assertEqual(status, 0, output)
+        self.assertRegex(output, "^10 public names, 0 without documentation")
+
+    def test_each_kind_of_name_is_found(self):
+        for line, kind, name in (("void call();", "function", "a::call"),
+                                 ("class Caller {};", "class", "a::Caller"),
+                                 ("inline int count = 1;", "variable", "a::count"),
+                                 ("using Text = const char*;", "typedef", "a::Text"),
+                                 ("/// Says.\nstruct Said {\n  int word;\n};", "variable", "a::Said::word"),
+                                 ("/// How: `fast`.\nenum class Way { fast, slow };", "enum value", "a::slow")):
+            status, output = self.check(f"/// A.\nnamespace a {{\n{line}\n}}\n")
+            self.assertEqual(status, 1, output)
+            self.assertRegex(output, rf"one.hpp:[3-5]: {kind} {name} has no documentation comment")
+            self.assertIn(", 1 without documentation", output)
+
+    def test_c_headers_need_a_comment_of_their_own(self):
+        declared = "/** Calls. */\nvoid call(void);\n"
+        self.assertIn("one.h:1: file one.h has no", self.check(declared, "one.h")[1])
+        status, output = self.check("/** @file\n * Calls. */\n" + declared, "one.h")
+        self.assertEqual(status, 0, output)
+
+    def test_a_comment_that_doxygen_does_not_understand_is_found(self):
+        status, output = self.check("/// A.\nnamespace a {\n/// Calls @nobody there.\nvoid call();\n}\n")
+        self.assertEqual(status, 1, output)
+        self.assertIn("one.hpp:3: warning: Found unknown command", output)
 
 
 if __name__ == "__main__":

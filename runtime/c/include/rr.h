@@ -2,7 +2,7 @@
 #ifndef RR_H
 #define RR_H
 
-/*
+/** @file
  * The runtime for other languages: C, ABI version 1. docs/reference/c-abi.md says more and has an
  * example.
  *

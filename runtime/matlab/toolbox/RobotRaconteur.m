@@ -36,6 +36,7 @@ classdef RobotRaconteur
       rrmex('authenticate', obj, username, credentials);
     end
     function Logout(obj)
+      %LOGOUT Log out: the session goes on without a user, where the service allows that.
       rrmex('logout', obj);
     end
     function [found, varvalues] = GetServiceAttributes(obj)
@@ -88,6 +89,8 @@ classdef RobotRaconteur
       rrmex('lock', obj, kind);
     end
     function ReleaseObjectLock(obj)
+      %RELEASEOBJECTLOCK End the lock of this user at an object; another user's needs the
+      %   privilege objectlockoverride.
       rrmex('unlock', obj);
     end
     function MonitorEnter(obj, seconds)
@@ -98,6 +101,7 @@ classdef RobotRaconteur
       rrmex('monitor_enter', obj, seconds);
     end
     function MonitorExit(obj)
+      %MONITOREXIT Leave the monitor of an object.
       rrmex('monitor_exit', obj);
     end
 
@@ -170,6 +174,8 @@ classdef RobotRaconteur
       found = rrmex('find_type', type, schemes, seconds);
     end
     function found = FindNodeByID(id, schemes, seconds)
+      %FINDNODEBYID The node of an id, as a struct array of none or one. schemes ({} for all)
+      %   leaves out other URLs; nodes are asked and waited for seconds (1).
       if nargin < 2
         schemes = {};
       end
@@ -179,6 +185,8 @@ classdef RobotRaconteur
       found = rrmex('find_node_id', id, schemes, seconds);
     end
     function found = FindNodeByName(name, schemes, seconds)
+      %FINDNODEBYNAME All nodes of a name, as a struct array. schemes ({} for all) leaves out
+      %   other URLs; nodes are asked and waited for seconds (1).
       if nargin < 2
         schemes = {};
       end
@@ -271,9 +279,11 @@ classdef RobotRaconteur
       rrmex('log_level', level);
     end
     function OpenLogFile(path)
+      %OPENLOGFILE Write the log to a file, too, until CloseLogFile.
       rrmex('log_open', path);
     end
     function CloseLogFile()
+      %CLOSELOGFILE Write the log to no file any more.
       rrmex('log_close');
     end
     function time = nowUTC()

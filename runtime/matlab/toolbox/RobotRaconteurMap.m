@@ -31,9 +31,12 @@ classdef RobotRaconteurMap < handle
       end
     end
     function found = keys(obj)
+      %KEYS All keys, a row of characters in each cell.
       found = cellfun(@(key) rr_row(key(2:end)), keys(obj.rr_items), 'UniformOutput', false);
     end
     function found = values(obj, keys)
+      %VALUES All values in cells, in the order of the keys; or those of some keys, given in a
+      %   cell array.
       if nargin == 1
         found = values(obj.rr_items);
       else
@@ -41,6 +44,7 @@ classdef RobotRaconteurMap < handle
       end
     end
     function answer = isKey(obj, keys)
+      %ISKEY Whether there is a value of a key; of a cell array of keys, one answer for each.
       if iscell(keys)
         answer = cellfun(@(key) isKey(obj, key), keys);
       else
@@ -48,6 +52,7 @@ classdef RobotRaconteurMap < handle
       end
     end
     function obj = remove(obj, keys)
+      %REMOVE Remove the value of a key, or of each key in a cell array.
       if ~iscell(keys)
         keys = {keys};
       end
@@ -63,6 +68,7 @@ classdef RobotRaconteurMap < handle
       type = 'any';
     end
     function count = length(obj)
+      %LENGTH How many values there are.
       count = obj.rr_items.Count;
     end
     function count = numel(obj, varargin)
@@ -72,6 +78,7 @@ classdef RobotRaconteurMap < handle
       end
     end
     function answer = isempty(obj)
+      %ISEMPTY Whether there are no values.
       answer = obj.rr_items.Count == 0;
     end
     function count = numArgumentsFromSubscript(obj, s, context)

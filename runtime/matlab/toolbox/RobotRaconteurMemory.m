@@ -35,6 +35,7 @@ classdef RobotRaconteurMemory < handle
       count = rrmex('memory_dim_count', obj.rr_object, obj.rr_name);
     end
     function varargout = size(obj, dimension)
+      %SIZE Length of each dimension. Asks the service.
       dims = rrmex('memory_dims', obj.rr_object, obj.rr_name);
       if nargin == 2
         varargout = rr_sizes(dims, 1, dimension);
@@ -50,6 +51,7 @@ classdef RobotRaconteurMemory < handle
       end
     end
     function count = length(obj)
+      %LENGTH The longest dimension. Asks the service.
       count = max(size(obj));
     end
     function count = numArgumentsFromSubscript(obj, s, context)

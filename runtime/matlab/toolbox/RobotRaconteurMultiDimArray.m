@@ -50,9 +50,11 @@ classdef RobotRaconteurMultiDimArray
     end
 
     function varargout = size(obj, varargin)
+      %SIZE Length of each dimension.
       varargout = rr_sizes(rr_all_sizes(obj), max(nargout, 1), varargin{:});
     end
     function count = ndims(obj)
+      %NDIMS How many dimensions it has.
       count = numel(rr_all_sizes(obj));
     end
     function count = numel(obj, varargin)
@@ -63,15 +65,19 @@ classdef RobotRaconteurMultiDimArray
       end
     end
     function count = length(obj)
+      %LENGTH The longest dimension; 0 when there are no items.
       count = max(rr_all_sizes(obj)) * ~isempty(obj.array);
     end
     function count = rows(obj)
+      %ROWS Length of the first dimension.
       count = size(obj, 1);
     end
     function count = columns(obj)
+      %COLUMNS Length of the second dimension.
       count = size(obj, 2);
     end
     function answer = isempty(obj)
+      %ISEMPTY Whether there are no items.
       answer = isempty(obj.array);
     end
     function count = numArgumentsFromSubscript(obj, s, context)
@@ -113,6 +119,7 @@ classdef RobotRaconteurMultiDimArray
     end
 
     function answer = isequal(a, b, varargin)
+      %ISEQUAL Whether dimensions and items are the same, of an ordinary array, too.
       answer = rr_apply(@isequal, a, b, varargin{:});
     end
     function disp(obj)

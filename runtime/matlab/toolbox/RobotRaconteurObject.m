@@ -75,6 +75,7 @@ classdef RobotRaconteurObject < RobotRaconteurStub
     end
 
     function names = fieldnames(obj)
+      %FIELDNAMES Names of its properties and other members, as properties(obj).
       names = properties(obj);
     end
 

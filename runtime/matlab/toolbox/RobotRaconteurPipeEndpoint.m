@@ -1,11 +1,17 @@
 classdef RobotRaconteurPipeEndpoint < RobotRaconteurHandle
   %ROBOTRACONTEURPIPEENDPOINT A connected pipe. Packets are received in the background, and wait.
   properties (Dependent)
+    % How many packets wait to be received.
     Available
+    % Its number among the endpoints of the pipe.
     Index
+    % False once it is closed, by either side, or lost.
     IsOpen
+    % How many packets were lost because the queue was full.
     LostCount
+    % Whether packets may be lost or come in another order.
     IsUnreliable
+    % Whether the service acknowledges packets that are sent; false at first.
     RequestPacketAck
   end
   methods
@@ -90,6 +96,7 @@ classdef RobotRaconteurPipeEndpoint < RobotRaconteurHandle
       listener = RobotRaconteurListener(number);
     end
     function Close(obj)
+      %CLOSE Disconnect the endpoint. Packets that have come can still be received.
       rrmex('pipe_close', obj);
     end
     function disp(obj)

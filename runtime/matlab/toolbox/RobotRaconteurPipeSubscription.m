@@ -1,6 +1,7 @@
 classdef RobotRaconteurPipeSubscription < RobotRaconteurHandle
   %ROBOTRACONTEURPIPESUBSCRIPTION A pipe of all clients of a subscription.
   properties (Dependent)
+    % How many packets wait to be received.
     Available
   end
   methods
@@ -11,6 +12,8 @@ classdef RobotRaconteurPipeSubscription < RobotRaconteurHandle
       count = rrmex('pipe_sub_available', obj);
     end
     function [packet, client] = ReceivePacketWait(obj, seconds)
+      %RECEIVEPACKETWAIT Wait for a packet: the packet, and the client that has sent it. seconds
+      %   less than zero, or none: as long as it takes; otherwise OperationTimeout.
       if nargin < 2
         seconds = -1;
       end
@@ -21,9 +24,13 @@ classdef RobotRaconteurPipeSubscription < RobotRaconteurHandle
       end
     end
     function [packet, client] = ReceivePacket(obj)
+      %RECEIVEPACKET The packet that has waited longest, and its client; OperationTimeout when
+      %   none waits.
       [packet, client] = ReceivePacketWait(obj, 0);
     end
     function [has_come, packet, client] = TryReceivePacketWait(obj, seconds)
+      %TRYRECEIVEPACKETWAIT Wait for a packet, by default not at all: whether one has come, the
+      %   packet, its client.
       if nargin < 2
         seconds = 0;
       end
@@ -34,9 +41,11 @@ classdef RobotRaconteurPipeSubscription < RobotRaconteurHandle
       count = rrmex('pipe_sub_send', obj, packet);
     end
     function text = GetLastError(obj)
+      %GETLASTERROR Why the pipe could not be connected at a client; '' when all is well.
       text = rrmex('member_sub_error', obj, 'pipe');
     end
     function Close(obj)
+      %CLOSE Disconnect the endpoints at all clients.
       delete(obj);
     end
   end

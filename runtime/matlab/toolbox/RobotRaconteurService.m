@@ -2,7 +2,9 @@ classdef RobotRaconteurService < handle
   %ROBOTRACONTEURSERVICE A service that this interpreter offers, until Close().
   %   Made by RobotRaconteur.RegisterService. Root is its object, a RobotRaconteurServed.
   properties
+    % As it was registered.
     Name
+    % The object that clients get first.
     Root
   end
   properties (Hidden)

@@ -13,6 +13,7 @@ classdef RobotRaconteurServiceInfo2Subscription < RobotRaconteurHandle
       listener = RobotRaconteurListener(rrmex('info_listen', obj, event, handler));
     end
     function Close(obj)
+      %CLOSE End the subscription: its listeners are not called any more.
       rrmex('info_close', obj);
     end
   end

@@ -19,11 +19,13 @@ classdef RobotRaconteurStub < RobotRaconteurHandle
     end
 
     function answer = eq(a, b)
+      %EQ Whether both are the same object of the same session.
       answer = isa(a, 'RobotRaconteurStub') && isa(b, 'RobotRaconteurStub') && ...
                rrmex('same', a, b);
     end
 
     function answer = ne(a, b)
+      %NE Whether they are different objects.
       answer = ~(a == b);
     end
 
@@ -33,10 +35,12 @@ classdef RobotRaconteurStub < RobotRaconteurHandle
     end
 
     function answer = ismethod(obj, name)
+      %ISMETHOD Whether it has a method of this name.
       answer = any(strcmp(name, methods(obj)));
     end
 
     function answer = isprop(obj, name)
+      %ISPROP Whether it has a property of this name.
       answer = any(strcmp(name, properties(obj)));
     end
 

@@ -40,18 +40,25 @@ classdef RobotRaconteurSubscription < RobotRaconteurHandle
       claim = rrmex('sub_claim', obj, client.rr_h);
     end
     function ReleaseClient(obj, claim)
+      %RELEASECLIENT Give back a client of ClaimClient; it is closed if the subscription is.
       rrmex('sub_release', obj, claim);
     end
     function UpdateServiceURL(obj, urls)
+      %UPDATESERVICEURL From now on these URLs, alternatives of one service. A connection stays
+      %   while its URL is among them.
       rrmex('sub_update_urls', obj, urls);
     end
     function UpdateServiceByType(obj, types, filter)
+      %UPDATESERVICEBYTYPE From now on services of these types that pass the filter. Connections
+      %   to those that match stay.
       if nargin < 3
         filter = struct();
       end
       rrmex('sub_update_types', obj, types, filter);
     end
     function SetConnectRetryDelay(obj, seconds)
+      %SETCONNECTRETRYDELAY Seconds from a failure, or the loss of a connection, to the next
+      %   attempt.
       rrmex('sub_retry_delay', obj, seconds);
     end
     function wire = SubscribeWire(obj, name, path)
@@ -81,6 +88,7 @@ classdef RobotRaconteurSubscription < RobotRaconteurHandle
       listener = RobotRaconteurListener(rrmex('sub_listen', obj, event, handler));
     end
     function Close(obj)
+      %CLOSE End the subscription and all clients that nobody has claimed.
       rrmex('sub_close', obj);
     end
     function disp(obj)

@@ -4,7 +4,9 @@ classdef RobotRaconteurVarValue
   %   of type varvalue is received as one. datatype is spelled as in a service definition, with
   %   named types in full; 'null' has no data.
   properties
+    % The value; [] of null.
     data = [];
+    % As in a service definition: 'int16[]'.
     datatype = 'null';
   end
   methods

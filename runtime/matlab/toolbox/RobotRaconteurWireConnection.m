@@ -3,13 +3,21 @@ classdef RobotRaconteurWireConnection < RobotRaconteurHandle
   %   InValue is the newest value from the service, OutValue what is sent to it. InValueLifespan is
   %   in seconds, less than zero for values that do not expire.
   properties (Dependent)
+    % The newest value from the service; an error when there is none.
     InValue
+    % What was sent last; setting it sends a value.
     OutValue
+    % Whether there is a value from the service that has not expired.
     InValueValid
+    % Whether a value was sent.
     OutValueValid
+    % Seconds after which a value expires; less than zero: never.
     InValueLifespan
+    % When InValue was sent, by the service's clock.
     LastValueReceivedTime
+    % When OutValue was sent.
     LastValueSentTime
+    % False once it is closed, by either side, or lost.
     IsOpen
   end
   methods
@@ -79,6 +87,7 @@ classdef RobotRaconteurWireConnection < RobotRaconteurHandle
       listener = RobotRaconteurListener(number);
     end
     function Close(obj)
+      %CLOSE Disconnect the wire.
       rrmex('wire_close', obj);
     end
     function disp(obj)

@@ -1,10 +1,13 @@
 classdef RobotRaconteurWireSubscription < RobotRaconteurHandle
   %ROBOTRACONTEURWIRESUBSCRIPTION A wire of all clients of a subscription.
   properties (Dependent)
+    % The newest value, from whichever client; an error when there is none.
     InValue
+    % Whether there is a value that has not expired.
     InValueValid
   end
   properties (SetAccess = private)
+    % Seconds after which a value expires; less than zero: never.
     InValueLifespan = -1;
   end
   methods
@@ -18,10 +21,14 @@ classdef RobotRaconteurWireSubscription < RobotRaconteurHandle
       answer = rrmex('wire_sub_try_in', obj);
     end
     function SetInValueLifespan(obj, seconds)
+      %SETINVALUELIFESPAN Values that came more than so many seconds ago are as none; less than
+      %   zero: they do not expire.
       rrmex('wire_sub_lifespan', obj, seconds);
       obj.InValueLifespan = seconds;
     end
     function [is_valid, value, time, client] = TryGetInValue(obj)
+      %TRYGETINVALUE Whether there is a value; the newest one, when it was sent, and the client
+      %   that has sent it.
       value = [];
       time = [];
       client = [];
@@ -35,6 +42,8 @@ classdef RobotRaconteurWireSubscription < RobotRaconteurHandle
       found = rrmex('wire_sub_all', obj);
     end
     function answer = WaitInValueValid(obj, seconds)
+      %WAITINVALUEVALID Wait until there is a value; whether there is. seconds less than zero,
+      %   or none: as long as it takes.
       if nargin < 2
         seconds = -1;
       end
@@ -56,6 +65,7 @@ classdef RobotRaconteurWireSubscription < RobotRaconteurHandle
       text = rrmex('member_sub_error', obj, 'wire');
     end
     function Close(obj)
+      %CLOSE Disconnect the wire at all clients.
       delete(obj);
     end
   end

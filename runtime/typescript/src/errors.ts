@@ -3,52 +3,99 @@
 
 /** Codes of errors. */
 export const ErrorCode = {
+  /** There is no connection, or it was lost. */
   ConnectionError: 1,
+  /** The other side has broken the rules of the protocol. */
   ProtocolError: 2,
+  /** There is no service of this name. */
   ServiceNotFound: 3,
+  /** There is no object at this path. */
   ObjectNotFound: 4,
+  /** The session is not, or no longer, there. */
   InvalidEndpoint: 5,
+  /** The session cannot go on. */
   EndpointCommunicationFatalError: 6,
+  /** There is no node of this id or name at the address. */
   NodeNotFound: 7,
+  /** The service does not do what was asked for. */
   ServiceError: 8,
+  /** The object has no such member. */
   MemberNotFound: 9,
+  /** The member exists, and is of another kind. */
   MemberFormatMismatch: 10,
+  /** A value of another type than declared. */
   DataTypeMismatch: 11,
+  /** A value that is no value of its type: length, dims, keys. */
   DataTypeError: 12,
+  /** Bytes that are no elements. */
   DataSerializationError: 13,
+  /** A message without an entry that it must have. */
   MessageEntryNotFound: 14,
+  /** An argument, a field or a part of a value is missing. */
   MessageElementNotFound: 15,
+  /** An error without a code of its own: see its name. */
   UnknownError: 16,
+  /** Not in this state, or not twice. */
   InvalidOperation: 17,
+  /** An argument that makes no sense. */
   InvalidArgument: 18,
+  /** Tried, and failed. */
   OperationFailed: 19,
+  /** Null where a value must be. */
   NullValue: 20,
+  /** A mistake in the runtime. */
   InternalError: 21,
+  /** The system does not allow it. */
   SystemResourcePermissionDenied: 22,
+  /** No memory, threads or descriptors left. */
   OutOfSystemResource: 23,
+  /** The system has refused. */
   SystemResourceError: 24,
+  /** A file or another thing of the system is not there. */
   ResourceNotFound: 25,
+  /** Reading or writing has failed. */
   IOError: 26,
+  /** A queue is full, or something is larger than a limit. */
   BufferLimitViolation: 27,
+  /** A definition has a mistake, or differs from the program's. */
   ServiceDefinitionError: 28,
+  /** An index, position or number outside of what there is. */
   OutOfRange: 29,
+  /** A map has no such key. */
   KeyNotFound: 30,
+  /** Options, users, rights or certificates are wrong. */
   InvalidConfiguration: 31,
+  /** The object is not in a state for it. */
   InvalidState: 32,
+  /** An exception of a definition; the name says which. */
   RemoteError: 100,
+  /** No answer in time. */
   RequestTimeout: 101,
+  /** Setting or sending what is readonly. */
   ReadOnlyMember: 102,
+  /** Getting or receiving what is writeonly. */
   WriteOnlyMember: 103,
+  /** The service leaves this member out. */
   NotImplementedError: 104,
+  /** The member is in use. */
   MemberBusy: 105,
+  /** A wire has no value yet, or only one that has expired. */
   ValueNotSet: 106,
+  /** For a generator: break off. */
   AbortOperation: 107,
+  /** Ended before it was done, by this side or the other. */
   OperationAborted: 108,
+  /** A generator has come to its end: no failure. */
   StopIteration: 109,
+  /** The time to wait is over. */
   OperationTimeout: 110,
+  /** Ended by the program before its answer came. */
   OperationCancelled: 111,
+  /** A login was refused, or none was sent. */
   AuthenticationError: 150,
+  /** Another user or session has locked the object. */
   ObjectLockedError: 151,
+  /** The user may not do this. */
   PermissionDenied: 152,
 } as const;
 
@@ -72,15 +119,19 @@ export interface ErrorDetails {
   subname?: string;
   /** A value of the application; a VarValue, or what one can be made of. */
   parameter?: unknown;
+  /** What has caused it; stays on this side. */
   cause?: unknown;
 }
 
 /** An error of the protocol, of a peer or of this node. */
 export class RRError extends Error {
+  /** What receivers decide by: one of {@link ErrorCode}. */
   readonly code: ErrorCode;
   /** The name on the wire: `RobotRaconteur.` and the code's, or a qualified name of a definition. */
   readonly errorName: string;
+  /** A code of the application, within the error; mostly empty. */
   readonly subname: string;
+  /** A value of the application; undefined for none. */
   readonly parameter: unknown;
 
   constructor(code: ErrorCode, message: string, details: ErrorDetails = {}) {

@@ -19,8 +19,11 @@ export class ServiceModule {
   private known: Definitions | undefined;
 
   constructor(
+    /** The definition, exactly as it was compiled. */
     readonly text: string,
+    /** The modules of the definitions that it imports. */
     readonly imports: readonly ServiceModule[] = [],
+    /** Classes by the qualified names of its exceptions. */
     readonly exceptions: Readonly<Record<string, ErrorClass>> = {},
   ) {}
 

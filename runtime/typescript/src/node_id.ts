@@ -6,6 +6,7 @@ const pattern = /^\{?([0-9a-f]{8})-([0-9a-f]{4})-([0-9a-f]{4})-([0-9a-f]{4})-([0
 
 /** The identity of a node: 16 bytes, all zero for "any" or "unknown". */
 export class NodeId {
+  /** All zero: any node, or unknown. */
   static readonly any = new NodeId(new Uint8Array(16));
 
   private constructor(readonly bytes: Uint8Array) {}
@@ -25,6 +26,7 @@ export class NodeId {
     return new NodeId(Uint8Array.from({ length: 16 }, (_, i) => parseInt(digits.slice(2 * i, 2 * i + 2), 16)));
   }
 
+  /** A random (version 4) id. */
   static random(): NodeId {
     const bytes = randomBytes(16);
     bytes[6] = ((bytes[6] ?? 0) & 0x0f) | 0x40;
@@ -32,10 +34,12 @@ export class NodeId {
     return new NodeId(bytes);
   }
 
+  /** Whether it is all zero. */
   get isAny(): boolean {
     return this.bytes.every((byte) => byte === 0);
   }
 
+  /** Whether both are the same node. */
   equals(other: NodeId): boolean {
     return this.bytes.every((byte, i) => byte === other.bytes[i]);
   }

@@ -20,6 +20,7 @@ export interface Limits {
   packetQueue: number;
   /** Bytes of one service definition, and of all of one session. */
   definitionSize: number;
+  /** Bytes of all service definitions of one session. */
   definitionsSize: number;
   /** Definitions of one session. */
   definitions: number;
@@ -27,7 +28,9 @@ export interface Limits {
   requestsAtOnce: number;
   /** Ends of one pipe, generators and objects of one session. */
   pipeEnds: number;
+  /** Generators of one session. */
   generators: number;
+  /** Objects of one session. */
   objects: number;
   /** Connections that a node accepts at a time. */
   connections: number;
@@ -37,12 +40,15 @@ export interface Limits {
 export interface NodeSettings {
   /** Letters, digits, `_`, `.`, `-`, a letter first; empty for none. */
   name: string;
+  /** The node's id. A random one unless it is given. */
   id: NodeId;
   /** What is offered to services, and to clients. */
   clientOffer: Offer;
+  /** What is offered to clients. */
   serverOffer: Offer;
   /** How long a call waits for its answer. */
   requestTimeout: number;
+  /** How long connecting to a service may take. */
   connectTimeout: number;
   /** A service closes connections that bring no whole message for so long after they are made. */
   firstMessageTimeout: number;
@@ -60,6 +66,7 @@ export interface NodeSettings {
   generatorTimeout: number;
   /** Bytes of a memory that travel in one request; the smaller one of both sides counts. */
   memoryTransferLimit: number;
+  /** What peers may make the node hold. */
   limits: Limits;
   /** Hears what no caller is told. Nothing is printed. */
   log: (level: "info" | "warning" | "error", message: string) => void;
@@ -67,6 +74,7 @@ export interface NodeSettings {
 
 const everything: Offer = { format4: true, stringTable: true, combinedConnect: true };
 
+/** The limits that hold where nothing else is said. */
 export const defaultLimits: Limits = {
   messageSize: 12 * 1024 * 1024,
   sizeBeforeSession: 512 * 1024,

@@ -4,17 +4,23 @@ import { NodeId } from "./node_id.js";
 
 /** Where a service is: `scheme://host:port/?service=name[&nodeid=...][&nodename=...]` (04, section 1). */
 export interface ServiceUrl {
+  /** As it was given. */
   readonly text: string;
+  /** Lower case: `rr+tcp`, `rr+ws`, `rr+wss`. */
   readonly scheme: string;
   /** Without the brackets of an IPv6 address. */
   readonly host: string;
+  /** The scheme's default when the text has none. */
   readonly port: number;
   /** As it is in the URL, with its slash. */
   readonly path: string;
   /** With its question mark. */
   readonly query: string;
+  /** The name of the service. */
   readonly service: string;
+  /** Undefined when the URL names none. */
   readonly nodeId: NodeId | undefined;
+  /** Empty when the URL names none. */
   readonly nodeName: string;
 }
 

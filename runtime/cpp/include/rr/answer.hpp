@@ -16,8 +16,10 @@ namespace rr {
 template <class R>
 class Answer {
  public:
+  /// For generated code: answers this request.
   Answer(Request& request) : request_(&request) {}  // NOLINT: rr_dispatch passes its request on
 
+  /// Answers the call with its result. Throws rr::Error when that cannot be sent.
   void operator()(const R& result) { request_->answer(&result); }
   /// The next request of this client is handled meanwhile.
   [[nodiscard]] Reply<R> defer() { return Reply<R>(request_->defer()); }
@@ -26,12 +28,16 @@ class Answer {
   Request* request_;
 };
 
+/// The answer to one call of a function that returns nothing.
 template <>
 class Answer<void> {
  public:
+  /// For generated code: answers this request.
   Answer(Request& request) : request_(&request) {}  // NOLINT: rr_dispatch passes its request on
 
+  /// Answers the call: it is done.
   void operator()() { request_->answer(nullptr); }
+  /// To answer later. The next request of this client is handled meanwhile.
   [[nodiscard]] Reply<void> defer() { return Reply<void>(request_->defer()); }
 
  private:

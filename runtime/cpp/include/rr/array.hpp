@@ -20,6 +20,7 @@ namespace rr {
 // Here instead of <algorithm>, which would cost every generated header thousands of lines.
 // Never inlined: it would be, into the comparison of every struct.
 template <class T>
+/// Whether two arrays have the same number of items, and each pair is equal.
 [[gnu::noinline]] bool same_items(std::span<const T> a, std::span<const T> b) {
   if (a.size() != b.size()) return false;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -31,9 +32,13 @@ template <class T>
 /// Where the items of an Array are, whatever their type. Not for users.
 class ArrayStorage {
  public:
+  /// The first item; null for none.
   [[nodiscard]] const void* items() const { return data_; }
+  /// Number of items.
   [[nodiscard]] std::size_t count() const { return size_; }
+  /// What keeps the items alive; empty where nothing does.
   [[nodiscard]] const MemoryRef& owner() const { return owner_; }
+  /// Refers to items elsewhere, which `owner` keeps alive.
   void share(const void* items, std::size_t count, MemoryRef owner) {
     data_ = items;
     size_ = count;
@@ -43,8 +48,11 @@ class ArrayStorage {
   std::byte* make_room(std::size_t count, std::size_t item_size);
 
  protected:
+  /// the first item
   const void* data_ = nullptr;
+  /// number of items
   std::size_t size_ = 0;
+  /// what keeps the items alive
   MemoryRef owner_;
 };
 
@@ -60,12 +68,16 @@ class Array : private ArrayStorage {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
+  /// The type of an item.
   using value_type = T;
+  /// Items cannot be changed by iterators; see mutate().
   using const_iterator = const T*;
 
+  /// No items.
   Array() = default;
   /// `size` value-initialized items.
   explicit Array(std::size_t size);
+  /// Copies the items.
   Array(std::initializer_list<T> items);
   /// The same for coroutines: g++ 12 refuses `co_yield rr::Array<double>{1, 2}` with "array used as
   /// initializer", and takes `co_yield rr::Array<double>::of(1, 2)`.
@@ -83,15 +95,24 @@ class Array : private ArrayStorage {
   /// outlive every copy of the result: meant for sending, where nothing is copied then.
   static Array view(std::span<const T> items, MemoryRef owner = {});
 
+  /// Number of items.
   [[nodiscard]] std::size_t size() const { return size_; }
+  /// Whether there are no items.
   [[nodiscard]] bool empty() const { return size_ == 0; }
+  /// The first item, valid until this array changes or is destroyed; null for none.
   [[nodiscard]] const T* data() const { return static_cast<const T*>(data_); }
+  /// The first item.
   [[nodiscard]] const T* begin() const { return data(); }
+  /// Behind the last item.
   [[nodiscard]] const T* end() const { return data() + size_; }
+  /// The index is not checked; at() does that.
   const T& operator[](std::size_t index) const { return data()[index]; }
   /// Throws std::out_of_range.
   const T& at(std::size_t index) const;
+  /// A view of the items, valid until this array changes or is destroyed.
   operator std::span<const T>() const { return {data(), size_}; }  // NOLINT
+  /// What keeps the items alive; empty where nothing does. Two arrays that share items have the
+  /// same.
   using ArrayStorage::owner;
 
   /// Writable items; copies them first unless this is their only user.
@@ -99,6 +120,7 @@ class Array : private ArrayStorage {
   /// Copies the items into own memory, which is used again if it is large enough.
   void assign(std::span<const T> items);
 
+  /// Whether the items are equal, wherever they are.
   friend bool operator==(const Array& a, const Array& b) {
     return same_items<T>({a.data(), a.size()}, {b.data(), b.size()});
   }
@@ -108,33 +130,50 @@ class Array : private ArrayStorage {
 template <class T, std::size_t Maximum>
 class BoundedArray {
  public:
+  /// The type of an item.
   using value_type = T;
 
+  /// No items.
   constexpr BoundedArray() = default;
   /// Throws std::length_error for more than `Maximum` items.
   BoundedArray(std::initializer_list<T> items) { assign(std::span(items.begin(), items.size())); }
+  /// Copies the items. Throws std::length_error for more than `Maximum`.
   explicit BoundedArray(std::span<const T> items) { assign(items); }
 
+  /// The most items that there may be.
   static constexpr std::size_t max_size() { return Maximum; }
   /// Where the items lie in the object, for the runtime.
   static constexpr std::size_t items_offset = alignof(T) > sizeof(std::uint32_t)
                                                   ? alignof(T)
                                                   : sizeof(std::uint32_t);
+  /// Number of items.
   [[nodiscard]] std::size_t size() const { return size_; }
+  /// Whether there are no items.
   [[nodiscard]] bool empty() const { return size_ == 0; }
+  /// The first item. The items stay in place while the object does.
   T* data() { return items_.data(); }
+  /// The first item. The items stay in place while the object does.
   [[nodiscard]] const T* data() const { return items_.data(); }
+  /// The first item.
   T* begin() { return items_.data(); }
+  /// Behind the last item.
   T* end() { return items_.data() + size_; }
+  /// The first item.
   [[nodiscard]] const T* begin() const { return items_.data(); }
+  /// Behind the last item.
   [[nodiscard]] const T* end() const { return items_.data() + size_; }
+  /// The index is not checked.
   T& operator[](std::size_t index) { return items_[index]; }
+  /// The index is not checked.
   const T& operator[](std::size_t index) const { return items_[index]; }
   /// Throws std::length_error above the maximum.
   void resize(std::size_t size);
+  /// Adds an item. Throws std::length_error above the maximum.
   void push_back(const T& item);
+  /// Copies the items in place of those before. Throws std::length_error for more than `Maximum`.
   void assign(std::span<const T> items);
 
+  /// Whether the items are equal; what is behind the last one does not count.
   friend bool operator==(const BoundedArray& a, const BoundedArray& b) {
     return same_items<T>({a.data(), a.size()}, {b.data(), b.size()});
   }
@@ -147,26 +186,33 @@ class BoundedArray {
 /// Any number of dimensions, first index fastest (column-major): the type of `T[*]` members.
 template <class T>
 struct MultiArray {
+  /// Length of each dimension. Without dimensions there is one item.
   std::vector<std::uint32_t> dims;
   Array<T> items;  ///< as many as the product of dims
 
+  /// Whether dims and items are equal.
   bool operator==(const MultiArray&) const = default;
 };
 
 /// Fixed dimensions, stored in place, first index fastest: the type of `T[m,n]` members.
 template <class T, std::size_t... Dims>
 struct FixedMultiArray {
+  /// Length of each dimension.
   static constexpr std::array<std::uint32_t, sizeof...(Dims)> dims{Dims...};
+  /// All items, first index fastest.
   std::array<T, (Dims * ...)> items{};
 
+  /// The item at an index for each dimension, counted from 0. The indexes are not checked.
   template <class... Index>
   constexpr T& operator()(Index... index) {
     return items[offset(index...)];
   }
+  /// The item at an index for each dimension, counted from 0. The indexes are not checked.
   template <class... Index>
   constexpr const T& operator()(Index... index) const {
     return items[offset(index...)];
   }
+  /// Whether all items are equal.
   bool operator==(const FixedMultiArray&) const = default;
 
  private:

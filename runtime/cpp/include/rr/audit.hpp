@@ -15,6 +15,7 @@
 /// Who did what with the services of a node (docs/howto/access.md).
 namespace rr {
 
+/// What has happened.
 enum class AuditKind : std::uint8_t {
   connect,     ///< a client has connected to a service
   disconnect,  ///< its session has ended
@@ -32,16 +33,16 @@ std::string_view audit_kind_name(AuditKind kind);
 /// One thing that has happened. Texts of a peer are as it sent them; credentials are never among
 /// them.
 struct AuditEvent {
-  std::chrono::system_clock::time_point time{};
-  AuditKind kind = AuditKind::access;
-  bool is_allowed = true;  ///< false for what was refused or has failed
-  std::string service;
-  std::string path;  ///< of the object; empty where there is none
-  std::string member;
+  std::chrono::system_clock::time_point time{};  ///< when it happened
+  AuditKind kind = AuditKind::access;            ///< what has happened
+  bool is_allowed = true;                        ///< false for what was refused or has failed
+  std::string service;                           ///< its name
+  std::string path;                              ///< of the object; empty where there is none
+  std::string member;                            ///< its name; empty where there is none
   std::string operation;  ///< `get`, `call`, `RequestObjectLock` ...; empty where the kind says all
   std::string user;       ///< who is logged in, or wanted to be; empty for nobody
   NodeId node;            ///< what the client says of itself
-  std::string node_name;
+  std::string node_name;  ///< as it says; empty for none
   std::uint32_t client = 0;  ///< the number of the session's endpoint in this node
   std::string address;      ///< `10.0.0.5`, `uid 1000` of a local socket, `intra`; empty if unknown
   std::string certificate;  ///< the node id that the client's certificate has proved; empty without
@@ -69,6 +70,7 @@ struct AuditOptions {
 /// system then. Copies write to the same file.
 class AuditLog {
  public:
+  /// How large the files get, and how many are kept.
   struct Options {
     /// A file that would become larger is renamed to `path.1`, that to `path.2` and so on.
     std::size_t max_size = std::size_t{16} * 1024 * 1024;
@@ -79,6 +81,7 @@ class AuditLog {
   /// Opens or makes the file, which nobody but its owner may read (0600). Throws rr::Error
   /// (invalid_configuration) when that fails, and for what is no regular file, such as a link.
   explicit AuditLog(std::string path) : AuditLog(std::move(path), Options()) {}
+  /// The same with limits of its own.
   AuditLog(std::string path, Options options);
   /// Throws rr::Error (io_error) when the file cannot be written.
   void operator()(const AuditEvent& event) const;

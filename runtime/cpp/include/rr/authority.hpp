@@ -13,15 +13,17 @@ namespace rr {
 
 /// A certificate that an authority has issued.
 struct IssuedCertificate {
+  /// A moment, UTC.
   using Time = std::chrono::system_clock::time_point;
 
-  std::string serial;  ///< hexadecimal, lower case
-  NodeId node;
-  std::string name;  ///< what it was called when it was issued; may be empty
-  Time not_before;
-  Time not_after;
+  std::string serial;             ///< hexadecimal, lower case
+  NodeId node;                    ///< whose certificate it is
+  std::string name;               ///< what it was called when it was issued; may be empty
+  Time not_before;                ///< valid from
+  Time not_after;                 ///< valid until
   std::optional<Time> revoked{};  ///< when, if it was
 
+  /// Whether all fields are equal.
   bool operator==(const IssuedCertificate&) const = default;
 };
 
@@ -39,10 +41,11 @@ struct IssuedCertificate {
 /// authentication_error for a wrong passphrase.
 class Authority {
  public:
+  /// A validity, in days of 24 hours.
   using Days = std::chrono::duration<int, std::ratio<86400>>;
   /// How long lists of revoked certificates are valid, unless another time was set.
   static constexpr Days list_validity{7};
-  /// The key of a renewed certificate: that of the certificate before, or another.
+  /// The key of a renewed certificate: `same`, that of the certificate before, or `another`.
   enum class RenewedKey { same, another };
 
   /// Makes a new one. Without a passphrase its key is stored in clear. Throws invalid_operation
@@ -52,6 +55,7 @@ class Authority {
   /// One that exists. The passphrase is needed by all that signs: everything but issued().
   explicit Authority(std::string folder, std::string passphrase = {});
   ~Authority();
+  /// Another object for the same folder, with the same passphrase.
   Authority(const Authority&);
   Authority& operator=(const Authority&) = delete;
 
@@ -93,7 +97,9 @@ class Authority {
   /// When the list of revoked certificates runs out.
   [[nodiscard]] IssuedCertificate::Time list_runs_out() const;
 
+  /// The file of its certificate, for TlsOptions::authority_files.
   [[nodiscard]] std::string certificate_file() const { return folder_ + "/ca.pem"; }
+  /// The file of its list of revoked certificates, for TlsOptions::revocation_files.
   [[nodiscard]] std::string revocation_file() const { return folder_ + "/revoked.pem"; }
 
  private:

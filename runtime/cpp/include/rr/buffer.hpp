@@ -16,10 +16,13 @@ class Memory {
   Memory(const Memory&) = delete;
   Memory& operator=(const Memory&) = delete;
 
+  /// Adds a reference. Any thread may do so.
   void retain() noexcept { references_.fetch_add(1, std::memory_order_relaxed); }
+  /// Gives up a reference; the last one destroys the memory. Any thread may do so.
   void release() noexcept {
     if (references_.fetch_sub(1, std::memory_order_acq_rel) == 1) destroy();
   }
+  /// Whether there is one reference only.
   [[nodiscard]] bool is_unique() const noexcept {
     return references_.load(std::memory_order_acquire) == 1;
   }
@@ -27,8 +30,10 @@ class Memory {
   [[nodiscard]] virtual std::span<std::byte> storage() noexcept { return {}; }
 
  protected:
+  /// Made with one reference, which a MemoryRef takes over.
   Memory() = default;
   ~Memory() = default;
+  /// Frees this. Called once, on the thread that releases the last reference.
   virtual void destroy() noexcept = 0;  // frees this
 
  private:
@@ -38,13 +43,17 @@ class Memory {
 /// A counted reference to Memory; may be empty.
 class MemoryRef {
  public:
+  /// Refers to nothing.
   MemoryRef() = default;
   /// Takes over one reference.
   explicit MemoryRef(Memory* adopted) noexcept : memory_(adopted) {}
+  /// Adds a reference.
   MemoryRef(const MemoryRef& other) noexcept : memory_(other.memory_) {
     if (memory_ != nullptr) memory_->retain();
   }
+  /// Takes over the reference; `other` is empty afterwards.
   MemoryRef(MemoryRef&& other) noexcept : memory_(std::exchange(other.memory_, nullptr)) {}
+  /// Refers to the same as `other`, and no longer to what it referred to.
   MemoryRef& operator=(MemoryRef other) noexcept {
     std::swap(memory_, other.memory_);
     return *this;
@@ -53,7 +62,9 @@ class MemoryRef {
     if (memory_ != nullptr) memory_->release();
   }
 
+  /// Whether it refers to something.
   explicit operator bool() const noexcept { return memory_ != nullptr; }
+  /// Whether this is the only reference. False when it is empty.
   [[nodiscard]] bool is_unique() const noexcept {
     return memory_ != nullptr && memory_->is_unique();
   }
@@ -68,8 +79,8 @@ class MemoryRef {
 
 /// Raw bytes on the heap, for a received message or an array's items. `bytes` is aligned to 16.
 struct Allocation {
-  MemoryRef owner;
-  std::byte* bytes = nullptr;
+  MemoryRef owner;             ///< keeps the bytes
+  std::byte* bytes = nullptr;  ///< the first one
 };
 
 /// Allocates `size` bytes. Throws std::bad_alloc.

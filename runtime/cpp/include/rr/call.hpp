@@ -27,10 +27,13 @@ struct CallOptions {
   std::stop_token stop{};
 };
 
+/// Options with a time limit, and a stop token if one is given: `arm->move_to(1, 0,
+/// rr::within(2s))`.
 [[nodiscard]] inline CallOptions within(std::chrono::milliseconds timeout,
                                         std::stop_token stop = {}) {
   return {timeout, std::move(stop)};
 }
+/// Options without a time limit of their own, whose call a stop token ends.
 [[nodiscard]] inline CallOptions stopped_by(std::stop_token stop) {
   return {std::chrono::milliseconds(0), std::move(stop)};
 }
@@ -39,7 +42,7 @@ struct CallOptions {
 /// destroyed within one function that does not return in between.
 class CallOptionsScope {
  public:
-  /// What the scope counts for.
+  /// What the scope counts for: `blocking_calls` only, or `all_calls`.
   enum class Reach : bool { blocking_calls, all_calls };
 
   /// `options` stay where they are.

@@ -21,7 +21,9 @@ class CallbackFunction {
   virtual std::shared_ptr<const void> call(const Arguments& arguments) = 0;
 
  protected:
+  /// For a callback that the definition describes so.
   explicit CallbackFunction(const Member& member) : member_(&member) {}
+  /// The callback in its definition.
   [[nodiscard]] const Member& member() const { return *member_; }
 
  private:
@@ -36,13 +38,19 @@ class CallbackMember {
   void clear();
 
  protected:
+  /// For a callback of an object, which must outlive this.
   CallbackMember(Stub& stub, const Member& member) : stub_(&stub), member_(&member) {}
+  /// Sets the function in place of an earlier one. Throws rr::Error (invalid_operation) when the
+  /// session has ended.
   void set_function(std::unique_ptr<CallbackFunction> function);
 
+  /// the object's
   Stub* stub_;
+  /// the callback in its definition
   const Member* member_;
 };
 
+/// A callback by the signature of its function; see Callback<R(Parameters...)>.
 template <class Signature>
 class Callback;
 
@@ -53,8 +61,11 @@ class Callback;
 template <class R, class... Parameters>
 class Callback<R(Parameters...)> : public CallbackMember {
  public:
+  /// For generated code: a callback of an object.
   Callback(Stub& stub, const Member& member) : CallbackMember(stub, member) {}
 
+  /// The service gets this function from now on, in place of an earlier one. What it throws is sent
+  /// to the service as an error.
   template <class Function>
   void set(Function function) {
     class Bound final : public CallbackFunction {

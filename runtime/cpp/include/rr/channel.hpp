@@ -76,6 +76,7 @@ class LinkListener {
 class MessageChannel {
  public:
   virtual ~MessageChannel() = default;
+  /// What the channel is like. Asked once for each connection and listener.
   [[nodiscard]] virtual ChannelTraits traits() const = 0;
   /// Connects to where the URL says; the handshake is the node's. Blocks until the deadline. Throws
   /// rr::Error.

@@ -28,6 +28,7 @@ class DefinitionReader;
 struct ConnectOptions {
   /// Of a service that has users; then `credentials` usually holds `password`.
   std::string username{};
+  /// What proves who the user is, as the service wants it: mostly `password`, a string.
   std::map<std::string, VarValue> credentials{};
   /// Logs in without TLS even at a URL that this node's discovery has found, which anybody on the
   /// network can announce. A URL from elsewhere is not asked about.
@@ -47,6 +48,7 @@ struct ConnectOptions {
   std::function<void(const std::string&)> on_path_released{};
   /// Instead of the node's, NodeOptions::definition_check.
   std::optional<DefinitionCheck> definition_check{};
+  /// Internal, for rr::dynamic: reads the definitions that the service sends.
   std::shared_ptr<client::DefinitionReader> definition_reader{};  // internal: of rr::dynamic
 };
 
@@ -56,7 +58,9 @@ class ClientBase {
  public:
   /// No session: not open.
   ClientBase() = default;
+  /// Takes over the session; `other` has none afterwards.
   ClientBase(ClientBase&& other) noexcept = default;
+  /// Closes this session, and takes over the other one.
   ClientBase& operator=(ClientBase&& other) noexcept;
   ~ClientBase();
 
@@ -71,7 +75,9 @@ class ClientBase {
 
   /// As the service gave them when connecting.
   [[nodiscard]] const std::map<std::string, VarValue>& attributes() const;
+  /// The id of the service's node.
   [[nodiscard]] const NodeId& remote_node() const;
+  /// The name of the service's node; empty for none.
   [[nodiscard]] const std::string& remote_name() const;
   /// The type of the root object, as the service told it.
   [[nodiscard]] const std::string& object_type() const;
@@ -92,7 +98,9 @@ class ClientBase {
   /// Logs out. Throws rr::Error.
   void logout(const CallOptions& options = {});
 
+  /// For the runtime: Node::connect makes clients.
   explicit ClientBase(std::shared_ptr<Session> session);  // made by Node::connect
+  /// For the runtime: the session; null when there is none.
   [[nodiscard]] const std::shared_ptr<Session>& rr_session() const { return session_; }
   /// Leaves this without its session, which stays open. For subscriptions.
   [[nodiscard]] std::shared_ptr<Session> rr_release() { return std::exchange(session_, nullptr); }
@@ -111,6 +119,7 @@ const ObjectType* type_of_stub() {
   }
 }
 
+/// For stub_cast(): throws rr::Error (service_error).
 [[noreturn]] void refuse_stub();
 /// A stub as an S; null stays null. Throws rr::Error (service_error) when it is none.
 template <class S>
@@ -125,12 +134,17 @@ std::shared_ptr<S> stub_cast(std::shared_ptr<Stub> stub) {
 template <class S>
 class Client : public ClientBase {
  public:
+  /// No session and no stub.
   Client() = default;
+  /// For the runtime: Node::connect makes clients.
   Client(std::shared_ptr<Session> session, std::shared_ptr<S> stub)
       : ClientBase(std::move(session)), stub_(std::move(stub)) {}
 
+  /// The stub of the root object: `arm->move_to(1, 0)`.
   S* operator->() const { return stub_.get(); }
+  /// The stub of the root object.
   S& operator*() const { return *stub_; }
+  /// The same stub, to be kept elsewhere. Its calls fail once the session is closed.
   [[nodiscard]] const std::shared_ptr<S>& stub() const { return stub_; }
 
  private:

@@ -17,9 +17,10 @@ namespace rr {
 
 class TypeRegistry;
 
-// What the templates below stand on.
+/// What encode() stands on: writes one element called `name` whose value is of `type`.
 void encode_value(Writer& writer, const Type& type, const void* value, MessageVersion version,
                   std::string_view name);
+/// What decode() stands on: reads one element into a value of `type`.
 void decode_value(std::span<const std::byte> bytes, const Type& type, void* value,
                   MessageVersion version, const TypeRegistry* types, MemoryRef owner);
 
@@ -50,6 +51,7 @@ void decode(std::span<const std::byte> bytes, T& value, MessageVersion version =
             const TypeRegistry* types = nullptr, MemoryRef owner = {}) {
   decode_value(bytes, type_of<T>, &value, version, types, std::move(owner));
 }
+/// Reads one element into a new value. Throws rr::Error.
 template <class T>
 [[nodiscard]] T decode(std::span<const std::byte> bytes,
                        MessageVersion version = MessageVersion::v4,

@@ -41,13 +41,14 @@ struct DiscoveryNetwork {
 
 /// How a node makes itself known.
 struct AnnounceOptions {
-  DiscoveryNetwork network{};
+  DiscoveryNetwork network{};  ///< where announcements go
   /// From one announcement to the next; 500 ms at least.
   std::chrono::milliseconds period{55'000};
 };
 
 /// How a node listens to others.
 struct ListenOptions {
+  /// Where announcements are listened to.
   DiscoveryNetwork network{};
   /// A way to reach a node is forgotten so long after its last announcement, and the node with the
   /// last of them.
@@ -64,7 +65,7 @@ struct ListenOptions {
 /// A node that has announced itself. Nothing of this is proven: whether it is the node that it says
 /// it is shows in connecting.
 struct DetectedNode {
-  NodeId id{};
+  NodeId id{};                      ///< as it says
   std::string name{};               ///< empty for none
   std::vector<std::string> urls{};  ///< of its service index; with find_node(): of the node
 };
@@ -90,12 +91,14 @@ struct FindOptions {
 ///     show(arm.name, arm.urls);
 class Discovery {
  public:
+  /// A handle of nothing.
   Discovery() = default;
 
   /// Announces this node from now on, at all addresses it listens at, now and later, by TCP: every
   /// period, and when its services change. While it listens as well it answers requests. Replaces
   /// earlier options. Throws rr::Error (invalid_operation) after the node's shutdown().
   void announce(AnnounceOptions options = {}) const;
+  /// Ends announcing. Nodes that know this one forget it when its last announcement has run out.
   void stop_announcing() const;
   /// Listens to announcements and requests from now on, and asks all nodes for theirs. Replaces
   /// earlier options, and then forgets what was heard. Throws rr::Error: connection_error when the
@@ -103,6 +106,7 @@ class Discovery {
   void listen(ListenOptions options = {}) const;
   /// Also forgets all nodes.
   void stop_listening() const;
+  /// Whether it listens. False after the node's shutdown().
   [[nodiscard]] bool is_listening() const;
   /// Asks all nodes to announce themselves: three packets within three seconds. Needs listen().
   void request() const;
@@ -116,6 +120,7 @@ class Discovery {
   /// to reach one are forgotten it is lost. These run one at a time, in order, on a thread of the
   /// node, and may use everything.
   Subscription on_detected(Function<void(const DetectedNode&)> function) const;
+  /// Calls `function` for each node that is lost, as on_detected().
   Subscription on_lost(Function<void(const DetectedNode&)> function) const;
 
   // The following block. They listen with default options if nothing was said, and throw rr::Error:
@@ -129,16 +134,20 @@ class Discovery {
   /// The node of this id, or all nodes of this name; `urls` name no service then.
   [[nodiscard]] std::vector<DetectedNode> find_node(const NodeId& id,
                                                     const FindOptions& options = {}) const;
+  /// All nodes of this name.
   [[nodiscard]] std::vector<DetectedNode> find_nodes(std::string_view name,
                                                      const FindOptions& options = {}) const;
 
-  // The same on threads of their own, which the node's end waits for.
+  /// As find_services(), on a thread of its own, which the node's end waits for.
   [[nodiscard]] std::future<std::vector<FoundService>> async_find_services(
       std::string type, FindOptions options = {}) const;
+  /// As find_node(), on a thread of its own, which the node's end waits for.
   [[nodiscard]] std::future<std::vector<DetectedNode>> async_find_node(
       const NodeId& id, FindOptions options = {}) const;
+  /// As find_nodes(), on a thread of its own, which the node's end waits for.
   [[nodiscard]] std::future<std::vector<DetectedNode>> async_find_nodes(
       std::string name, FindOptions options = {}) const;
+  /// As update_detected_nodes(), on a thread of its own, which the node's end waits for.
   [[nodiscard]] std::future<std::vector<DetectedNode>> async_update_detected_nodes(
       std::chrono::milliseconds wait) const;
   /// Calls `done` there.
@@ -146,6 +155,7 @@ class Discovery {
       std::string type, FindOptions options,
       Function<void(std::exception_ptr, std::vector<FoundService>)> done) const;
 
+  /// For the runtime: Node::discovery() makes it.
   explicit Discovery(std::shared_ptr<discovery::NodeDiscovery> state);  // by Node
 
  private:
@@ -156,9 +166,12 @@ class Discovery {
 /// handles of the same, which lasts until it is closed or its node is shut down.
 class ServiceInfoSubscription {
  public:
+  /// A handle of nothing.
   ServiceInfoSubscription() = default;
 
+  /// Ends the subscription: its functions are not called any more. Does not wait.
   void close() const;
+  /// False once it is closed or its node is shut down.
   [[nodiscard]] bool is_open() const;
   /// Those that are there now.
   [[nodiscard]] std::vector<FoundService> services() const;
@@ -167,8 +180,10 @@ class ServiceInfoSubscription {
   Subscription on_detected(Function<void(const FoundService&)> function) const;
   /// The same for services whose attributes or URLs are others now.
   Subscription on_changed(Function<void(const FoundService&)> function) const;
+  /// The same for services that are not there any more.
   Subscription on_lost(Function<void(const FoundService&)> function) const;
 
+  /// For the runtime: Node::subscribe_services() makes it.
   explicit ServiceInfoSubscription(std::shared_ptr<discovery::ServiceInfos> state);  // by Node
 
  private:

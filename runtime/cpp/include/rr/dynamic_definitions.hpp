@@ -18,31 +18,32 @@ namespace rr::dynamic {
 
 class Tables;
 
+/// A parameter of a function, event or callback.
 struct ParameterDescription {
-  std::string name;
-  ValueType type;
+  std::string name;  ///< as in the definition
+  ValueType type;    ///< what it takes
 };
 
 /// A member of an object, as its definition declares it.
 struct MemberDescription {
-  MemberKind kind{};
-  std::string name;
+  MemberKind kind{};          ///< which of the following count
+  std::string name;           ///< as in the definition
   std::string declaration;    ///< its line: `function double scan(string axis) [urgent]`
   std::string documentation;  ///< the comments before it, without their marks
   ValueType type;             ///< as rr::Member::type; none for void
-  std::vector<ParameterDescription> parameters;  ///< without a generator's
-  GeneratorForm generator = GeneratorForm::none;
-  ValueType generator_parameter;
-  IndexForm index = IndexForm::none;
-  std::string object_type;  ///< objref: qualified, empty for varobject
-  std::uint8_t access = plain;
+  std::vector<ParameterDescription> parameters;   ///< without a generator's
+  GeneratorForm generator = GeneratorForm::none;  ///< function: whether it gives a generator
+  ValueType generator_parameter;                  ///< what a step takes; none for nothing
+  IndexForm index = IndexForm::none;              ///< objref: whether it has an index
+  std::string object_type;                        ///< objref: qualified, empty for varobject
+  std::uint8_t access = plain;                    ///< Access, added up
 };
 
 /// What a service definition declares, each by its qualified name, in its order.
 struct DeclaredNames {
-  std::vector<std::string> enums;
+  std::vector<std::string> enums;    ///< its enums
   std::vector<std::string> records;  ///< structs, pods and namedarrays
-  std::vector<std::string> objects;
+  std::vector<std::string> objects;  ///< its objects
 };
 
 /// Service definitions that were read at run time, and their types. A handle: types and values of
@@ -79,7 +80,9 @@ class Definitions {
   /// Where a Decoder finds the types of what is in varvalues. Lives as long as the definitions.
   [[nodiscard]] const TypeRegistry& registry() const;
 
+  /// For the runtime: a handle of definitions that were read.
   explicit Definitions(std::shared_ptr<const Tables> tables) : tables_(std::move(tables)) {}
+  /// For the runtime: what was read.
   [[nodiscard]] const std::shared_ptr<const Tables>& tables() const { return tables_; }  // internal
 
  private:

@@ -34,11 +34,11 @@ enum class Kind : std::uint8_t {
   text,         ///< string
   enumeration,  ///< one value of an enum: a number that may have a name
   array,        ///< numbers, pods or namedarrays, with or without dimensions
-  record,  ///< struct, or one pod or namedarray: fields by name, in the order of the definition
-  list,
-  int_map,
-  string_map,
-  any,  ///< of types only: varvalue
+  record,      ///< struct, or one pod or namedarray: fields by name, in the order of the definition
+  list,        ///< items of one type, or of any in a varvalue
+  int_map,     ///< items by int32 keys
+  string_map,  ///< items by string keys
+  any,         ///< of types only: varvalue
 };
 
 struct Field;
@@ -53,6 +53,7 @@ class ValueType {
   /// (invalid_argument). Those of definitions: Definitions::type().
   static ValueType parse(std::string_view text);
 
+  /// What a value of this type is; null for no type.
   [[nodiscard]] Kind kind() const;
   /// Qualified, without spaces; `void` for no type.
   [[nodiscard]] const std::string& text() const;
@@ -65,6 +66,7 @@ class ValueType {
   [[nodiscard]] const std::string& name() const;
   /// Of a record.
   [[nodiscard]] std::vector<Field> fields() const;
+  /// Struct, pod or namedarray, of a record.
   [[nodiscard]] RecordKind record_kind() const;
   /// Of an enum, in the order of the definition.
   [[nodiscard]] std::vector<std::pair<std::string, std::int32_t>> enum_values() const;
@@ -83,12 +85,15 @@ class ValueType {
   /// Writes a value of this type, so that from_json gives the same value again.
   [[nodiscard]] std::string to_json(const Value& value) const;
 
+  /// Whether both are spelled the same, as text() gives it.
   friend bool operator==(const ValueType& a, const ValueType& b) { return a.text() == b.text(); }
 
-  // Internal.
+  /// For the runtime: a type of definitions that were read; these are kept.
   ValueType(std::shared_ptr<const Tables> tables, const TypeNode* node)
       : tables_(std::move(tables)), node_(node) {}
+  /// For the runtime: what the type is; null for no type.
   [[nodiscard]] const TypeNode* node() const { return node_; }
+  /// For the runtime: the definitions that it is of; null for a type that needs none.
   [[nodiscard]] const std::shared_ptr<const Tables>& tables() const { return tables_; }
 
  private:
@@ -96,17 +101,23 @@ class ValueType {
   const TypeNode* node_ = nullptr;
 };
 
+/// A field of a record.
 struct Field {
-  std::string name;
-  ValueType type;
+  std::string name;           ///< as in the definition
+  ValueType type;             ///< what it takes
   std::string documentation;  ///< the comments before it, without their marks
 };
 
+/// The items of a list; the arguments of a call.
 using List = std::vector<Value>;
+/// Items by int32 keys.
 using IntMap = std::map<std::int32_t, Value>;
+/// Items by string keys.
 using StringMap = std::map<std::string, Value>;
+/// Fields of a record by name, in the order of the definition.
 using Fields = std::vector<std::pair<std::string, Value>>;
 
+/// Any C++ number, complex ones and bool included.
 template <class T>
 concept AnyNumber = !std::is_enum_v<T> && (std::integral<T> || std::floating_point<T> || Number<T>);
 
@@ -119,29 +130,41 @@ class Value {
  public:
   /// Null.
   Value() = default;
+  /// A number, bool or complex number. Types that the protocol has not are kept as the next that
+  /// holds them: `long long` as int64, `long double` as double.
   template <AnyNumber T>
   Value(T number) : kind_(Kind::number) {  // NOLINT: takes anything
     using N = typename Stored<T>::type;
     set_number(number_of<N>, static_cast<N>(number));
   }
-  Value(const char* text) : Value(std::string(text)) {}       // NOLINT
+  /// A string.
+  Value(const char* text) : Value(std::string(text)) {}  // NOLINT
+  /// A string.
   Value(std::string_view text) : Value(std::string(text)) {}  // NOLINT
-  Value(std::string text);                                    // NOLINT
+  /// A string.
+  Value(std::string text);  // NOLINT
+  /// An array of numbers, whose items are shared.
   template <Number T>
   Value(Array<T> items) : Value(number_of<T>, &items, nullptr) {}  // NOLINT
+  /// An array of numbers, which are copied.
   template <Number T>
   Value(const std::vector<T>& items) : Value(Array<T>(items)) {}  // NOLINT
   /// Throws rr::Error (invalid_argument) when there are not as many items as dims say.
   template <Number T>
   Value(MultiArray<T> array)  // NOLINT
       : Value(number_of<T>, &array.items, &array.dims) {}
-  Value(List items);       // NOLINT
-  Value(IntMap items);     // NOLINT
+  /// A list.
+  Value(List items);  // NOLINT
+  /// A map with int32 keys.
+  Value(IntMap items);  // NOLINT
+  /// A map with string keys.
   Value(StringMap items);  // NOLINT
   /// What is meant for a struct, pod or namedarray.
   static Value record(Fields fields);
 
+  /// What it is.
   [[nodiscard]] Kind kind() const { return kind_; }
+  /// Whether it is null.
   [[nodiscard]] bool is_null() const { return kind_ == Kind::null; }
   /// What it is: `double`, `int32[*]`, `com.robotraconteur.geometry.Vector3[]`; `null`, `list`,
   /// `map`, `fields` for what has no exact type.
@@ -170,8 +193,11 @@ class Value {
   [[nodiscard]] Value at(std::size_t index) const;
   /// A field of a record, or an item of a string map.
   [[nodiscard]] Value at(std::string_view name) const;
+  /// An item of an int32 map.
   [[nodiscard]] Value at_key(std::int32_t key) const;
+  /// Whether a record has this field, or a string map this key.
   [[nodiscard]] bool has(std::string_view name) const;
+  /// As at(name).
   Value operator[](std::string_view name) const { return at(name); }
   /// The items of an array of exactly this type of numbers, or of a namedarray's numbers.
   template <Number T>
@@ -182,10 +208,15 @@ class Value {
   }
   /// Of an array with dims; of one without, its length.
   [[nodiscard]] std::vector<std::uint32_t> dims() const;
+  /// Whether it is an array with dimensions.
   [[nodiscard]] bool has_dims() const;
+  /// The items of a list.
   [[nodiscard]] const List& list() const;
+  /// The items of a map with int32 keys.
   [[nodiscard]] const IntMap& int_map() const;
+  /// The items of a map with string keys.
   [[nodiscard]] const StringMap& string_map() const;
+  /// The fields of a record.
   [[nodiscard]] Fields fields() const;
   /// Each item of an array, list or record in its order.
   [[nodiscard]] List items() const;
@@ -199,9 +230,12 @@ class Value {
   /// equal to itself.
   friend bool operator==(const Value& a, const Value& b) { return a.is_same_as(b); }
 
-  // Internal.
+  /// For the runtime: a value of its parts. `bits` is the number, `content` what does not fit into
+  /// it.
   Value(Kind kind, ElementType number, const void* bits, std::shared_ptr<const Content> content);
+  /// For the runtime: the number, as it lies in memory.
   [[nodiscard]] const void* bits() const { return bits_.data(); }
+  /// For the runtime: texts, items and fields; null for none.
   [[nodiscard]] const std::shared_ptr<const Content>& content() const { return content_; }
 
  private:

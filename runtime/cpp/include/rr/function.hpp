@@ -8,6 +8,7 @@
 
 namespace rr {
 
+/// A function object by its signature; see Function<R(Arguments...)>.
 template <class Signature>
 class Function;
 
@@ -19,7 +20,9 @@ class Function<R(Arguments...)> {
  public:
   /// Empty; as is one made from an empty std::function or a null pointer.
   Function() = default;
+  /// Empty.
   Function(std::nullptr_t) {}
+  /// Keeps `callable`.
   template <class Callable>
   requires(!std::is_same_v<std::remove_cvref_t<Callable>, Function> &&
            std::is_invocable_r_v<R, std::decay_t<Callable>&, Arguments...>)
@@ -28,6 +31,7 @@ class Function<R(Arguments...)> {
     if (!is_empty(callable)) target_ = std::make_shared<Held>(std::forward<Callable>(callable));
   }
 
+  /// Whether it can be called.
   explicit operator bool() const { return target_ != nullptr; }
   /// Not when empty.
   R operator()(Arguments... arguments) const {

@@ -42,19 +42,23 @@ class GeneratorHandle {
   auto async_close(const CallOptions& options, Token&& token) {
     return async_end(false, options, std::forward<Token>(token));
   }
+  /// As close(), with the node's time-out.
   template <class Token>
   auto async_close(Token&& token) {
     return async_close(CallOptions(), std::forward<Token>(token));
   }
+  /// As abort(), with a completion token. Signature: void(std::exception_ptr).
   template <class Token>
   auto async_abort(const CallOptions& options, Token&& token) {
     return async_end(true, options, std::forward<Token>(token));
   }
+  /// As abort(), with a completion token and the node's time-out.
   template <class Token>
   auto async_abort(Token&& token) {
     return async_abort(CallOptions(), std::forward<Token>(token));
   }
 
+  /// For the runtime: a handle of a generator that was opened.
   explicit GeneratorHandle(std::shared_ptr<GeneratorState> state) : state_(std::move(state)) {}
 
  protected:
@@ -66,14 +70,19 @@ class GeneratorHandle {
   /// this client hold.
   void collect(void* value, std::size_t size, const std::function<void()>& keep,
                const CallOptions& options = {});
+  /// Begins a step; `step` gets its result, or the end.
   static void start_step(const std::shared_ptr<GeneratorState>& state, const void* parameter,
                          std::unique_ptr<GeneratorStep> step);
+  /// What close() and abort() stand on.
   void end(bool aborts, const CallOptions& options = {});
+  /// The same without waiting.
   static void start_end(const std::shared_ptr<GeneratorState>& state, bool aborts,
                         std::unique_ptr<Completion> completion);
+  /// What async_close() and async_abort() stand on.
   template <class Token>
   auto async_end(bool aborts, const CallOptions& options, Token&& token);
 
+  /// null for no generator
   std::shared_ptr<GeneratorState> state_;
 };
 
@@ -85,6 +94,7 @@ class GeneratorHandle {
 template <class R, class P = void>
 class Generator : public GeneratorHandle {
  public:
+  /// For the runtime: a handle of a generator that was opened.
   using GeneratorHandle::GeneratorHandle;
 
   /// The next value; nothing at the end. Throws what the service throws.
@@ -96,15 +106,18 @@ class Generator : public GeneratorHandle {
   /// Signature: void(std::exception_ptr, std::optional<R>).
   template <class Token>
   auto async_next(const P& parameter, const CallOptions& options, Token&& token);
+  /// As above, with the client's time-out.
   template <class Token>
   auto async_next(const P& parameter, Token&& token) {
     return async_next(parameter, CallOptions(), std::forward<Token>(token));
   }
 };
 
+/// A generator that takes values and gives none.
 template <class P>
 class Generator<void, P> : public GeneratorHandle {
  public:
+  /// For the runtime: a handle of a generator that was opened.
   using GeneratorHandle::GeneratorHandle;
 
   /// Gives the service the next value. False when it takes no more.
@@ -114,24 +127,30 @@ class Generator<void, P> : public GeneratorHandle {
   /// Signature: void(std::exception_ptr, bool).
   template <class Token>
   auto async_next(const P& parameter, const CallOptions& options, Token&& token);
+  /// As above, with the client's time-out.
   template <class Token>
   auto async_next(const P& parameter, Token&& token) {
     return async_next(parameter, CallOptions(), std::forward<Token>(token));
   }
 };
 
+/// A generator that gives values and takes none.
 template <class R>
 class Generator<R, void> : public GeneratorHandle {
  public:
+  /// For the runtime: a handle of a generator that was opened.
   using GeneratorHandle::GeneratorHandle;
 
+  /// The next value; nothing at the end. Throws what the service throws.
   std::optional<R> next(const CallOptions& options = {}) {
     R result{};
     if (!step(nullptr, &result, options)) return std::nullopt;
     return result;
   }
+  /// As next(), with a completion token. Signature: void(std::exception_ptr, std::optional<R>).
   template <class Token>
   auto async_next(const CallOptions& options, Token&& token);
+  /// As above, with the client's time-out.
   template <class Token>
   auto async_next(Token&& token) {
     return async_next(CallOptions(), std::forward<Token>(token));
@@ -149,28 +168,42 @@ class Generator<R, void> : public GeneratorHandle {
   /// For `for (const auto& value : stub->count(5))`: one pass.
   class Iterator {
    public:
+    /// As the standard library wants it.
     using iterator_category = std::input_iterator_tag;
+    /// The type of a value.
     using value_type = R;
+    /// As the standard library wants it.
     using difference_type = std::ptrdiff_t;
+    /// Points to the value of the step that was made last.
     using pointer = const R*;
+    /// Refers to the value of the step that was made last.
     using reference = const R&;
 
+    /// At the end.
     Iterator() = default;
+    /// Makes the first step, a call.
     explicit Iterator(Generator& generator) : generator_(&generator) { ++*this; }
+    /// The value of the step that was made last. Not at the end.
     reference operator*() const { return *value_; }
+    /// The value of the step that was made last. Not at the end.
     pointer operator->() const { return &*value_; }
+    /// Makes the next step, a call. Throws what the service throws.
     Iterator& operator++() {
       value_ = generator_->next();
       return *this;
     }
+    /// Makes the next step, a call.
     void operator++(int) { ++*this; }
+    /// Whether the generator has come to its end.
     friend bool operator==(const Iterator& it, std::default_sentinel_t) { return !it.value_; }
 
    private:
     Generator* generator_ = nullptr;
     std::optional<R> value_;
   };
+  /// Makes the first step. Once: values that were got do not come again.
   Iterator begin() { return Iterator(*this); }
+  /// Compares equal at the end.
   std::default_sentinel_t end() const { return {}; }
 };
 

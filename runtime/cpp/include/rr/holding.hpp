@@ -13,6 +13,7 @@ struct Holding {
   void (*copy)(const void* from, void* to);  ///< assigns
 };
 
+/// How values of a T are kept.
 template <class T>
 inline constexpr Holding holding_of{
     [] { return std::static_pointer_cast<void>(std::make_shared<T>()); },

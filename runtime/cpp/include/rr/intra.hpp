@@ -17,6 +17,7 @@ namespace rr {
 /// through the system.
 class IntraSpace : public std::enable_shared_from_this<IntraSpace> {
  public:
+  /// A space without nodes. Nodes find each other in it that have it as NodeOptions::intra.
   IntraSpace();
   ~IntraSpace();
   IntraSpace(const IntraSpace&) = delete;
@@ -27,9 +28,10 @@ class IntraSpace : public std::enable_shared_from_this<IntraSpace> {
 
   /// A node that listens here.
   struct Present {
-    NodeId id;
+    NodeId id;         ///< of the node
     std::string name;  ///< empty when it has none
   };
+  /// All nodes that listen here now.
   [[nodiscard]] std::vector<Present> nodes() const;
 
   /// The channel of a node, for its use.

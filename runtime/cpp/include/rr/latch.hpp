@@ -27,21 +27,26 @@ class Latch {
     element_[size] = '\0';
     return false;
   }
+  /// Whether something went wrong.
   [[nodiscard]] bool failed() const noexcept { return code_ != ErrorCode::none; }
+  /// The protocol's code of the first failure; none without one.
   [[nodiscard]] ErrorCode code() const noexcept { return code_; }
   /// "what: element `name`"; empty without a failure.
   [[nodiscard]] std::string message() const;
+  /// Forgets the failure, so that the latch can be used again.
   void clear() noexcept { code_ = ErrorCode::none; }
 
   /// Values inside values are read and written by recursion; this bounds it: so many elements may
   /// lie in each other, and the innermost in them (Limits::deepest in all). False, with the failure
   /// latched, below that; ascend() undoes it in either case.
   static constexpr std::uint32_t depth_limit = 63;
+  /// Enters an element that holds others.
   bool descend(std::string_view element) noexcept {
     if (++depth_ <= depth_limit) [[likely]]
       return true;
     return fail(ErrorCode::protocol_error, "values nested too deep", element);
   }
+  /// Leaves an element that descend() has entered.
   void ascend() noexcept { --depth_; }
 
  private:
@@ -54,11 +59,13 @@ class Latch {
 /// One element with others in it, for as long as they are read or written.
 class Descent {
  public:
+  /// Enters an element called `element`. The latch must outlive this.
   Descent(Latch& latch, std::string_view element)
       : latch_(&latch), allowed_(latch.descend(element)) {}
   Descent(const Descent&) = delete;
   Descent& operator=(const Descent&) = delete;
   ~Descent() { latch_->ascend(); }
+  /// False when it is nested too deep: a failure is latched then.
   explicit operator bool() const { return allowed_; }
 
  private:

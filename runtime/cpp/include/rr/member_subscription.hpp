@@ -24,8 +24,9 @@ namespace rr {
 
 /// Which client of a subscription: the node and the name of the service that it is connected to.
 struct SubscriptionClientId {
-  NodeId node{};
-  std::string service{};
+  NodeId node{};          ///< of the service
+  std::string service{};  ///< its name
+  /// Ordered by node, then by service.
   auto operator<=>(const SubscriptionClientId&) const = default;
 };
 
@@ -38,9 +39,11 @@ class Links;
 /// thread may use it; nothing blocks but the waiting forms.
 class MemberSubscription {
  public:
+  /// A handle of nothing.
   MemberSubscription() = default;
   /// For all handles. Functions are not told anything any more, one that runs excepted.
   void close();
+  /// False once it or its ServiceSubscription is closed.
   [[nodiscard]] bool is_open() const;
   /// Clients at which the member is connected, or the object found.
   [[nodiscard]] std::vector<SubscriptionClientId> clients() const;
@@ -53,30 +56,33 @@ class MemberSubscription {
   /// of the node.
   Subscription on_failed(Function<void(const SubscriptionClientId&, const Error&)> function);
 
+  /// For the runtime: ServiceSubscription makes it.
   explicit MemberSubscription(std::shared_ptr<subscription::Links> links);  // internal
 
  protected:
+  /// null for a handle of nothing
   std::shared_ptr<subscription::Links> links_;
 };
 
 /// A value from a client.
 template <class T>
 struct ClientValue {
-  T value{};
-  TimeSpec time{};  ///< when it was sent, by the sender's clock
-  SubscriptionClientId client{};
+  T value{};                      ///< as it was sent
+  TimeSpec time{};                ///< when it was sent, by the sender's clock
+  SubscriptionClientId client{};  ///< who sent it
 };
 
 /// A packet from a client.
 template <class T>
 struct ClientPacket {
-  T packet{};
-  SubscriptionClientId client{};
+  T packet{};                     ///< as it was sent
+  SubscriptionClientId client{};  ///< who sent it
 };
 
 /// A wire of all services, whatever its values are.
 class WireSubscriptionBase : public MemberSubscription {
  public:
+  /// For the runtime: ServiceSubscription makes it.
   using MemberSubscription::MemberSubscription;
 
   /// A value older than this, counted from its arrival, is as none; 0: values never expire, not
@@ -84,16 +90,23 @@ class WireSubscriptionBase : public MemberSubscription {
   void set_lifespan(std::chrono::milliseconds lifespan);
 
  protected:
+  /// A value of any type.
   struct Value {
-    std::shared_ptr<const void> value;
-    TimeSpec time;
-    SubscriptionClientId client;
+    std::shared_ptr<const void> value;  ///< null for none
+    TimeSpec time;                      ///< when it was sent
+    SubscriptionClientId client;        ///< who sent it
   };
+  /// What WireSubscription::try_in() stands on.
   Value received() const;
+  /// What WireSubscription::all_in() stands on.
   std::vector<Value> all_received() const;
+  /// What WireSubscription::wait_in() stands on.
   bool wait_received(std::chrono::milliseconds limit) const;
+  /// What WireSubscription::on_in() stands on.
   Subscription on_received(Function<void(const Value&)> function);
+  /// What WireSubscription::set_out() stands on.
   std::size_t send_all(const void* value);
+  /// Throws rr::Error (value_not_set).
   [[noreturn]] static void throw_no_value();
 };
 
@@ -146,6 +159,7 @@ class WireSubscription : public WireSubscriptionBase {
 /// A pipe of all services, whatever its packets are.
 class PipeSubscriptionBase : public MemberSubscription {
  public:
+  /// For the runtime: ServiceSubscription makes it.
   using MemberSubscription::MemberSubscription;
 
   /// Packets that wait to be received.
@@ -157,14 +171,20 @@ class PipeSubscriptionBase : public MemberSubscription {
   void set_backlog_limit(std::size_t packets);
 
  protected:
+  /// A packet of any type.
   struct Packet {
-    std::shared_ptr<void> value;
-    SubscriptionClientId client;
+    std::shared_ptr<void> value;  ///< null for none
+    SubscriptionClientId client;  ///< who sent it
   };
+  /// What PipeSubscription::try_receive() stands on.
   Packet take();
+  /// What PipeSubscription::receive_for() stands on.
   bool wait(std::chrono::milliseconds limit) const;
+  /// What PipeSubscription::on_packet() stands on.
   Subscription on_received(Function<void(Packet)> function);
+  /// What PipeSubscription::send() stands on.
   std::size_t send_all(const void* value);
+  /// Throws rr::Error (invalid_operation).
   [[noreturn]] static void throw_no_packet();
 };
 
@@ -182,6 +202,7 @@ class PipeSubscription : public PipeSubscriptionBase {
     if (!packet) throw_no_packet();
     return std::move(*packet);
   }
+  /// The packet that has waited longest; nothing when none waits.
   [[nodiscard]] std::optional<ClientPacket<T>> try_receive() {
     Packet packet = take();
     if (!packet.value) return std::nullopt;
@@ -211,6 +232,7 @@ class PipeSubscription : public PipeSubscriptionBase {
 /// the forms that do not wait do not ask the service.
 class SubObjectSubscription : public MemberSubscription {
  public:
+  /// For the runtime: ServiceSubscription makes it.
   using MemberSubscription::MemberSubscription;
 
   /// Null when there is none, or it has not been found yet. Throws rr::Error (service_error) when

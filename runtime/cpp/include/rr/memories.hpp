@@ -30,6 +30,7 @@ class MemorySource {
   /// `items` are as many items of the memory's type as the product of the counts. Throws rr::Error.
   virtual void rr_read(std::span<const std::uint64_t> position,
                        std::span<const std::uint64_t> count, void* items) = 0;
+  /// Writes a part, which lies inside; otherwise as rr_read().
   virtual void rr_write(std::span<const std::uint64_t> position,
                         std::span<const std::uint64_t> count, const void* items) = 0;
   /// One length, or one for each dimension.
@@ -40,19 +41,26 @@ class MemorySource {
 template <class T>
 class ArrayMemorySource : public MemorySource {
  public:
+  /// Number of items. Asked before each transfer.
   [[nodiscard]] virtual std::uint64_t length() const = 0;
-  /// Both are called with a part that lies inside, by the length asked just before.
+  /// Gives items from `position` on, as many as `items` has room for. The part lies inside, by the
+  /// length asked just before. Throws rr::Error, which the client gets.
   virtual void read(std::uint64_t position, std::span<T> items) = 0;
+  /// Takes items from `position` on. The part lies inside, by the length asked just before. Throws
+  /// rr::Error, which the client gets.
   virtual void write(std::uint64_t position, std::span<const T> items) = 0;
 
+  /// Calls read().
   void rr_read(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
                void* items) final {
     read(position[0], {static_cast<T*>(items), static_cast<std::size_t>(count[0])});
   }
+  /// Calls write().
   void rr_write(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
                 const void* items) final {
     write(position[0], {static_cast<const T*>(items), static_cast<std::size_t>(count[0])});
   }
+  /// Calls length().
   [[nodiscard]] std::vector<std::uint64_t> rr_dims() const final { return {length()}; }
 };
 
@@ -60,22 +68,28 @@ class ArrayMemorySource : public MemorySource {
 template <class T>
 class MultiMemorySource : public MemorySource {
  public:
+  /// Length of each dimension. Asked before each transfer.
   [[nodiscard]] virtual std::vector<std::uint64_t> dims() const = 0;
-  /// Both are called with a part that lies inside, by the dimensions asked just before; `items` has
-  /// the shape `count`, first dimension fastest.
+  /// Gives the part at `position`, of the shape `count`, first dimension fastest. It lies inside,
+  /// by the dims asked just before. Throws rr::Error, which the client gets.
   virtual void read(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
                     std::span<T> items) = 0;
+  /// Takes the part at `position`, of the shape `count`, first dimension fastest. It lies inside,
+  /// by the dims asked just before. Throws rr::Error, which the client gets.
   virtual void write(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
                      std::span<const T> items) = 0;
 
+  /// Calls read().
   void rr_read(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
                void* items) final {
     read(position, count, {static_cast<T*>(items), size_of(count)});
   }
+  /// Calls write().
   void rr_write(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
                 const void* items) final {
     write(position, count, {static_cast<const T*>(items), size_of(count)});
   }
+  /// Calls dims().
   [[nodiscard]] std::vector<std::uint64_t> rr_dims() const final { return dims(); }
 
  private:
@@ -90,6 +104,7 @@ class MultiMemorySource : public MemorySource {
 void copy_memory_part(std::span<const std::uint64_t> dims, std::span<const std::uint64_t> position,
                       std::span<const std::uint64_t> count, std::size_t item_size, const void* all,
                       void* part);
+/// The other way: copies a part into an array of several dimensions.
 void copy_into_memory(std::span<const std::uint64_t> dims, std::span<const std::uint64_t> position,
                       std::span<const std::uint64_t> count, std::size_t item_size, const void* part,
                       void* all);
@@ -99,18 +114,23 @@ void copy_into_memory(std::span<const std::uint64_t> dims, std::span<const std::
 template <class T>
 class StoredArrayMemory : public ArrayMemorySource<T> {
  public:
+  /// Keeps these items, shared with whoever else has them until one is written.
   explicit StoredArrayMemory(Array<T> items) : items_(std::move(items)) {}
+  /// Keeps so many items, all zero at first.
   explicit StoredArrayMemory(std::size_t length = 0) : items_(length) {}
 
+  /// Number of items.
   [[nodiscard]] std::uint64_t length() const final {
     const std::lock_guard lock(mutex_);
     return items_.size();
   }
+  /// Copies items out. Throws rr::Error (out_of_range).
   void read(std::uint64_t position, std::span<T> items) override {
     const std::lock_guard lock(mutex_);
     check(position, items.size());
     if (!items.empty()) std::memcpy(items.data(), items_.data() + position, items.size_bytes());
   }
+  /// Copies items in. Throws rr::Error (out_of_range).
   void write(std::uint64_t position, std::span<const T> items) override {
     const std::lock_guard lock(mutex_);
     check(position, items.size());
@@ -146,12 +166,15 @@ class StoredMultiMemory : public MultiMemorySource<T> {
     if (size != items_.size()) throw Error(ErrorCode::invalid_argument, "dims do not fit");
   }
 
+  /// Length of each dimension.
   [[nodiscard]] std::vector<std::uint64_t> dims() const final { return dims_; }
+  /// Copies a part out.
   void read(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
             std::span<T> items) override {
     const std::lock_guard lock(mutex_);
     copy_memory_part(dims_, position, count, sizeof(T), items_.data(), items.data());
   }
+  /// Copies a part in.
   void write(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
              std::span<const T> items) override {
     const std::lock_guard lock(mutex_);
@@ -175,25 +198,34 @@ class StoredMultiMemory : public MultiMemorySource<T> {
 /// for each request. After a failure what was transferred before stays so.
 class MemoryMember {
  protected:
+  /// A memory of an object.
   MemoryMember(Stub& stub, const Member& member) : stub_(&stub), member_(&member) {}
 
+  /// A number for each dimension.
   using Numbers = std::span<const std::uint64_t>;
+  /// Asks the service for the length.
   std::uint64_t ask_length() const;
+  /// Asks the service for the length of each dimension.
   std::vector<std::uint64_t> ask_dims() const;
+  /// Asks the service for the number of dimensions.
   std::uint64_t ask_dim_count() const;
-  // `items` are `size` items.
+  /// Reads a part into `items`, which are `size` items.
   void read_part(Numbers position, Numbers count, void* items, std::size_t size) const;
+  /// Writes a part from `items`, which are `size` items.
   void write_part(Numbers position, Numbers count, const void* items, std::size_t size) const;
-  // `items` stay where they are until the completion has been called.
+  /// As read_part(), without waiting. `items` stay where they are until the completion has been
+  /// called.
   void start_read(Numbers position, Numbers count, void* items, std::size_t size,
                   std::unique_ptr<Completion> completion) const;
-  // `owner` keeps them.
+  /// As write_part(), without waiting. `owner` keeps the items.
   void start_write(Numbers position, Numbers count, const void* items, std::size_t size,
                    MemoryRef owner, std::unique_ptr<Completion> completion) const;
   /// The product of counts. Throws rr::Error (invalid_argument) when it fits no memory.
   static std::size_t size_of(Numbers count);
 
+  /// the object
   Stub* stub_;
+  /// the memory in its definition
   const Member* member_;
 };
 
@@ -203,6 +235,7 @@ class MemoryMember {
 template <class T>
 class ArrayMemory : public MemoryMember {
  public:
+  /// For generated code: a memory of an object.
   ArrayMemory(Stub& stub, const Member& member) : MemoryMember(stub, member) {}
 
   /// Asks the service.
@@ -211,41 +244,47 @@ class ArrayMemory : public MemoryMember {
     return ask_length();
   }
 
+  /// Reads as many items as `items` has room for, from `position` on.
   void read(std::uint64_t position, std::span<T> items, const CallOptions& options = {}) const {
     const CallOptionsScope scope(options);
     const std::uint64_t count = items.size();
     read_part({&position, 1}, {&count, 1}, items.data(), items.size());
   }
+  /// Reads `count` items from `position` on into a new array.
   [[nodiscard]] Array<T> read(std::uint64_t position, std::uint64_t count,
                               const CallOptions& options = {}) const {
     Array<T> items(size_of({&count, 1}));
     read(position, items.mutate(), options);
     return items;
   }
+  /// Writes all of `items`, from `position` on.
   void write(std::uint64_t position, std::span<const T> items,
              const CallOptions& options = {}) const {
     const CallOptionsScope scope(options);
     const std::uint64_t count = items.size();
     write_part({&position, 1}, {&count, 1}, items.data(), items.size());
   }
-  // A template, so that nothing is converted to an Array first.
+  /// The same for an array. A template, so that nothing is converted to an Array first.
   template <std::same_as<Array<T>> A>
   void write(std::uint64_t position, const A& items, const CallOptions& options = {}) const {
     write(position, std::span<const T>(items.data(), items.size()), options);
   }
 
-  // Defined in rr/async.hpp. Signatures: void(std::exception_ptr, Array<T>) and
-  // void(std::exception_ptr). What is written is copied, or shared when the array owns it.
+  /// Reads as read(). Signature: void(std::exception_ptr, Array<T>). Defined in rr/async.hpp.
   template <class Token>
   auto async_read(std::uint64_t position, std::uint64_t count, const CallOptions& options,
                   Token&& token) const;
+  /// As above, with the client's time-out.
   template <class Token>
   auto async_read(std::uint64_t position, std::uint64_t count, Token&& token) const {
     return async_read(position, count, CallOptions(), std::forward<Token>(token));
   }
+  /// Writes as write(). Signature: void(std::exception_ptr). The items are copied, or shared when
+  /// the array owns them. Defined in rr/async.hpp.
   template <class Token>
   auto async_write(std::uint64_t position, const Array<T>& items, const CallOptions& options,
                    Token&& token) const;
+  /// As above, with the client's time-out.
   template <class Token>
   auto async_write(std::uint64_t position, const Array<T>& items, Token&& token) const {
     return async_write(position, items, CallOptions(), std::forward<Token>(token));
@@ -257,13 +296,15 @@ class ArrayMemory : public MemoryMember {
 template <class T>
 class MultiMemory : public MemoryMember {
  public:
+  /// For generated code: a memory of an object.
   MultiMemory(Stub& stub, const Member& member) : MemoryMember(stub, member) {}
 
-  /// Both ask the service.
+  /// Length of each dimension. Asks the service.
   [[nodiscard]] std::vector<std::uint64_t> dims(const CallOptions& options = {}) const {
     const CallOptionsScope scope(options);
     return ask_dims();
   }
+  /// Number of dimensions. Asks the service.
   [[nodiscard]] std::uint64_t dim_count(const CallOptions& options = {}) const {
     const CallOptionsScope scope(options);
     return ask_dim_count();
@@ -275,36 +316,41 @@ class MultiMemory : public MemoryMember {
     const CallOptionsScope scope(options);
     read_part(position, count, items.data(), items.size());
   }
+  /// Reads the part at `position` of the shape `count` into a new array.
   [[nodiscard]] MultiArray<T> read(Numbers position, Numbers count,
                                    const CallOptions& options = {}) const {
     MultiArray<T> array{{count.begin(), count.end()}, Array<T>(size_of(count))};
     read(position, count, array.items.mutate(), options);
     return array;
   }
+  /// Writes the part at `position` of the shape `count`; `items` are first dimension fastest.
   void write(Numbers position, Numbers count, std::span<const T> items,
              const CallOptions& options = {}) const {
     const CallOptionsScope scope(options);
     write_part(position, count, items.data(), items.size());
   }
+  /// Writes an array at `position`; its dims are the counts.
   void write(Numbers position, const MultiArray<T>& array, const CallOptions& options = {}) const {
     write(position, std::vector<std::uint64_t>(array.dims.begin(), array.dims.end()), array.items,
           options);
   }
 
-  // Defined in rr/async.hpp. Signatures: void(std::exception_ptr, MultiArray<T>) and
-  // void(std::exception_ptr).
+  /// Reads as read(). Signature: void(std::exception_ptr, MultiArray<T>). Defined in rr/async.hpp.
   template <class Token>
   auto async_read(std::vector<std::uint64_t> position, std::vector<std::uint64_t> count,
                   const CallOptions& options, Token&& token) const;
+  /// As above, with the client's time-out.
   template <class Token>
   auto async_read(std::vector<std::uint64_t> position, std::vector<std::uint64_t> count,
                   Token&& token) const {
     return async_read(std::move(position), std::move(count), CallOptions(),
                       std::forward<Token>(token));
   }
+  /// Writes as write(). Signature: void(std::exception_ptr). Defined in rr/async.hpp.
   template <class Token>
   auto async_write(std::vector<std::uint64_t> position, const MultiArray<T>& array,
                    const CallOptions& options, Token&& token) const;
+  /// As above, with the client's time-out.
   template <class Token>
   auto async_write(std::vector<std::uint64_t> position, const MultiArray<T>& array,
                    Token&& token) const {

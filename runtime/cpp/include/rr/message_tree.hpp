@@ -19,60 +19,63 @@ namespace rr {
 /// for the text beside it, which is then not on the wire unless its own flag is set too. Fields
 /// that are not on the wire are left as they are here, but for texts that a known code stands for.
 struct ElementTree {
-  std::uint8_t flags = 0;
-  std::string name;
-  std::uint32_t name_code = 0;
-  std::int32_t number = 0;
-  ElementType type = ElementType::void_;
-  std::string type_name;
-  std::uint32_t type_name_code = 0;
-  std::string metadata;
-  std::vector<std::byte> extended;
+  std::uint8_t flags = 0;                 ///< which fields are on the wire
+  std::string name;                       ///< empty for items of lists and int32 maps
+  std::uint32_t name_code = 0;            ///< instead of the name; 0: none
+  std::int32_t number = 0;                ///< of an item of a list, or the key of an int32 map
+  ElementType type = ElementType::void_;  ///< what it is
+  std::string type_name;                  ///< of structs, pods and namedarrays, qualified
+  std::uint32_t type_name_code = 0;       ///< instead of the type name; 0: none
+  std::string metadata;                   ///< mostly empty
+  std::vector<std::byte> extended;        ///< what a later version of the format may add
   /// Items, string bytes or nested elements, as received. Written for a null only; otherwise the
   /// count of what is there is written.
   std::uint32_t count = 0;
   std::vector<std::byte> payload;     ///< packed items; empty for nested types
   std::vector<ElementTree> elements;  ///< of nested types
 
+  /// Whether all fields are equal.
   bool operator==(const ElementTree&) const = default;
 };
 
 /// One entry; `flags` as above (02, section 3).
 struct EntryTree {
-  std::uint8_t flags = 0;
-  EntryType type = EntryType::null;
-  std::string service_path;
-  std::uint32_t service_path_code = 0;
-  std::string member;
-  std::uint32_t member_code = 0;
-  std::uint32_t request_id = 0;
-  std::uint16_t error = 0;
-  std::string metadata;
-  std::vector<std::byte> extended;
-  std::vector<ElementTree> elements;
+  std::uint8_t flags = 0;               ///< which fields are on the wire
+  EntryType type = EntryType::null;     ///< which request, answer or packet it is
+  std::string service_path;             ///< of the object
+  std::uint32_t service_path_code = 0;  ///< instead of the path; 0: none
+  std::string member;                   ///< its name; empty where there is none
+  std::uint32_t member_code = 0;        ///< instead of the member; 0: none
+  std::uint32_t request_id = 0;         ///< which request an answer is for
+  std::uint16_t error = 0;              ///< an ErrorCode; 0: none
+  std::string metadata;                 ///< mostly empty
+  std::vector<std::byte> extended;      ///< what a later version of the format may add
+  std::vector<ElementTree> elements;    ///< arguments, results, values
 
+  /// Whether all fields are equal.
   bool operator==(const EntryTree&) const = default;
 };
 
 /// One message; `flags` as above (02, section 2).
 struct MessageTree {
-  MessageVersion version = MessageVersion::v2;
-  std::uint8_t flags = 0;
-  NodeId sender_node;
-  NodeId receiver_node;
-  std::string sender_name;
-  std::string receiver_name;
-  std::uint32_t sender_endpoint = 0;
-  std::uint32_t receiver_endpoint = 0;
-  std::uint16_t priority = 0;
-  std::string metadata;
-  std::uint16_t message_id = 0;
-  std::uint16_t message_res_id = 0;
+  MessageVersion version = MessageVersion::v2;  ///< of the format
+  std::uint8_t flags = 0;                       ///< which fields are on the wire
+  NodeId sender_node;                           ///< zero while unknown
+  NodeId receiver_node;                         ///< zero for any
+  std::string sender_name;                      ///< empty for none
+  std::string receiver_name;                    ///< empty for any
+  std::uint32_t sender_endpoint = 0;    ///< number of the session's end at the sender; 0: none
+  std::uint32_t receiver_endpoint = 0;  ///< the same at the receiver
+  std::uint16_t priority = 0;           ///< format 4; mostly 0
+  std::string metadata;                 ///< mostly empty
+  std::uint16_t message_id = 0;         ///< counts the messages of a sender
+  std::uint16_t message_res_id = 0;     ///< which message this one answers; 0: none
   /// The message's own table, in the order of the bytes.
   std::vector<std::pair<std::uint32_t, std::string>> strings;
-  std::vector<std::byte> extended;
-  std::vector<EntryTree> entries;
+  std::vector<std::byte> extended;  ///< what a later version of the format may add
+  std::vector<EntryTree> entries;   ///< usually one
 
+  /// Whether all fields are equal.
   bool operator==(const MessageTree&) const = default;
 };
 
@@ -89,6 +92,7 @@ std::vector<std::byte> write_tree(const MessageTree& tree);
 
 /// The same for a single element.
 bool read_element_tree(std::span<const std::byte> bytes, MessageVersion version, ElementTree& tree);
+/// The bytes of one element, as write_tree(). Empty when it does not fit the format.
 std::vector<std::byte> write_element_tree(const ElementTree& tree, MessageVersion version);
 
 }  // namespace rr

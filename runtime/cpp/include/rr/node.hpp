@@ -57,6 +57,8 @@ class ServiceInfoSubscription;
 /// lock.
 class Node {
  public:
+  /// Makes a node. Nothing listens yet, and no thread runs. Throws rr::Error: invalid_argument for
+  /// a name, invalid_configuration for files that cannot be used.
   explicit Node(NodeOptions options = {});
   /// As shutdown(). On a thread of the node, or of run_aside(), it does not wait; what the node
   /// still runs must not need what goes away behind it.
@@ -64,7 +66,9 @@ class Node {
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
+  /// Its id: that of the options, of its certificate, or a random one.
   [[nodiscard]] const NodeId& id() const;
+  /// Its name; empty for none.
   [[nodiscard]] const std::string& name() const;
 
   /// Accepts connections at `rr+tcp://host:port`, port 0 meaning any; a host of `*`, or none, means
@@ -160,6 +164,7 @@ class Node {
   /// cannot be listened to, invalid_operation after shutdown().
   ServiceSubscription subscribe_types(std::vector<std::string> types,
                                       SubscriptionOptions options = {});
+  /// The same with one type.
   ServiceSubscription subscribe_type(std::string type, SubscriptionOptions options = {}) {
     return subscribe_types({std::move(type)}, std::move(options));
   }
@@ -169,6 +174,7 @@ class Node {
 
   /// Calls a function every `period`, or once after `delay`: see NodeContext in rr/timer.hpp.
   Timer every(std::chrono::nanoseconds period, std::function<void()> work);
+  /// Calls a function once after `delay`: see NodeContext in rr/timer.hpp.
   Timer after(std::chrono::nanoseconds delay, std::function<void()> work);
 
   /// Runs something on a thread of its own, which shutdown() waits for. It may not throw. Throws

@@ -23,6 +23,8 @@ class IntraSpace;
 class MessageChannel;
 class Tap;
 
+/// How much a line of the log matters: `debug` and `info` for looking into things, `warning` for
+/// what a user should know, `error` for what fails.
 enum class LogLevel : std::uint8_t { debug, info, warning, error };
 
 /// What one side of a new connection offers the other (04, section 4.4). Both must want a thing.
@@ -68,6 +70,7 @@ struct TlsOptions {
 
 /// Web sockets of a node, on the ports of TCP (04, section 2.2).
 struct WebSocketOptions {
+  /// Whether the node takes web sockets at the ports at which it listens, and connects by them.
   bool is_enabled = true;
   /// Origins of pages that may connect: `scheme://host[:port]`, `*.` before a host for those below
   /// it, `scheme://` for all of that scheme. Empty: no page may connect. Programs that are no
@@ -83,8 +86,11 @@ struct WebSocketOptions {
 struct LocalOptions {
   /// Instead of the user's and the system's run directories, and those that the environment names.
   std::string user_run_dir{};
+  /// The system's run directory; empty as above.
   std::string system_run_dir{};
+  /// As NodeOptions::heartbeat_period, of local sockets.
   std::chrono::milliseconds heartbeat_period{30'000};
+  /// As NodeOptions::receive_timeout, of local sockets.
   std::chrono::milliseconds receive_timeout{600'000};
 };
 
@@ -125,6 +131,7 @@ struct LoginOptions {
   /// After a failure the next attempt of the connection, and after some of its remote address,
   /// waits for so long; after each further one twice as long.
   std::chrono::milliseconds first_delay{250};
+  /// The longest of these times.
   std::chrono::milliseconds max_delay{8'000};
   /// Failures of an address are forgotten when so long nothing has failed.
   std::chrono::milliseconds memory{300'000};
@@ -135,8 +142,8 @@ struct LoginOptions {
 /// How a node behaves. The defaults are those of the existing implementations. Times over a hundred
 /// years, as milliseconds::max(), never come.
 struct NodeOptions {
-  /// Name of the node: letters, digits, `_`, `.`, `-`, a letter first, 1024 at most. Empty for
-  /// none. Another one makes the node throw rr::Error (invalid_argument).
+  /// Name of the node: letters, digits, underscores, points and hyphens, a letter first, 1024 at
+  /// most. Empty for none. Another one makes the node throw rr::Error (invalid_argument).
   std::string name{};
   /// Zero: a random one.
   NodeId id{};
@@ -150,7 +157,9 @@ struct NodeOptions {
   /// Where reports go; nothing is printed. Called on any thread, under no lock.
   std::function<void(LogLevel, std::string_view)> log{};
 
+  /// What this node offers where it connects.
   Offer client_offer{};
+  /// What it offers to those that connect to it.
   Offer server_offer{.string_table = false};
 
   /// How long a call waits for its answer, unless the call says otherwise.
@@ -176,6 +185,7 @@ struct NodeOptions {
   /// closed after this time or 30 s, whichever is less.
   std::chrono::milliseconds generator_timeout{600'000};
 
+  /// The largest messages and how deep they may nest.
   Limits limits{};
   /// Bytes of a memory that travel in one request; the smaller one of both sides counts. Larger
   /// transfers are cut (07, section 13).
@@ -207,10 +217,14 @@ struct NodeOptions {
   /// them, unless ConnectOptions says otherwise.
   DefinitionCheck definition_check = DefinitionCheck::report;
 
+  /// How users log in.
   LoginOptions login{};
 
+  /// Certificates, and whether they are asked for.
   TlsOptions tls{};
+  /// Web sockets, and which pages may use them.
   WebSocketOptions web_socket{};
+  /// Local sockets.
   LocalOptions local{};
   /// Where nodes find each other by `rr+intra`; null: all of the process do.
   std::shared_ptr<IntraSpace> intra{};

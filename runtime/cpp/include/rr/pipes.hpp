@@ -36,10 +36,13 @@ enum class WhenFull : std::uint8_t {
 /// use it. Packets that have arrived before can be received from a closed end too.
 class PipeEnd {
  public:
+  /// No end: not to be used.
   PipeEnd() = default;
   /// Disconnects. A client waits for the service's answer for at most half a second.
   void close();
+  /// False once it is closed, by either side, or lost.
   [[nodiscard]] bool is_open() const;
+  /// Number of the endpoint among those of its pipe and client.
   [[nodiscard]] std::int32_t index() const;
   /// True when both sides have agreed that packets may be lost or come in another order.
   [[nodiscard]] bool is_unreliable() const;
@@ -61,7 +64,10 @@ class PipeEnd {
   /// Whether packets are acknowledged; then on_acknowledged gets their numbers, and
   /// unacknowledged() says how many are still on their way. Off at first.
   void ask_for_acknowledgements(bool on = true);
+  /// Called with the number of each packet that the other side has received, on a thread of the
+  /// node.
   void on_acknowledged(Function<void(std::uint32_t)> function);
+  /// Packets that are still on their way, while they are acknowledged.
   [[nodiscard]] std::size_t unacknowledged() const;
   /// Waits until at most so many bytes of the connection wait to be sent: what who sends more than
   /// the other side takes does before each packet. False when the time was over, or the end closed,
@@ -69,7 +75,9 @@ class PipeEnd {
   [[nodiscard]] bool wait_sent(std::chrono::milliseconds limit,
                                std::size_t bytes = std::size_t{256} * 1024) const;
 
+  /// For the runtime: what the handles of one end share.
   struct State;  // internal
+  /// For the runtime: a handle of an end.
   explicit PipeEnd(std::shared_ptr<State> state) : state_(std::move(state)) {}
 
  protected:
@@ -87,8 +95,10 @@ class PipeEnd {
   /// The completion gets the next packet; its result is a shared_ptr<void>. When its time-out or
   /// stop ends it, the packet stays for the next receive. Without a time-out it waits for ever.
   void start_receive(std::unique_ptr<Completion> completion);
+  /// Throws rr::Error (invalid_operation).
   [[noreturn]] static void throw_no_packet();  // invalid_operation
 
+  /// null for no end
   std::shared_ptr<State> state_;
 };
 
@@ -96,7 +106,9 @@ class PipeEnd {
 template <class T>
 class PipeEndpoint : public PipeEnd {
  public:
+  /// No end: not to be used.
   PipeEndpoint() = default;
+  /// An end whose packets are of a T.
   explicit PipeEndpoint(PipeEnd end) : PipeEnd(std::move(end)) {}
 
   /// Returns the number of the packet: 1, 2, ...
@@ -107,6 +119,7 @@ class PipeEndpoint : public PipeEnd {
     if (!packet) throw_no_packet();
     return std::move(*packet);
   }
+  /// The packet that has waited longest; nothing when none waits.
   [[nodiscard]] std::optional<T> try_receive() {
     const std::shared_ptr<void> packet = take();
     if (!packet) return std::nullopt;
@@ -127,6 +140,7 @@ class PipeEndpoint : public PipeEnd {
   /// receive; without a time-out it waits for ever. Defined in rr/async.hpp.
   template <class Token>
   auto async_receive(const CallOptions& options, Token&& token);
+  /// As above, without a time-out.
   template <class Token>
   auto async_receive(Token&& token) {
     return async_receive(CallOptions(), std::forward<Token>(token));
@@ -140,6 +154,7 @@ class PipeEndpoint : public PipeEnd {
   }
 };
 
+/// How an endpoint is connected.
 struct PipeOptions {
   std::int32_t index = -1;  ///< wanted; the service decides, and -1 leaves it to it
   bool unreliable = true;   ///< asked for if the pipe is declared so
@@ -148,14 +163,19 @@ struct PipeOptions {
 /// A pipe of an object on another node, without its type.
 class PipeMember {
  protected:
+  /// A pipe of an object.
   PipeMember(Stub& stub, const Member& member, const Holding& holding)
       : stub_(&stub), member_(&member), holding_(&holding) {}
+  /// What Pipe::connect() stands on.
   PipeEnd connect_end(const PipeOptions& options);
   /// The completion's result is a PipeEnd.
   void start_connect(const PipeOptions& options, std::unique_ptr<Completion> completion);
 
+  /// the object
   Stub* stub_;
+  /// the pipe in its definition
   const Member* member_;
+  /// how packets are kept
   const Holding* holding_;
 };
 
@@ -163,6 +183,7 @@ class PipeMember {
 template <class T>
 class Pipe : public PipeMember {
  public:
+  /// For generated code: a pipe of an object.
   Pipe(Stub& stub, const Member& member) : PipeMember(stub, member, holding_of<T>) {}
 
   /// Packets that the service sends before it answers are kept. Throws rr::Error.
@@ -170,18 +191,22 @@ class Pipe : public PipeMember {
     const CallOptionsScope scope(options);
     return PipeEndpoint<T>(connect_end(wishes));
   }
+  /// The same without wishes.
   PipeEndpoint<T> connect(const CallOptions& options) { return connect(PipeOptions(), options); }
   /// void(std::exception_ptr, PipeEndpoint<T>). Defined in rr/async.hpp.
   template <class Token>
   auto async_connect(const PipeOptions& wishes, const CallOptions& options, Token&& token);
+  /// As above, with the client's time-out.
   template <class Token>
   auto async_connect(const PipeOptions& wishes, Token&& token) {
     return async_connect(wishes, CallOptions(), std::forward<Token>(token));
   }
+  /// As above, without wishes.
   template <class Token>
   auto async_connect(const CallOptions& options, Token&& token) {
     return async_connect(PipeOptions(), options, std::forward<Token>(token));
   }
+  /// As above, without wishes, with the client's time-out.
   template <class Token>
   auto async_connect(Token&& token) {
     return async_connect(CallOptions(), std::forward<Token>(token));
@@ -191,6 +216,7 @@ class Pipe : public PipeMember {
 /// A pipe that an object offers, without its type. What is set up here is kept by the object.
 class PipeServerBase {
  public:
+  /// How many endpoints of all clients are connected.
   [[nodiscard]] std::size_t endpoint_count() const;
   /// PipeEnd::wait_sent for all endpoints, in the same time together. True when none keeps it
   /// waiting, closed ones included.
@@ -201,12 +227,18 @@ class PipeServerBase {
   void set_backlog_limit(std::size_t packets) const;
 
  protected:
+  /// A pipe of an object that a service offers.
   PipeServerBase(const Skeleton& skeleton, const Member& member);
+  /// What PipeServer::send() stands on.
   void send_all(const void* value) const;
+  /// All connected endpoints.
   [[nodiscard]] std::vector<PipeEnd> ends() const;
+  /// What PipeServer::on_connect() stands on.
   void set_connected(Function<void(PipeEnd)> function) const;
 
+  /// the endpoints of the pipe
   std::shared_ptr<service::PipePlace> place_;
+  /// the pipe in its definition
   const Member* member_;
 };
 
@@ -214,11 +246,13 @@ class PipeServerBase {
 template <class T>
 class PipeServer : public PipeServerBase {
  public:
+  /// For generated code: a pipe of an object that a service offers.
   PipeServer(const Skeleton& skeleton, const Member& member) : PipeServerBase(skeleton, member) {}
 
   /// Sends a packet to all endpoints of all clients, encoded once for each message version. An
   /// endpoint whose connection does not take it any more is closed.
   void send(const T& packet) const { send_all(&packet); }
+  /// All connected endpoints.
   [[nodiscard]] std::vector<PipeEndpoint<T>> endpoints() const {
     std::vector<PipeEndpoint<T>> result;
     for (PipeEnd& end : ends()) result.emplace_back(std::move(end));

@@ -28,11 +28,14 @@ class StringTable {
   /// stop at 1,024 bytes, which hold fewer.
   static constexpr std::size_t capacity = 256;
 
-  // Not defaulted: value-initialization would clear the 4 kB of entries for every message.
+  /// A table without strings, and without the standard codes. Not defaulted: value-initialization
+  /// would clear the 4 kB of entries for every message.
   StringTable() {}
   /// Uses the standard codes too.
   explicit StringTable(bool standard) : standard_(standard) {}
+  /// Copies the strings' places, not the texts: both tables view the same message.
   StringTable(const StringTable& other) { *this = other; }
+  /// Copies the strings' places, not the texts: both tables view the same message.
   StringTable& operator=(const StringTable& other);
   ~StringTable() = default;
 
@@ -64,14 +67,14 @@ std::optional<std::uint32_t> standard_code(std::string_view text);
 
 /// One element as it lies in the message.
 struct Element {
-  std::string_view name;  ///< empty for a numbered element of format 4
-  std::int32_t number = 0;
-  bool has_name = false;
+  std::string_view name;    ///< empty for a numbered element of format 4
+  std::int32_t number = 0;  ///< with has_number: place in a list, or key of an int32 map
+  bool has_name = false;    ///< whether it has a name
   bool has_number = false;  ///< format 4 only
-  ElementType type = ElementType::void_;
-  std::string_view type_name;
-  std::string_view metadata;
-  std::span<const std::byte> extended;
+  ElementType type = ElementType::void_;  ///< what it is
+  std::string_view type_name;             ///< qualified, of structs, pods and namedarrays
+  std::string_view metadata;              ///< mostly empty
+  std::span<const std::byte> extended;    ///< what a later version of the format may add
   std::uint32_t count = 0;             ///< items, nested elements, or string bytes; void: anything
   std::span<const std::byte> payload;  ///< packed items, or nested elements back to back
   std::uint8_t flags = 0;              ///< format 4, as received
@@ -100,11 +103,16 @@ class ContainerBudget {
 /// Nothing here throws; after a failure everything that is read is empty.
 class Decoder : public Latch {
  public:
+  /// For elements of one version of the format. `strings` is the message's table, `owner` keeps the
+  /// bytes, `types` has the named types of varvalues; each may be empty. What is pointed to must
+  /// outlive the decoder.
   explicit Decoder(MessageVersion version, const StringTable* strings = nullptr,
                    MemoryRef owner = {}, const TypeRegistry* types = nullptr)
       : version_(version), strings_(strings), owner_(std::move(owner)), types_(types) {}
 
+  /// The version of the format.
   [[nodiscard]] MessageVersion version() const { return version_; }
+  /// The message's table of strings; null for none.
   [[nodiscard]] const StringTable* strings() const { return strings_; }
   /// Keeps the received bytes alive when set; arrays may then be slices of them.
   [[nodiscard]] const MemoryRef& owner() const { return owner_; }
@@ -127,6 +135,7 @@ class Decoder : public Latch {
   void set_budget(ContainerBudget& budget);
   /// How many bytes of arrays were copied, not sliced, so far.
   [[nodiscard]] std::size_t copied_array_bytes() const { return copied_array_bytes_; }
+  /// For the runtime: adds to copied_array_bytes().
   void count_copied_array(std::size_t bytes) { copied_array_bytes_ += bytes; }
 
  private:
@@ -145,6 +154,7 @@ class Decoder : public Latch {
 /// inside its parent; what lies inside a nested payload is checked when that is walked.
 class ElementReader {
  public:
+  /// Walks `count` elements back to back. The decoder and the bytes must outlive the reader.
   ElementReader(Decoder& decoder, std::span<const std::byte> bytes, std::uint32_t count)
       : decoder_(&decoder), at_(bytes.data()), end_(bytes.data() + bytes.size()), left_(count) {}
   /// The elements nested in one.
@@ -187,6 +197,7 @@ class ElementReader {
     return true;
   }
 
+  /// How many elements are left.
   [[nodiscard]] std::uint32_t left() const { return left_; }
   /// True when all bytes were used up: to be asked after the last element.
   [[nodiscard]] bool at_end() const { return at_ == end_; }
@@ -209,27 +220,27 @@ bool find_element(Decoder& decoder, std::span<const std::byte> bytes, std::uint3
 
 /// One entry as it lies in the message.
 struct Entry : EntryHeader {
-  std::uint8_t flags = 0;  ///< format 4, as received
-  std::uint32_t service_path_code = 0;
-  std::uint32_t member_code = 0;
-  std::span<const std::byte> extended;
-  std::uint32_t element_count = 0;
-  std::span<const std::byte> elements;
+  std::uint8_t flags = 0;               ///< format 4, as received
+  std::uint32_t service_path_code = 0;  ///< with its flag: instead of the path
+  std::uint32_t member_code = 0;        ///< with its flag: instead of the member
+  std::span<const std::byte> extended;  ///< what a later version of the format may add
+  std::uint32_t element_count = 0;      ///< of the elements below
+  std::span<const std::byte> elements;  ///< back to back
 };
 
 /// A whole received message. `routing` says the same as `has_routing`.
 struct Message : MessageHeader {
-  MessageVersion version = MessageVersion::v2;
-  std::uint8_t flags = 0;     ///< format 4, as received
-  bool has_routing = true;    ///< ids and names were there (always in format 2)
-  bool has_endpoints = true;  ///< endpoints were there (always in format 2)
-  std::uint16_t priority = 0;
-  std::span<const std::byte> extended;
-  std::uint32_t string_count = 0;             ///< entries of the message's own string table
-  std::span<const std::byte> string_entries;  ///< the same as received, codes and texts
-  std::uint32_t entry_count = 0;
-  std::span<const std::byte> entries;
-  StringTable strings;
+  MessageVersion version = MessageVersion::v2;  ///< of the format
+  std::uint8_t flags = 0;                       ///< format 4, as received
+  bool has_routing = true;                      ///< ids and names were there (always in format 2)
+  bool has_endpoints = true;                    ///< endpoints were there (always in format 2)
+  std::uint16_t priority = 0;                   ///< 0 in format 2
+  std::span<const std::byte> extended;          ///< what a later version of the format may add
+  std::uint32_t string_count = 0;               ///< entries of the message's own string table
+  std::span<const std::byte> string_entries;    ///< the same as received, codes and texts
+  std::uint32_t entry_count = 0;                ///< of the entries below
+  std::span<const std::byte> entries;           ///< back to back
+  StringTable strings;                          ///< its own strings, and the standard ones
 };
 
 /// No message is shorter (01, section 6).
@@ -264,6 +275,7 @@ bool check_elements(Decoder& decoder, std::span<const std::byte> bytes, std::uin
 /// Walks the entries of a message that read_message accepted.
 class EntryReader {
  public:
+  /// Walks all entries. The message must outlive the reader.
   explicit EntryReader(const Message& message)
       : message_(&message),
         at_(message.entries.data()),
@@ -275,6 +287,7 @@ class EntryReader {
     at_ += offset;
     left_ -= static_cast<std::uint32_t>(count);
   }
+  /// False at the end.
   bool next(Entry& entry);
   /// Of the next entry, in Message::entries.
   [[nodiscard]] std::size_t offset() const {

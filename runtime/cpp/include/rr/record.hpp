@@ -16,10 +16,11 @@ namespace rr {
 
 /// How values are made and ended whose C++ type is known at run time only.
 struct ValueOperations {
-  std::size_t size;
-  void (*construct)(void* place);
-  void (*destroy)(void* value);
+  std::size_t size;                ///< bytes
+  void (*construct)(void* place);  ///< as T(), where there is room for it
+  void (*destroy)(void* value);    ///< as ~T()
 };
+/// For generated code: how a T is made and ended.
 template <class T>
 inline constexpr ValueOperations value_operations{
     sizeof(T),
@@ -29,11 +30,11 @@ inline constexpr ValueOperations value_operations{
 
 /// One field of a struct or pod: name, place, type. Made with field<T>().
 struct Field {
-  std::string_view name;
-  std::uint32_t offset;
-  Shortcut shortcut;
-  const Type* type;
-  ScalarPrefix prefix;  ///< empty unless the type is a number, a string, or an array of numbers
+  std::string_view name;  ///< as in the definition
+  std::uint32_t offset;   ///< in the C++ type, in bytes
+  Shortcut shortcut;      ///< how it is read and written without a virtual call
+  const Type* type;       ///< how it travels
+  ScalarPrefix prefix;    ///< empty unless the type is a number, a string, or an array of numbers
 };
 
 /// Describes a field: `rr::field<double>("pan", offsetof(Angles, pan))`. `T` is what type_of is
@@ -47,19 +48,21 @@ consteval Field field(std::string_view name, std::size_t offset) {
           .prefix = ScalarPrefix(name, packed_type_of<T>)};
 }
 
+/// What a record is: a struct (`struct_`), a `pod`, or a `namedarray`.
 enum class RecordKind : std::uint8_t { struct_, pod, namedarray };
 
 /// What the runtime does with a record's C++ type, and how its arrays are described. The latter are
 /// null for structs, which are in no arrays.
 struct RecordOperations {
-  const ValueOperations* value;
-  const Type* array;
-  const ValueOperations* array_value;
-  const Type* multi_array;
-  const ValueOperations* multi_array_value;
+  const ValueOperations* value;              ///< how one is made
+  const Type* array;                         ///< how an Array of them travels
+  const ValueOperations* array_value;        ///< how that is made
+  const Type* multi_array;                   ///< how a MultiArray of them travels
+  const ValueOperations* multi_array_value;  ///< how that is made
   /// How `value` travels where a varvalue holds a struct; null when the record itself knows.
   const Type* held_type = nullptr;
 };
+/// For generated code: the RecordOperations of a T.
 template <class T>
 constexpr RecordOperations make_record_operations() {
   // A struct without strings, arrays and the like looks like a pod here; that does no harm.
@@ -74,6 +77,7 @@ constexpr RecordOperations make_record_operations() {
     return {&value_operations<T>, nullptr, nullptr, nullptr, nullptr, nullptr};
   }
 }
+/// For generated code: what the runtime does with a T.
 template <class T>
 inline constexpr RecordOperations record_operations = make_record_operations<T>();
 
@@ -106,9 +110,11 @@ inline constexpr RecordOperations record_operations = make_record_operations<T>(
 ///                                               ::rr::record_operations<Vector3>};
 class RecordType final : public Type {
  public:
+  /// A struct or pod.
   constexpr RecordType(RecordKind kind, std::string_view name, std::span<const Field> fields,
                        const RecordOperations& operations)
       : name_(name), fields_(fields), operations_(&operations), kind_(kind) {}
+  /// A namedarray of `number_count` numbers.
   constexpr RecordType(std::string_view name, ElementType number_type, std::uint32_t number_count,
                        const RecordOperations& operations)
       : name_(name),
@@ -119,11 +125,15 @@ class RecordType final : public Type {
 
   /// `<service>.<name>`.
   [[nodiscard]] std::string_view name() const { return name_; }
+  /// What it is.
   [[nodiscard]] RecordKind kind() const { return kind_; }
+  /// In the order of the definition; none of a namedarray.
   [[nodiscard]] std::span<const Field> fields() const { return fields_; }
+  /// What the runtime does with its C++ type.
   [[nodiscard]] const RecordOperations& operations() const { return *operations_; }
   /// Of a namedarray: the type of its numbers, and how many there are.
   [[nodiscard]] ElementType number_type() const { return number_type_; }
+  /// Of a namedarray: how many numbers it has.
   [[nodiscard]] std::uint32_t number_count() const { return number_count_; }
 
   [[nodiscard]] ElementType element_type() const override;
@@ -132,6 +142,7 @@ class RecordType final : public Type {
 
   /// The fields alone, as the nested elements of a struct or of a pod's item.
   void write_fields(Writer& writer, const void* value) const;
+  /// Reads the fields from nested elements. False when the decoder has failed.
   bool read_fields(Decoder& decoder, const Element& element, void* value) const;
 
  private:

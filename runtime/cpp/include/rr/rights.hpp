@@ -30,16 +30,21 @@ enum class Right : std::uint16_t {
   describe = 1 << 12,  ///< ask for the type of an object, which following an objref does
 };
 
+/// Rights, as bits.
 using RightSet = std::uint16_t;
+/// Both rights.
 constexpr RightSet operator|(Right a, Right b) {
   return static_cast<RightSet>(static_cast<RightSet>(a) | static_cast<RightSet>(b));
 }
+/// These rights and one more.
 constexpr RightSet operator|(RightSet a, Right b) {
   return static_cast<RightSet>(a | static_cast<RightSet>(b));
 }
+/// Whether a set has a right.
 constexpr bool has_right(RightSet rights, Right right) {
   return (rights & static_cast<RightSet>(right)) != 0;
 }
+/// The set that has every right.
 inline constexpr RightSet all_rights = (1U << 13) - 1;
 
 /// `get`, `call` and so on, as rules say it.
@@ -63,12 +68,13 @@ std::string_view right_name(Right right);
 /// them.
 class Rights {
  public:
+  /// A rule in its parts, as rules are written.
   struct Rule {
-    bool is_allowed = true;
-    std::string who = "anyone";
-    std::string path = "**";
-    std::string member = "*";
-    std::string access = "*";
+    bool is_allowed = true;      ///< `allow`; false: `deny`
+    std::string who = "anyone";  ///< `anyone`, `user:NAME` or `role:NAME`
+    std::string path = "**";     ///< of objects
+    std::string member = "*";    ///< names, or `*`
+    std::string access = "*";    ///< names of rights, or `*`
   };
 
   /// Throws rr::Error (invalid_configuration) whose message begins `source:line:column:`.
@@ -85,7 +91,9 @@ class Rights {
   /// not logged in, `member` empty for the object itself.
   [[nodiscard]] RightSet of(const User* user, std::string_view path, std::string_view member) const;
 
+  /// For the runtime: a rule that has been read.
   struct Line;  // internal: a rule that has been read
+  /// For the runtime: the rules in their order.
   [[nodiscard]] const std::vector<Line>& rr_lines() const { return lines_; }
 
  private:

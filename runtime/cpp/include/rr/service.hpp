@@ -24,8 +24,8 @@ namespace rr {
 /// A client that is connected to a service.
 struct ServiceClient {
   std::uint32_t endpoint = 0;  ///< its number in this node
-  NodeId node;
-  std::string node_name;
+  NodeId node;                 ///< as it says, or as its certificate proves
+  std::string node_name;       ///< as it says; empty for none
   std::string user{};  ///< who is logged in, empty for nobody; in what clients() returns only
   /// Number of the session, which no other session of this process has had.
   std::uint64_t session = 0;
@@ -51,6 +51,7 @@ struct ServiceLimits {
   std::size_t locks = 256;
 };
 
+/// How a service is offered.
 struct ServiceOptions {
   /// What clients are told about the service: numbers, arrays and strings.
   std::map<std::string, VarValue> attributes{};
@@ -71,11 +72,12 @@ struct ServiceOptions {
   std::string rights_file{};
   /// A session that is in an object's monitor and does not use the object for so long is out.
   std::chrono::milliseconds monitor_patience{30'000};
+  /// How much clients may make it keep.
   ServiceLimits limits{};
-  /// Called on a thread of the node, before the first and after the last request of a client. The
-  /// second comes when the connection has ended, which is up to 0.1 s after disconnect() or
-  /// close().
+  /// Called on a thread of the node, before the first request of a client.
   std::function<void(const ServiceClient&)> on_client_connected{};
+  /// Called on a thread of the node, after the last request of a client: when the connection has
+  /// ended, which is up to 0.1 s after disconnect() or close().
   std::function<void(const ServiceClient&)> on_client_disconnected{};
   /// Called once as soon as nobody waits for answers of a session any more: its client has left or
   /// is lost, or the service was closed. Its handlers may still run. On a thread of the node or
@@ -88,9 +90,13 @@ class ServiceContext {
  public:
   virtual ~ServiceContext() = default;
 
+  /// As it is registered.
   [[nodiscard]] virtual const std::string& name() const = 0;
+  /// The root object.
   [[nodiscard]] virtual const Skeleton& root() const = 0;
+  /// What clients are told now.
   [[nodiscard]] virtual std::map<std::string, VarValue> attributes() const = 0;
+  /// Other attributes from now on. Clients get them when they connect or ask.
   virtual void set_attributes(std::map<std::string, VarValue> attributes) = 0;
   /// Forgets the object at a path and those below it, and tells all clients; a later request to the
   /// path finds the object anew. Objects of clients' own (per_client()) are released for all of
@@ -113,6 +119,7 @@ class ServiceContext {
   /// Other rights from now on, for sessions that are open, too: what they may not do any more ends.
   /// Null: everything is allowed. They hold until the file of rights changes, if there is one.
   virtual void set_rights(std::shared_ptr<const Rights> rights) = 0;
+  /// The clients that are connected now.
   [[nodiscard]] virtual std::vector<ServiceClient> clients() const = 0;
   /// Ends the session of a client, if it has one.
   virtual void disconnect(std::uint32_t endpoint) = 0;
@@ -129,10 +136,14 @@ class ServiceContext {
 /// becomes of this handle.
 class Service {
  public:
+  /// No service: not to be used.
   Service() = default;
+  /// For the runtime: Node::register_service makes it.
   explicit Service(std::shared_ptr<ServiceContext> context) : context_(std::move(context)) {}
 
+  /// The service: `service->close()`.
   ServiceContext* operator->() const { return context_.get(); }
+  /// The same, to be kept elsewhere.
   [[nodiscard]] const std::shared_ptr<ServiceContext>& context() const { return context_; }
 
  private:

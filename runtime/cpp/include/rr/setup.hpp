@@ -23,21 +23,34 @@ struct SetupOptions {
   NodeOptions node{};
 
   std::uint16_t tcp_port = 0;  ///< 0: any
+  /// Finds others: Discovery::listen().
   bool discovery_listening_enable = true;
+  /// Is found by others: Discovery::announce(). Only with a TCP server.
   bool discovery_announce_enable = false;
+  /// Announcements and requests are also sent to the IPv4 broadcast address.
   bool tcp_ipv4_discovery = false;
+  /// Announcements and requests are sent to the link-local IPv6 group.
   bool tcp_ipv6_discovery = true;
+  /// Allows TCP, web sockets included.
   bool tcp_enable = true;
+  /// Accepts connections by TCP, at `tcp_port`.
   bool tcp_start_server = false;
   /// Accepts connections of this machine only. False: of every machine that reaches this one.
   bool tcp_listen_localhost = true;
+  /// Accepted, without effect.
   bool tcp_start_server_sharer = false;
+  /// Allows local sockets.
   bool local_enable = true;
+  /// Accepts connections by local sockets; the node's id is kept by its name.
   bool local_start_server = false;
   bool local_start_client = false;  ///< a client whose id is kept by its name, too
+  /// Other users of this machine may connect by local sockets, too.
   bool local_server_public = false;
+  /// Allows connections between nodes of this process.
   bool intra_enable = true;
+  /// Accepts connections from nodes of this process.
   bool intra_start_server = false;
+  /// Accepted, without effect.
   bool hardware_enable = false;
   /// The node has a certificate: `tls_certificate`, that of `node.tls` or, without either, the file
   /// `certificates/<node id>.p12` in the user's configuration folder. Without one it is not made.
@@ -45,16 +58,23 @@ struct SetupOptions {
   bool require_tls = false;  ///< TlsOptions::is_required
   /// In place of TlsOptions::certificate_file and key_file; the node's id is the certificate's.
   std::string tls_certificate{};
+  /// TlsOptions::key_file.
   std::string tls_key{};
   std::vector<std::string> tls_authority{};   ///< besides TlsOptions::authority_files
   std::vector<std::string> tls_revocation{};  ///< besides TlsOptions::revocation_files
   bool disable_timeouts = false;              ///< for who stops programs to look into them
+  /// Does not offer message format 4.
   bool disable_message4 = false;
+  /// Does not offer string tables.
   bool disable_stringtable = true;
   bool jumbo_message = false;  ///< messages up to 100 MiB
+  /// Accepted, without effect.
   bool local_tap_enable = false;
+  /// Accepted, without effect.
   std::string local_tap_name{};
+  /// Further origins of pages that may use web sockets, besides WebSocketOptions::origins.
   std::vector<std::string> tcp_ws_add_origin{};
+  /// Origins that are taken out of WebSocketOptions::origins.
   std::vector<std::string> tcp_ws_remove_origin{};
   bool tcp_ws_allow_local_pages = false;  ///< WebSocketOptions::allow_local_pages
   /// Reports of this level and above go to standard error, unless `node.log` takes them. One of
@@ -96,7 +116,9 @@ class NodeSetup {
   NodeSetup(const NodeSetup&) = delete;
   NodeSetup& operator=(const NodeSetup&) = delete;
 
+  /// The node that was set up.
   [[nodiscard]] Node& node() const;
+  /// The node: `setup->register_service(...)`.
   Node* operator->() const { return &node(); }
   /// As they have come to be.
   [[nodiscard]] const SetupOptions& options() const;
@@ -110,21 +132,27 @@ class NodeSetup {
   std::unique_ptr<State> state_;
 };
 
+/// A node with SetupOptions::client().
 class ClientNodeSetup : public NodeSetup {
  public:
+  /// Throws as NodeSetup.
   explicit ClientNodeSetup(int argc = 0, const char* const* argv = nullptr)
       : NodeSetup(SetupOptions::client(), argc, argv) {}
 };
 
+/// A node with SetupOptions::server().
 class ServerNodeSetup : public NodeSetup {
  public:
+  /// Port 0 means any. Throws as NodeSetup.
   ServerNodeSetup(std::string name, std::uint16_t port, int argc = 0,
                   const char* const* argv = nullptr)
       : NodeSetup(SetupOptions::server(std::move(name), port), argc, argv) {}
 };
 
+/// A node with SetupOptions::secure_server(): nothing but TLS.
 class SecureServerNodeSetup : public NodeSetup {
  public:
+  /// Port 0 means any. Throws as NodeSetup.
   SecureServerNodeSetup(std::string name, std::uint16_t port, int argc = 0,
                         const char* const* argv = nullptr)
       : NodeSetup(SetupOptions::secure_server(std::move(name), port), argc, argv) {}

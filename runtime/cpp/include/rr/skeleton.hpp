@@ -31,33 +31,47 @@ class Skeleton;
 /// `reply.fail(error)`, exactly once. Dropped without either, it answers with operation_aborted.
 class ReplyHandle {
  public:
+  /// Takes over the answer; the other handle answers no more.
   ReplyHandle(ReplyHandle&&) noexcept;
+  /// Takes over the answer. One that this handle had not given is operation_aborted.
   ReplyHandle& operator=(ReplyHandle&&) noexcept;
   ~ReplyHandle();
+  /// Answers with an error, which the client gets.
   void fail(std::exception_ptr error);
 
+  /// For the runtime: which request is answered.
   struct State;  // internal
+  /// For the runtime: Request::defer() makes it.
   explicit ReplyHandle(std::unique_ptr<State> state);
 
  protected:
+  /// Answers with a value of the member's type; null for a function without one.
   void succeed(const void* result);
 
  private:
   std::unique_ptr<State> state_;
 };
 
+/// The answer to a call that returns an R: see ReplyHandle.
 template <class R>
 class Reply : public ReplyHandle {
  public:
+  /// For the runtime: Request::defer() makes it.
   using ReplyHandle::ReplyHandle;
+  /// For generated code: Request::defer() with its type.
   explicit Reply(ReplyHandle&& handle) : ReplyHandle(std::move(handle)) {}
+  /// Answers with the result. Throws rr::Error when it cannot be sent.
   void operator()(const R& result) { succeed(&result); }
 };
+/// The answer to a call that returns nothing, or to the set of a property: see ReplyHandle.
 template <>
 class Reply<void> : public ReplyHandle {
  public:
+  /// For the runtime: Request::defer() makes it.
   using ReplyHandle::ReplyHandle;
+  /// For generated code: Request::defer() with its type.
   explicit Reply(ReplyHandle&& handle) : ReplyHandle(std::move(handle)) {}
+  /// Answers that it is done.
   void operator()() { succeed(nullptr); }
 };
 
@@ -70,6 +84,7 @@ class Request {
   void read_value(void* value) const;
   /// Reads a function's parameters, one pointer each, in their order. Throws rr::Error.
   void read_arguments(void* const* values) const;
+  /// Reads a function's parameters into `values`, in their order. Throws rr::Error.
   template <class... Values>
   void read(Values&... values) const {
     void* const places[] = {&values..., nullptr};
@@ -89,10 +104,13 @@ class Request {
     answer_generator(std::move(sequence).source(), result, parameter);
   }
 
+  /// For the runtime: where the request has come from.
   struct Source;  // internal
+  /// For the runtime: one request of a session.
   explicit Request(Source& source) : source_(&source) {}
+  /// For the runtime: where the request has come from.
   [[nodiscard]] const Source& rr_source() const { return *source_; }
-  // What answer(Sequence) does, without its types.
+  /// What answer(Sequence) does, without its types.
   void answer_generator(std::shared_ptr<GeneratorSource> source, const Holding* result,
                         const Holding* parameter);
 
@@ -112,11 +130,13 @@ struct ObjectIndex {
 /// its client requests meanwhile. The skeleton of an object has the members of those it implements.
 class Skeleton {
  public:
+  /// Made before it is offered.
   Skeleton();
   virtual ~Skeleton();
   Skeleton(const Skeleton&) = delete;
   Skeleton& operator=(const Skeleton&) = delete;
 
+  /// For generated code: the object's table.
   [[nodiscard]] virtual const ObjectType& rr_object_type() const = 0;
   /// Called by the service when the object is first reached, before any member is: `path` is where.
   /// An object may be reached by several paths. The context lives until the service is closed.
@@ -126,8 +146,11 @@ class Skeleton {
   /// of the node; a client's own object is told behind the last request of that client.
   virtual void rr_released(const std::string& /*path*/) {}
 
-  // Implemented by generated code. `member` counts in rr_object_type().members.
+  /// For generated code: handles a request for the member at this place in
+  /// rr_object_type().members.
   virtual void rr_dispatch(std::size_t member, Request& request) = 0;
+  /// For generated code: finds the object at the objref at this place in rr_object_type().members.
+  /// Null for none.
   virtual std::shared_ptr<Skeleton> rr_child(std::size_t member, const ObjectIndex& index) = 0;
   /// Null for a member that is no memory.
   virtual std::shared_ptr<MemorySource> rr_memory(std::size_t member);
@@ -138,7 +161,9 @@ class Skeleton {
   /// std::binary_semaphore will do. One session at a time is let in; a part of the program that
   /// takes the same semaphore keeps all of them out.
   [[nodiscard]] virtual bool rr_has_monitor() const { return false; }
+  /// Waits until the object is free, for `timeout` at most; see rr_has_monitor().
   virtual bool rr_monitor_enter(std::chrono::milliseconds /*timeout*/) { return true; }
+  /// Leaves the monitor, perhaps on another thread than rr_monitor_enter(); see rr_has_monitor().
   virtual void rr_monitor_exit() {}
 
   /// Where it is reached: the first path of those where it is now; empty while it is at none.
@@ -146,6 +171,7 @@ class Skeleton {
   /// The service there, null while there is none. Keeps it, so it is not to be kept by the object.
   [[nodiscard]] std::shared_ptr<ServiceContext> rr_service() const;
 
+  /// For the runtime: where the object is attached.
   struct Places;  // internal: where the object is attached
 
   /// What per_client() does.
@@ -155,6 +181,7 @@ class Skeleton {
   /// Sends an event to every client of each service that offers this object. Throws rr::Error for
   /// values that cannot be written. Where it is too large to be sent, NodeOptions::log is told.
   void rr_fire(const Member& member, const void* const* arguments) const;
+  /// For generated code: rr_fire() with the arguments as they are.
   template <class... Arguments>
   void rr_fire_event(const Member& member, const Arguments&... arguments) const {
     const void* const values[] = {&arguments..., nullptr};
@@ -185,9 +212,10 @@ class Skeleton {
   template <class R, class Token, class... Arguments>
   auto rr_async_call_back(const Member& member, const CallOptions& options, Token&& token,
                           std::uint32_t client, const Arguments&... arguments) const;
-  // What these two stand on.
+  /// What rr_call_back() stands on.
   void rr_ask_client(const Member& member, std::uint32_t client, const void* const* arguments,
                      void* result) const;
+  /// What rr_async_call_back() stands on.
   void rr_start_asking(const Member& member, std::uint32_t client, const void* const* arguments,
                        std::unique_ptr<Completion> completion) const;
 

@@ -17,13 +17,17 @@ namespace rr {
 template <class T>
 class Stored {
  public:
+  /// T{} at first.
   Stored() = default;
+  /// This value at first.
   explicit Stored(T value) : value_(std::move(value)) {}
 
+  /// A copy of the value.
   [[nodiscard]] T get() const {
     const std::lock_guard lock(mutex_);
     return value_;
   }
+  /// Sets the value.
   void set(T value) {
     const std::lock_guard lock(mutex_);
     std::swap(value_, value);
@@ -53,15 +57,21 @@ class ClientValues {
 template <class T>
 class StoredPerClient {
  public:
+  /// T{} is the initial value.
   StoredPerClient() : StoredPerClient(T{}) {}
+  /// `initial` is the initial value.
   explicit StoredPerClient(T initial) : values_(std::make_shared<Values>(std::move(initial))) {}
 
+  /// A copy of the value of the client whose request this thread handles; outside of handlers of
+  /// the initial one.
   [[nodiscard]] T get() const {
     const void* const session = ClientValues::current_session();
     const std::lock_guard lock(values_->mutex);
     const auto found = values_->own.find(session);
     return found != values_->own.end() ? found->second : values_->initial;
   }
+  /// Sets the value of the client whose request this thread handles; outside of handlers the
+  /// initial one.
   void set(T value) {
     const void* const session = ClientValues::current_session();
     const std::lock_guard lock(values_->mutex);

@@ -34,8 +34,11 @@ class Generator;
 /// Ends a handler's connection to an event when it is destroyed, or by disconnect().
 class [[nodiscard]] Subscription {
  public:
+  /// Nothing is connected.
   Subscription() = default;
+  /// Takes over the handler; the other has none afterwards.
   Subscription(Subscription&& other) noexcept;
+  /// Disconnects this handler, and takes over the other one.
   Subscription& operator=(Subscription&& other) noexcept;
   ~Subscription();
 
@@ -44,7 +47,9 @@ class [[nodiscard]] Subscription {
   /// Leaves the handler connected for as long as the stub lives.
   void detach();
 
+  /// For the runtime: a function that is connected.
   struct Handler;  // internal
+  /// For the runtime: what is made by connecting a function.
   explicit Subscription(std::shared_ptr<Handler> handler);
 
  private:
@@ -58,8 +63,11 @@ class Arguments {
   /// rr::Error (message_element_not_found, data_type_mismatch, ...) naming the parameter.
   void read(const Member& member, void* const* values) const;
 
+  /// For the runtime: the bytes, and how they are read.
   struct Source;  // internal
+  /// For the runtime: arguments that have arrived.
   explicit Arguments(const Source& source) : source_(&source) {}
+  /// For the runtime: the bytes, and how they are read.
   [[nodiscard]] const Source& rr_source() const { return *source_; }
 
  private:
@@ -70,10 +78,13 @@ class Arguments {
 class EventHandler {
  public:
   virtual ~EventHandler() = default;
+  /// Reads the parameters and calls the function.
   virtual void call(const Arguments& arguments) = 0;
 
  protected:
+  /// For an event that the definition describes so.
   explicit EventHandler(const Member& member) : member_(&member) {}
+  /// The event in its definition.
   [[nodiscard]] const Member& member() const { return *member_; }
 
  private:
@@ -84,6 +95,7 @@ class EventHandler {
 template <class... Parameters>
 class Event {
  public:
+  /// For generated code: an event of an object.
   Event(Stub& stub, const Member& member) : stub_(&stub), member_(&member) {}
 
   /// Calls `function` for each event from now on, in order, on a thread of the node, never under a
@@ -105,7 +117,9 @@ class Completion {
   virtual ~Completion() = default;
   /// Where to read the result into; null for none.
   virtual void* result() = 0;
+  /// The call has succeeded; result() has been filled.
   virtual void succeed() = 0;
+  /// The call has failed.
   virtual void fail(std::exception_ptr error) = 0;
 };
 
@@ -114,6 +128,7 @@ class Completion {
 /// open. The stub of an object derives, virtually, from the stubs of the objects it implements.
 class Stub {
  public:
+  /// Attached to no session: calls throw rr::Error (invalid_operation).
   Stub() = default;
   virtual ~Stub();
   Stub(const Stub&) = delete;
@@ -126,29 +141,39 @@ class Stub {
   virtual void rr_take_object_type(const ObjectType& /*type*/) {}
   /// `service.objref[index]...`
   [[nodiscard]] const std::string& rr_path() const { return rr_path_; }
+  /// For the runtime: the session; null for a stub of none.
   [[nodiscard]] const std::shared_ptr<Session>& rr_session() const { return rr_session_; }
   /// How long a call waits for its answer: by default the node's request timeout (15 s).
   void rr_set_timeout(std::chrono::milliseconds timeout) { rr_timeout_ = timeout; }
+  /// How long calls wait, as rr_set_timeout() has it; 0: as the client or the node say.
   [[nodiscard]] std::chrono::milliseconds rr_timeout() const { return rr_timeout_; }
 
  protected:
-  // Used by generated code; each blocks until the answer is there, and throws rr::Error.
+  /// For generated code: gets a property. Blocks until the answer is there, and throws rr::Error,
+  /// as do the following.
   void rr_get(const Member& member, const CallOptions& options, void* value);
+  /// For generated code: sets a property.
   void rr_set(const Member& member, const CallOptions& options, const void* value);
+  /// For generated code: calls a function.
   void rr_invoke(const Member& member, const CallOptions& options, const void* const* arguments,
                  void* result);
+  /// For generated code: finds the object at an objref without an index.
   std::shared_ptr<Stub> rr_find(const Member& member, const CallOptions& options);
+  /// For generated code: finds the object at an objref with an int32 index.
   std::shared_ptr<Stub> rr_find(const Member& member, const CallOptions& options,
                                 std::int32_t index);
+  /// For generated code: finds the object at an objref with a string index.
   std::shared_ptr<Stub> rr_find(const Member& member, const CallOptions& options,
                                 std::string_view index);
 
+  /// For generated code: gets a property.
   template <class T>
   T rr_get(const Member& member, const CallOptions& options) {
     T value{};
     rr_get(member, options, &value);
     return value;
   }
+  /// For generated code: calls a function.
   template <class R, class... Arguments>
   R rr_call(const Member& member, const CallOptions& options, const Arguments&... arguments) {
     const void* const values[] = {&arguments..., nullptr};
@@ -160,6 +185,7 @@ class Stub {
       return result;
     }
   }
+  /// For generated code: finds the object at an objref, which must be an S (service_error).
   template <class S, class... Index>
   std::shared_ptr<S> rr_find_as(const Member& member, const CallOptions& options,
                                 const Index&... index) {
@@ -173,38 +199,49 @@ class Stub {
   Generator<R, P> rr_generate(const Member& member, const CallOptions& options,
                               const Arguments&... arguments);
 
-  // The asynchronous forms: encode and send now, complete later. Defined in rr/async.hpp, which a
-  // program includes that calls an async_ member.
+  /// For generated code: calls a function. This and the following encode and send now, and complete
+  /// later; they are defined in rr/async.hpp, which a program includes that calls an async_ member.
   template <class R, class Token, class... Arguments>
   auto rr_async_call(const Member& member, const CallOptions& options, Token&& token,
                      const Arguments&... arguments);
+  /// For generated code: gets a property.
   template <class T, class Token>
   auto rr_async_get(const Member& member, const CallOptions& options, Token&& token);
+  /// For generated code: sets a property.
   template <class T, class Token>
   auto rr_async_set(const Member& member, const CallOptions& options, Token&& token,
                     const T& value);
+  /// For generated code: finds the object at an objref.
   template <class S, class Token, class... Index>
   auto rr_async_find(const Member& member, const CallOptions& options, Token&& token,
                      const Index&... index);
+  /// For generated code: calls a generator function.
   template <class R, class P, class Token, class... Arguments>
   auto rr_async_generate(const Member& member, const CallOptions& options, Token&& token,
                          const Arguments&... arguments);
 
-  // What the asynchronous templates stand on: encodes and sends at once, so arguments need not
-  // outlive the call. `set` tells a property's two requests apart.
+  /// What the asynchronous templates stand on: encodes and sends at once, so arguments need not
+  /// outlive the call. `set` tells a property's two requests apart.
   void rr_start(const Member& member, bool set, const void* const* arguments,
                 std::unique_ptr<Completion> completion);
+  /// As rr_start(), for an objref without an index.
   void rr_start_find(const Member& member, std::unique_ptr<Completion> completion);
+  /// As rr_start(), for an objref with an int32 index.
   void rr_start_find(const Member& member, std::int32_t index,
                      std::unique_ptr<Completion> completion);
+  /// As rr_start(), for an objref with a string index.
   void rr_start_find(const Member& member, std::string_view index,
                      std::unique_ptr<Completion> completion);
+  /// What rr_generate() stands on.
   std::shared_ptr<GeneratorState> rr_open_generator(const Member& member,
                                                     const void* const* arguments);
-  // The result of the completion is a std::shared_ptr<GeneratorState>.
+  /// As rr_start(), for a generator function. The result of the completion is a
+  /// std::shared_ptr<GeneratorState>.
   void rr_start_generator(const Member& member, const void* const* arguments,
                           std::unique_ptr<Completion> completion);
+  /// Throws rr::Error: an objref has given an object of another type.
   [[noreturn]] static void rr_refuse(const Member& member);  // an object of another type
+  /// What Event::connect() stands on.
   Subscription rr_connect(const Member& member, std::unique_ptr<EventHandler> handler);
 
  private:

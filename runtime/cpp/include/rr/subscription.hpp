@@ -30,6 +30,7 @@ class Services;
 struct SubscriptionOptions {
   /// As in ConnectOptions.
   std::string username{};
+  /// For `username`; usually `password`.
   std::map<std::string, VarValue> credentials{};
   /// As in ConnectOptions: for services that discovery finds.
   bool allow_clear_credentials = false;
@@ -47,6 +48,7 @@ struct SubscriptionOptions {
   /// may take longer.
   std::chrono::milliseconds connect_timeout{10'000};
 
+  /// Which services are wanted.
   ServiceFilter filter{};
   /// Internal: makes the reader of each session (ConnectOptions::definition_reader).
   Function<std::shared_ptr<client::DefinitionReader>()> make_definition_reader{};
@@ -54,7 +56,9 @@ struct SubscriptionOptions {
 
 /// How it stands with one service of a subscription.
 struct SubscribedService {
+  /// Of the service, in the order in which they are tried.
   std::vector<std::string> urls{};
+  /// Whether it is connected now.
   bool is_connected = false;
   /// Once connected.
   SubscriptionClientId client{};
@@ -81,11 +85,13 @@ struct SubscribedService {
 /// does; for wires and pipes name them with use_types() or Node::add_definition().
 class ServiceSubscription {
  public:
+  /// A handle of nothing.
   ServiceSubscription() = default;
 
   /// Ends all clients that nobody has claimed, and what is being connected. Does not wait. Stubs
   /// that were handed out stay, but their calls fail.
   void close();
+  /// False once it is closed or its node is shut down.
   [[nodiscard]] bool is_open() const;
 
   /// From now on these, alternatives of one service. A connection stays while its URL is among
@@ -186,6 +192,7 @@ class ServiceSubscription {
     return SubObjectSubscription(add_sub_object(path));
   }
 
+  /// For the runtime: Node::subscribe makes it.
   explicit ServiceSubscription(std::shared_ptr<subscription::Services> services);  // by Node
 
  private:

@@ -8,8 +8,8 @@ namespace rr {
 /// A value and the moment it was sent, by the sender's clock.
 template <class T>
 struct Timed {
-  T value{};
-  TimeSpec time{};
+  T value{};        ///< as it was sent
+  TimeSpec time{};  ///< when it was sent
 };
 
 }  // namespace rr

@@ -18,11 +18,16 @@ namespace rr {
 /// is destroyed, or when its node is shut down.
 class [[nodiscard]] Timer {
  public:
+  /// For the runtime: what the node calls.
   class State;  // internal
 
+  /// No timer: not running.
   Timer() = default;
+  /// For the runtime: NodeContext::every() and after() make it.
   explicit Timer(std::shared_ptr<State> state) : state_(std::move(state)) {}
+  /// Takes over the timer.
   Timer(Timer&&) = default;
+  /// Cancels this timer, and takes over the other one.
   Timer& operator=(Timer&& other) noexcept;
   ~Timer() { cancel(); }
 
@@ -40,6 +45,7 @@ class NodeContext {
  public:
   virtual ~NodeContext() = default;
 
+  /// The id of the node.
   [[nodiscard]] virtual const NodeId& id() const = 0;
   /// Empty for a node without a name.
   [[nodiscard]] virtual const std::string& name() const = 0;

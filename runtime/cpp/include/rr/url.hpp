@@ -24,8 +24,8 @@ struct Url {
 
   /// Throws rr::Error (invalid_argument).
   static Url parse(std::string_view text);
-  /// Whether a node may be named so: a letter, then letters, digits, `_`, `.` and `-`; 1024 at
-  /// most.
+  /// Whether a node may be named so: a letter, then letters, digits, underscores, points and
+  /// hyphens; 1024 at most.
   static bool is_node_name(std::string_view text);
 };
 

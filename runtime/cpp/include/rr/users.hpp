@@ -14,15 +14,17 @@
 /// Who may use a service (07, section 6).
 namespace rr {
 
-/// Privileges that the runtime knows.
+/// The privilege to lock objects.
 inline constexpr std::string_view lock_privilege = "objectlock";
+/// The privilege to end locks of other users.
 inline constexpr std::string_view override_lock_privilege = "objectlockoverride";
 
 /// A user that a service has recognised.
 struct User {
-  std::string name;
-  std::vector<std::string> privileges{};
+  std::string name;                       ///< as in the log and in rules
+  std::vector<std::string> privileges{};  ///< also the roles that rules of Rights name
 
+  /// Whether the user has a privilege.
   [[nodiscard]] bool has(std::string_view privilege) const {
     return std::find(privileges.begin(), privileges.end(), privilege) != privileges.end();
   }

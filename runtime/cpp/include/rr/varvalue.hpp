@@ -18,7 +18,9 @@ namespace rr {
 class VarValue;
 /// What containers inside a varvalue hold, whatever their sender's item type was (03, section 8).
 using VarList = std::vector<VarValue>;
+/// What a map with int32 keys inside a varvalue holds.
 using VarIntMap = std::map<std::int32_t, VarValue>;
+/// What a map with string keys inside a varvalue holds; attributes and credentials.
 using VarStringMap = std::map<std::string, VarValue>;
 
 /// Any value of the protocol, or null. Cheap to copy: copies share the value, which does not
@@ -29,6 +31,7 @@ using VarStringMap = std::map<std::string, VarValue>;
 /// VarIntMap, VarStringMap; strings as std::string.
 class VarValue {
  public:
+  /// Null.
   VarValue() = default;
   /// Holds a value of any type that type_of knows. A scalar number travels as an array of one.
   template <class T>
@@ -36,9 +39,12 @@ class VarValue {
       : VarValue(type_of<T>, value_operations<T>) {  // NOLINT: takes anything
     *static_cast<T*>(place()) = std::move(value);
   }
-  VarValue(const char* text) : VarValue(std::string(text)) {}       // NOLINT
+  /// A string.
+  VarValue(const char* text) : VarValue(std::string(text)) {}  // NOLINT
+  /// A string.
   VarValue(std::string_view text) : VarValue(std::string(text)) {}  // NOLINT
 
+  /// Whether it is null.
   [[nodiscard]] bool is_null() const { return type_ == nullptr; }
   /// Null for null.
   [[nodiscard]] const Type* type() const { return type_; }
@@ -70,7 +76,9 @@ class VarValue {
   /// Holds a new value of a type known at run time only: place() is where, until the VarValue has
   /// been copied.
   VarValue(const Type& type, const ValueOperations& operations);
+  /// Where a value of the type is written, before this is copied; null for null.
   [[nodiscard]] void* place() { return place_; }
+  /// The value, of type(); null for null.
   [[nodiscard]] const void* value() const { return place_; }
 
   /// Whether both have the same type and travel as the same bytes: a NaN is equal to itself.
@@ -84,14 +92,18 @@ class VarValue {
   MemoryRef memory_;
 };
 
+/// How a VarValue travels: as what it holds.
 class VarValueType final : public Type {
  public:
+  /// Has no state.
   constexpr VarValueType() = default;
   [[nodiscard]] ElementType element_type() const override { return ElementType::void_; }
   void write(Writer& writer, const ElementName& name, const void* value) const override;
   bool read(Decoder& decoder, const Element& element, void* value) const override;
 };
+/// For the runtime: how a VarValue travels.
 inline constexpr VarValueType varvalue_type;
+/// `varvalue`.
 template <>
 inline constexpr const Type& type_of<VarValue> = varvalue_type;
 

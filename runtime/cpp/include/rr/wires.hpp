@@ -25,10 +25,12 @@ class Skeleton;
 /// somebody holds a handle. Any thread may use it.
 class WireEnd {
  public:
+  /// No end: not to be used.
   WireEnd() = default;
   /// Disconnects. A client waits for the service's answer for at most half a second. Nothing
   /// happens the second time.
   void close();
+  /// False once it is closed, by either side, or lost.
   [[nodiscard]] bool is_open() const;
   /// Called once when the end is closed, whoever closed it, on a thread of the node; at once when
   /// it is closed already.
@@ -36,7 +38,9 @@ class WireEnd {
   /// On the service's side: number of the client's endpoint in this node. 0 on the client's side.
   [[nodiscard]] std::uint32_t client() const;
 
+  /// For the runtime: what the handles of one end share.
   struct State;  // internal
+  /// For the runtime: a handle of an end.
   explicit WireEnd(std::shared_ptr<State> state) : state_(std::move(state)) {}
 
  protected:
@@ -45,6 +49,7 @@ class WireEnd {
   /// Waits until there is one. False when the time was over, or the end closed, before. May be
   /// called anywhere: values arrive while a function of the program runs.
   bool wait_received(std::chrono::milliseconds limit) const;
+  /// What TypedWireEnd::set_lifespan() stands on.
   void set_lifespan(std::chrono::milliseconds lifespan);
   /// Calls `function` with the value that is there, and each that arrives and is newer than those
   /// before it, in order, on a thread of the node; a function that is slow misses values, never the
@@ -56,8 +61,10 @@ class WireEnd {
   void send(const void* value);
   /// What was sent last; null for nothing yet.
   std::shared_ptr<const void> sent(TimeSpec& time) const;
+  /// Throws rr::Error (value_not_set).
   [[noreturn]] static void throw_no_value();  // value_not_set
 
+  /// null for no end
   std::shared_ptr<State> state_;
 };
 
@@ -65,13 +72,16 @@ class WireEnd {
 template <class T>
 class TypedWireEnd : public WireEnd {
  public:
+  /// No end: not to be used.
   TypedWireEnd() = default;
+  /// An end whose values are of a T.
   explicit TypedWireEnd(WireEnd end) : WireEnd(std::move(end)) {}
 
   /// A value older than this, counted from its arrival, is as none; 0: values never expire.
   void set_lifespan(std::chrono::milliseconds lifespan) { WireEnd::set_lifespan(lifespan); }
 
  protected:
+  /// The newest value that has arrived and has not expired; nothing for none.
   std::optional<Timed<T>> try_received() const {
     Timed<T> result;
     const std::shared_ptr<const void> value = received(result.time);
@@ -79,11 +89,13 @@ class TypedWireEnd : public WireEnd {
     result.value = *static_cast<const T*>(value.get());
     return result;
   }
+  /// The same; throws rr::Error (value_not_set) for none.
   T need_received() const {
     auto result = try_received();
     if (!result) throw_no_value();
     return std::move(result->value);
   }
+  /// What was sent last; nothing for nothing yet.
   std::optional<Timed<T>> try_sent() const {
     Timed<T> result;
     const std::shared_ptr<const void> value = sent(result.time);
@@ -91,6 +103,7 @@ class TypedWireEnd : public WireEnd {
     result.value = *static_cast<const T*>(value.get());
     return result;
   }
+  /// Calls `function(value, time)` for the value that is there and for values that arrive.
   template <class Function>
   Subscription on_value(Function function) {
     return on_received(
@@ -108,6 +121,7 @@ class WireConnection : public TypedWireEnd<T> {
 
   /// The newest value from the service. Throws rr::Error (value_not_set) while there is none.
   T in() const { return this->need_received(); }
+  /// The newest value from the service, and when it was sent; nothing while there is none.
   [[nodiscard]] std::optional<Timed<T>> try_in() const { return this->try_received(); }
   /// Waits until there is a value. False when there was none in time, or the wire was closed.
   [[nodiscard]] bool wait_in(std::chrono::milliseconds limit) const {
@@ -120,6 +134,7 @@ class WireConnection : public TypedWireEnd<T> {
   }
   /// Sends a value to the service.
   void set_out(const T& value) { this->send(&value); }
+  /// What was sent last; nothing for nothing yet.
   [[nodiscard]] std::optional<Timed<T>> out() const { return this->try_sent(); }
 };
 
@@ -131,13 +146,17 @@ class ServedWire : public TypedWireEnd<T> {
 
   /// Sends a value to this client.
   void set_in(const T& value) { this->send(&value); }
+  /// What was sent last; nothing for nothing yet.
   [[nodiscard]] std::optional<Timed<T>> in() const { return this->try_sent(); }
   /// The newest value from this client. Throws rr::Error (value_not_set) while there is none.
   T out() const { return this->need_received(); }
+  /// The newest value from this client, and when it was sent; nothing while there is none.
   [[nodiscard]] std::optional<Timed<T>> try_out() const { return this->try_received(); }
+  /// Waits until there is a value. False when there was none in time, or the wire was closed.
   [[nodiscard]] bool wait_out(std::chrono::milliseconds limit) const {
     return this->wait_received(limit);
   }
+  /// Calls `function(value, time)` for the value that is there and for values that arrive.
   template <class Function>
   Subscription on_out(Function function) {
     return this->on_value(std::move(function));
@@ -147,21 +166,30 @@ class ServedWire : public TypedWireEnd<T> {
 /// A wire of an object on another node, without its type.
 class WireMember {
  protected:
+  /// A wire of an object.
   WireMember(Stub& stub, const Member& member, const Holding& holding)
       : stub_(&stub), member_(&member), holding_(&holding) {}
 
+  /// What Wire::connect() stands on.
   WireEnd connect_end();
-  /// Peeks and pokes are requests, and need no connection.
+  /// What Wire::peek_in() stands on. Peeks and pokes are requests, and need no connection.
   void peek_in(void* value, TimeSpec& time);
+  /// What Wire::peek_out() stands on.
   void peek_out(void* value, TimeSpec& time);
+  /// What Wire::poke_out() stands on.
   void poke_out(const void* value);
-  // What the asynchronous templates stand on. The places are in the completion.
+  /// What the asynchronous templates stand on. The places are in the completion.
   void start_connect(WireEnd* end, std::unique_ptr<Completion> completion);
+  /// What async_peek_in() and async_peek_out() stand on.
   void start_peek(bool of_out, void* value, TimeSpec* time, std::unique_ptr<Completion> completion);
+  /// What async_poke_out() stands on.
   void start_poke(const void* value, std::unique_ptr<Completion> completion);
 
+  /// the object
   Stub* stub_;
+  /// the wire in its definition
   const Member* member_;
+  /// how values are kept
   const Holding* holding_;
 };
 
@@ -169,6 +197,7 @@ class WireMember {
 template <class T>
 class Wire : public WireMember {
  public:
+  /// For generated code: a wire of an object.
   Wire(Stub& stub, const Member& member) : WireMember(stub, member, holding_of<T>) {}
 
   /// Throws rr::Error: invalid_operation when the client has connected it already.
@@ -190,36 +219,45 @@ class Wire : public WireMember {
     WireMember::peek_out(&result.value, result.time);
     return result;
   }
+  /// Gives the service a value, without a connection. Throws as peek_in(), read_only_member.
   void poke_out(const T& value, const CallOptions& options = {}) {
     const CallOptionsScope scope(options);
     WireMember::poke_out(&value);
   }
 
-  // The asynchronous forms, defined in rr/async.hpp.
+  /// As connect(), with a completion token. Signature: void(std::exception_ptr, WireConnection<T>).
+  /// This and the following are defined in rr/async.hpp.
   template <class Token>
   auto async_connect(const CallOptions& options, Token&& token);
+  /// As above, with the client's time-out.
   template <class Token>
   auto async_connect(Token&& token) {
     return async_connect(CallOptions(), std::forward<Token>(token));
   }
+  /// As peek_in(), with a completion token. Signature: void(std::exception_ptr, Timed<T>).
   template <class Token>
   auto async_peek_in(const CallOptions& options, Token&& token) {
     return async_peek(false, options, std::forward<Token>(token));
   }
+  /// As above, with the client's time-out.
   template <class Token>
   auto async_peek_in(Token&& token) {
     return async_peek_in(CallOptions(), std::forward<Token>(token));
   }
+  /// As peek_out(), with a completion token. Signature: void(std::exception_ptr, Timed<T>).
   template <class Token>
   auto async_peek_out(const CallOptions& options, Token&& token) {
     return async_peek(true, options, std::forward<Token>(token));
   }
+  /// As above, with the client's time-out.
   template <class Token>
   auto async_peek_out(Token&& token) {
     return async_peek_out(CallOptions(), std::forward<Token>(token));
   }
+  /// As poke_out(), with a completion token. Signature: void(std::exception_ptr).
   template <class Token>
   auto async_poke_out(const T& value, const CallOptions& options, Token&& token);
+  /// As above, with the client's time-out.
   template <class Token>
   auto async_poke_out(const T& value, Token&& token) {
     return async_poke_out(value, CallOptions(), std::forward<Token>(token));
@@ -236,26 +274,41 @@ class WireServerBase {
  public:
   /// Number of clients that have connected the wire.
   [[nodiscard]] std::size_t connection_count() const;
+  /// Values of clients that are older than this, counted from their arrival, are as none for out();
+  /// 0: they never expire.
   void set_lifespan(std::chrono::milliseconds lifespan);
 
  protected:
+  /// For the runtime: what is to be called.
   struct Functions {
-    Function<void(WireEnd)> connected;
-    Function<std::shared_ptr<void>()> peek_in;
-    Function<std::shared_ptr<void>()> peek_out;
+    Function<void(WireEnd)> connected;           ///< a client has connected
+    Function<std::shared_ptr<void>()> peek_in;   ///< answers peeks of clients
+    Function<std::shared_ptr<void>()> peek_out;  ///< answers peeks at what was received
+    /// a client has sent or poked a value
     Function<void(const void*, const TimeSpec&, std::uint32_t)> received;
   };
+  /// A wire of an object that a service offers.
   WireServerBase(const Skeleton& skeleton, const Member& member, const Holding& holding);
+  /// What WireServer::set_in() stands on.
   void send_all(const void* value) const;
+  /// What WireServer::out() stands on.
   std::shared_ptr<const void> received(TimeSpec& time) const;
+  /// All connected ends.
   [[nodiscard]] std::vector<WireEnd> ends() const;
+  /// What WireServer::on_connect() stands on.
   void set_connected(Function<void(WireEnd)> function) const;
+  /// What WireServer::on_peek_in() stands on.
   void set_peek_in(Function<std::shared_ptr<void>()> function) const;
+  /// What WireServer::on_peek_out() stands on.
   void set_peek_out(Function<std::shared_ptr<void>()> function) const;
+  /// What WireServer::on_out() stands on.
   void set_received(Function<void(const void*, const TimeSpec&, std::uint32_t)> function) const;
 
+  /// the object
   const Skeleton* skeleton_;
+  /// the wire in its definition
   const Member* member_;
+  /// how values are kept
   const Holding* holding_;
 };
 
@@ -265,6 +318,7 @@ class WireServerBase {
 template <class T>
 class WireServer : public WireServerBase {
  public:
+  /// For generated code: a wire of an object that a service offers.
   WireServer(const Skeleton& skeleton, const Member& member)
       : WireServerBase(skeleton, member, holding_of<T>) {}
 
@@ -278,6 +332,7 @@ class WireServer : public WireServerBase {
     result.value = *static_cast<const T*>(value.get());
     return result;
   }
+  /// One end for each connected client.
   [[nodiscard]] std::vector<ServedWire<T>> connections() const {
     std::vector<ServedWire<T>> result;
     for (WireEnd& end : ends()) result.emplace_back(std::move(end));
@@ -306,6 +361,7 @@ class WireServer : public WireServerBase {
       return std::static_pointer_cast<void>(std::make_shared<T>(function()));
     });
   }
+  /// Answers peeks at what clients have sent with what `function()` returns, instead of out().
   template <class Function>
   void on_peek_out(Function function) const {
     set_peek_out([function = std::move(function)] {

@@ -21,13 +21,17 @@ namespace rr {
 /// How an element is called: a name, or a number (list items, int32 keys, pod items), which format
 /// 2 spells as decimal text.
 struct ElementName {
-  std::string_view text;
-  std::int32_t number = 0;
-  bool is_number = false;
+  std::string_view text;    ///< empty for a number
+  std::int32_t number = 0;  ///< the number
+  bool is_number = false;   ///< whether it is called by its number
 
-  constexpr ElementName(std::string_view name) : text(name) {}    // NOLINT: a name is its text
-  constexpr ElementName(const char* name) : text(name) {}         // NOLINT
+  /// Called by a name, which must stay while the element is written.
+  constexpr ElementName(std::string_view name) : text(name) {}  // NOLINT: a name is its text
+  /// Called by a name.
+  constexpr ElementName(const char* name) : text(name) {}  // NOLINT
+  /// Called by a name, which must stay while the element is written.
   constexpr ElementName(const std::string& name) : text(name) {}  // NOLINT
+  /// Called by a number.
   constexpr explicit ElementName(std::int32_t index) : number(index), is_number(true) {}
 };
 
@@ -35,10 +39,13 @@ struct ElementName {
 /// name, type, count. Known when a definition is compiled, so that writing a field is one copy and
 /// reading it one comparison. Right-aligned in the block, because messages are written backwards.
 struct ScalarPrefix {
+  /// Room in the block, in bytes.
   static constexpr std::size_t capacity = 32;
+  /// The prefix, at the end of the block.
   std::array<std::byte, capacity> bytes{};
   std::uint8_t length = 0;  ///< 0: the name is too long, use the general path
 
+  /// No prefix: the general path is used.
   consteval ScalarPrefix() = default;
   /// Source: 02, section 4.
   consteval ScalarPrefix(std::string_view name, ElementType type) {
@@ -87,33 +94,33 @@ struct ScalarPrefix {
 
 /// Fields of an entry in both formats (01 section 3, 02 section 3).
 struct EntryHeader {
-  EntryType type = EntryType::null;
-  std::string_view service_path{};
-  std::string_view member{};
-  std::uint32_t request_id = 0;
-  std::uint16_t error = 0;
-  std::string_view metadata{};
+  EntryType type = EntryType::null;  ///< which request, answer or packet
+  std::string_view service_path{};   ///< of the object
+  std::string_view member{};         ///< its name; empty where there is none
+  std::uint32_t request_id = 0;      ///< which request an answer is for
+  std::uint16_t error = 0;           ///< an ErrorCode; 0: none
+  std::string_view metadata{};       ///< mostly empty
 };
 
 /// Fields of a message header in both formats. `routing` false leaves ids, names and endpoints out
 /// of a format 4 header (02, section 7).
 struct MessageHeader {
-  NodeId sender_node{};
-  NodeId receiver_node{};
-  std::string_view sender_name{};
-  std::string_view receiver_name{};
-  std::uint32_t sender_endpoint = 0;
-  std::uint32_t receiver_endpoint = 0;
-  std::string_view metadata{};
-  std::uint16_t message_id = 0;
-  std::uint16_t message_res_id = 0;
-  bool routing = true;
+  NodeId sender_node{};                 ///< the sender's id
+  NodeId receiver_node{};               ///< zero for any
+  std::string_view sender_name{};       ///< empty for none
+  std::string_view receiver_name{};     ///< empty for any
+  std::uint32_t sender_endpoint = 0;    ///< number of the session's end at the sender
+  std::uint32_t receiver_endpoint = 0;  ///< the same at the receiver
+  std::string_view metadata{};          ///< mostly empty
+  std::uint16_t message_id = 0;         ///< counts the messages of a sender
+  std::uint16_t message_res_id = 0;     ///< which message this one answers; 0: none
+  bool routing = true;                  ///< whether ids, names and endpoints are there
 };
 
 /// A piece of a finished message, in sending order.
 struct Piece {
-  const std::byte* data = nullptr;
-  std::size_t size = 0;
+  const std::byte* data = nullptr;  ///< the first byte
+  std::size_t size = 0;             ///< bytes
 };
 
 /// Builds one message, last byte first. Sizes stand in front of what they measure, and in format 4
@@ -135,6 +142,7 @@ class Writer : public Latch {
   /// Payloads at least this large are gathered instead of copied.
   static constexpr std::size_t attach_threshold = 16 * 1024;
 
+  /// An empty writer. It allocates with the first message.
   Writer();
   ~Writer();
   Writer(const Writer&) = delete;
@@ -142,6 +150,7 @@ class Writer : public Latch {
 
   /// Forgets what was written, keeps the buffer.
   void reset(MessageVersion version);
+  /// The version that reset() has chosen.
   [[nodiscard]] MessageVersion version() const { return version_; }
 
   /// When the message has been sent, and nothing of it is needed any more: a large buffer goes.
@@ -159,6 +168,7 @@ class Writer : public Latch {
     begin_ -= size;
     return begin_;
   }
+  /// Copies bytes before everything written so far.
   void prepend_bytes(const void* data, std::size_t size) {
     if (size != 0) std::memcpy(prepend(size), data, size);
   }
@@ -168,6 +178,7 @@ class Writer : public Latch {
     if (size > room()) grow(size);
     return begin_;
   }
+  /// What was written since reserve() begins here.
   void commit(std::byte* begin) { begin_ = begin; }
   /// Copies, or for large data keeps a reference: with an owner the data is kept alive by it,
   /// without one it must stay until the message has been sent, or reset().
@@ -199,6 +210,7 @@ class Writer : public Latch {
 
   /// Puts the header in front of an entry whose elements were written since position() was `end`.
   void entry(const EntryHeader& header, std::uint32_t element_count, std::size_t end);
+  /// As Latch::message(): why writing has failed.
   using Latch::message;
   /// Puts the message header in front of all entries. The message is complete.
   void message(const MessageHeader& header, std::uint32_t entry_count);

@@ -14,13 +14,21 @@ public static class StubApi
 public enum MemberKind
 {
 #pragma warning disable CS1591 // The words of the language.
+    /// <summary>A value that clients get and set.</summary>
     Property = 0,
+    /// <summary>What clients call.</summary>
     Function = 1,
+    /// <summary>What the service notifies clients of.</summary>
     Event = 2,
+    /// <summary>A reference to another object.</summary>
     ObjRef = 3,
+    /// <summary>Packets in order, both ways.</summary>
     Pipe = 4,
+    /// <summary>What the service calls at one client.</summary>
     Callback = 5,
+    /// <summary>A value of which only the newest counts.</summary>
     Wire = 6,
+    /// <summary>An array that is read and written in parts.</summary>
     Memory = 7,
 #pragma warning restore CS1591
 }
@@ -30,13 +38,21 @@ public enum MemberKind
 public enum MemberAccess
 {
 #pragma warning disable CS1591 // The words of the language.
+    /// <summary>No modifier.</summary>
     None = 0,
+    /// <summary>Clients get or receive only.</summary>
     ReadOnly = 1,
+    /// <summary>Clients set or send only.</summary>
     WriteOnly = 2,
+    /// <summary>Pipe, wire: packets may be lost or overtake each other.</summary>
     Unreliable = 4,
+    /// <summary>May be used while another user has locked the object.</summary>
     NoLock = 8,
+    /// <summary>The same for reading only.</summary>
     NoLockRead = 16,
+    /// <summary>Each client has its own value.</summary>
     PerClient = 32,
+    /// <summary>Sent before other messages that wait.</summary>
     Urgent = 64,
 #pragma warning restore CS1591
 }

@@ -13,6 +13,7 @@ export interface ByteStream {
   destroy(): void;
   /** Stops and goes on reading, as far as the stream can. */
   pause(): void;
+  /** Goes on reading after {@link pause}. */
   resume(): void;
   /** Starts to read. Before that nothing is delivered. */
   start(events: StreamEvents): void;
@@ -22,6 +23,7 @@ export interface ByteStream {
   readonly localAddress?: string;
 }
 
+/** What a stream tells its user. */
 export interface StreamEvents {
   /** The bytes may be kept, and are not changed afterwards. */
   data(bytes: Uint8Array): void;
@@ -31,7 +33,9 @@ export interface StreamEvents {
   drained(): void;
 }
 
+/** How a stream is opened. */
 export interface OpenOptions {
+  /** Ends the attempt. */
   signal: AbortSignal;
 }
 

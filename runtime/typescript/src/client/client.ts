@@ -30,10 +30,12 @@ export class Client<S extends RemoteObject | Stub = RemoteObject> {
     return this.session.isOpen;
   }
 
+  /** The id of the service's node. */
   get remoteNode(): NodeId {
     return NodeId.fromBytes(this.session.connection.remoteNode ?? NodeId.any.bytes);
   }
 
+  /** The name of the service's node; empty for none. */
   get remoteName(): string {
     return this.session.remoteName;
   }
@@ -67,6 +69,7 @@ export class Client<S extends RemoteObject | Stub = RemoteObject> {
     await authenticate(this.session, username, credentials);
   }
 
+  /** Logs out: the session goes on without a user, where the service allows that. */
   async logout(): Promise<void> {
     const { session } = this;
     await sessionOperation(session, session.service, "LogoutUser", []);
@@ -77,6 +80,7 @@ export class Client<S extends RemoteObject | Stub = RemoteObject> {
     await sessionOperation(this.session, pathOf(object), owner === "user" ? "RequestObjectLock" : "RequestClientObjectLock", []);
   }
 
+  /** Ends the user's lock at this object. Another user's needs the privilege `objectlockoverride`. */
   async unlock(object: RemoteObject | Stub): Promise<void> {
     await sessionOperation(this.session, pathOf(object), "ReleaseObjectLock", []);
   }
@@ -89,6 +93,7 @@ export class Client<S extends RemoteObject | Stub = RemoteObject> {
     while (word === "Continue") word = await sessionOperation(this.session, path, "MonitorContinueEnter", [], words);
   }
 
+  /** Leaves the monitor of an object. */
   async exitMonitor(object: RemoteObject | Stub): Promise<void> {
     await sessionOperation(this.session, pathOf(object), "MonitorExit", []);
   }

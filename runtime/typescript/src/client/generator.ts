@@ -92,6 +92,7 @@ export class GeneratorCall<R = unknown> implements PromiseLike<RemoteGenerator<R
     return this.opening.then(onOpen, onError);
   }
 
+  /** The values, one after the other: `for await (const value of arm.scan("pan"))`. Each step is a request. */
   async *[Symbol.asyncIterator](): AsyncGenerator<R, void, undefined> {
     yield* await this.opening;
   }

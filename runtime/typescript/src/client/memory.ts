@@ -88,6 +88,7 @@ export class ArrayMemory<A extends ArrayLike<unknown> = ArrayLike<unknown>> exte
     return part;
   }
 
+  /** Writes the items from `position` on, in as many requests as the limits of both sides want. */
   async write(position: number, items: ArrayLike<A[number]>, options: CallOptions = {}): Promise<void> {
     this.refuse(false);
     const atOnce = await this.itemsAtOnce(options);
@@ -108,6 +109,7 @@ export class ArrayMemory<A extends ArrayLike<unknown> = ArrayLike<unknown>> exte
 
 /** A memory of several dimensions. */
 export class MultiDimMemory<A extends ArrayLike<unknown> = ArrayLike<unknown>> extends MemoryBase {
+  /** The length of each dimension. Asks the service. */
   async dims(options: CallOptions = {}): Promise<number[]> {
     const element = await this.parameter("Dimensions", options);
     checkType(element, ElementType.uint64, "return");
@@ -147,6 +149,7 @@ export class MultiDimMemory<A extends ArrayLike<unknown> = ArrayLike<unknown>> e
     return part;
   }
 
+  /** Writes a block that begins at `position`; its dims are the counts. */
   async write(position: readonly number[], block: MultiDimArray, options: CallOptions = {}): Promise<void> {
     this.refuse(false);
     const atOnce = await this.itemsAtOnce(options);

@@ -51,8 +51,11 @@ export class RemoteObject implements EntrySink {
 
   /** Made by connecting, and by {@link object}. */
   constructor(
+    /** The session that it belongs to. */
     readonly session: ClientSession,
+    /** Where it is in its service: `arm.tools[left]`. */
     readonly path: string,
+    /** What the definition says of it. */
     readonly type: ObjectType,
   ) {
     this.packer = new Packer(session.definitions);
@@ -75,6 +78,7 @@ export class RemoteObject implements EntrySink {
     return this.unpacker.value(member.type, findElement(answer.elements, "value"));
   }
 
+  /** Sets a property; the value is converted to the declared type. */
   async set(property: string, value: unknown, options: CallOptions = {}): Promise<void> {
     const member = this.member(property, "property");
     const elements = [this.packer.value(member.type, value, "value")];
@@ -132,6 +136,7 @@ export class RemoteObject implements EntrySink {
     return object;
   }
 
+  /** An event of the object. Nothing is sent. Throws MemberNotFound. */
   event(name: string): EventSource<unknown[]> {
     this.member(name, "event");
     return {
@@ -162,6 +167,7 @@ export class RemoteObject implements EntrySink {
     });
   }
 
+  /** A callback of the object. Nothing is sent. Throws MemberNotFound. */
   callback(name: string): Callback<CallbackFunction> {
     this.member(name, "callback");
     return {
@@ -172,6 +178,7 @@ export class RemoteObject implements EntrySink {
     };
   }
 
+  /** A pipe of the object. Nothing is sent. Throws MemberNotFound. */
   pipe(name: string): Pipe {
     const member = this.member(name, "pipe");
     let pipe = this.pipes.get(name);
@@ -179,6 +186,7 @@ export class RemoteObject implements EntrySink {
     return pipe;
   }
 
+  /** A wire of the object. Nothing is sent. Throws MemberNotFound. */
   wire(name: string): Wire {
     const member = this.member(name, "wire");
     let wire = this.wires.get(name);
@@ -186,6 +194,7 @@ export class RemoteObject implements EntrySink {
     return wire;
   }
 
+  /** A memory of the object. Nothing is sent. Throws MemberNotFound. */
   memory(name: string): ArrayMemory | MultiDimMemory {
     const member = this.member(name, "memory");
     return member.type.array.kind === "dims" ? new MultiDimMemory(this, member) : new ArrayMemory(this, member);

@@ -71,6 +71,7 @@ export class Subscription<S extends RemoteObject | Stub = RemoteObject> {
     return this.connectedListeners.add(handler);
   }
 
+  /** Calls the handler with each client that has ended; an attempt to connect follows. */
   onLost(handler: (client: Client<S>) => void): Unsubscribe {
     return this.lostListeners.add(handler);
   }

@@ -38,6 +38,7 @@ export class Definitions {
     for (const text of texts) this.add(text);
   }
 
+  /** Parses a text; one whose name is known already changes nothing. Throws ServiceDefinitionError. */
   add(text: string): WrittenDefinition {
     const definition = parseDefinition(text);
     const known = this.written.get(definition.name);
@@ -57,14 +58,17 @@ export class Definitions {
     return this.written.get(name);
   }
 
+  /** Whether there is a definition of this name. */
   has(name: string): boolean {
     return this.written.has(name);
   }
 
+  /** The names of all definitions. */
   names(): string[] {
     return [...this.written.keys()];
   }
 
+  /** Whether an exception of this qualified name is declared. */
   hasException(name: string): boolean {
     return this.exceptions.has(name);
   }
@@ -139,6 +143,7 @@ export class Definitions {
     return object;
   }
 
+  /** Whether an object of this qualified name is declared. */
   hasObject(name: string): boolean {
     return this.blocks.get(name)?.block.kind === "object";
   }

@@ -46,8 +46,11 @@ export function numberNameOf(elementType: number): NumberName | undefined {
 
 /** A field of a struct, pod or namedarray. */
 export interface Field {
+  /** As in the definition. */
   readonly name: string;
+  /** What it takes. */
   readonly type: ValueType;
+  /** The comments before it. */
   readonly doc: string;
 }
 
@@ -64,8 +67,11 @@ export interface RecordType {
 
 /** An enum; its name is qualified. */
 export interface EnumType {
+  /** Qualified. */
   readonly name: string;
+  /** In the order of the definition. */
   readonly values: readonly { readonly name: string; readonly value: number; readonly doc: string }[];
+  /** The comments before it. */
   readonly doc: string;
 }
 
@@ -87,28 +93,39 @@ export type ArrayForm =
   /** `dims` undefined: any. */
   | { readonly kind: "dims"; readonly dims?: readonly number[] };
 
+/** What values are in: nothing, a list, a map with int32 keys, or one with string keys. */
 export type ContainerForm = "none" | "list" | "int32" | "string";
 
 /** The type of a value. */
 export interface ValueType {
+  /** What a value or an item of it is. */
   readonly base: BaseType;
+  /** How many items. */
   readonly array: ArrayForm;
+  /** What they are in. */
   readonly container: ContainerForm;
   /** As definitions spell it, with named types qualified. */
   readonly text: string;
 }
 
+/** Kinds of members. */
 export type MemberKind = "property" | "function" | "event" | "objref" | "pipe" | "callback" | "wire" | "memory";
 
+/** A parameter of a function, event or callback. */
 export interface Parameter {
+  /** As in the definition. */
   readonly name: string;
+  /** What it takes. */
   readonly type: ValueType;
 }
 
 /** A member of an object. */
 export interface Member {
+  /** Which of the following count. */
   readonly kind: MemberKind;
+  /** As in the definition. */
   readonly name: string;
+  /** The comments before it. */
   readonly doc: string;
   /** Of the value, the result, packets or items; void for events and objrefs. */
   readonly type: ValueType;
@@ -118,32 +135,45 @@ export interface Member {
   readonly generator?: { readonly gives: boolean; readonly takes?: ValueType };
   /** Of an objref: the qualified name of the object type, empty for varobject, and the kind of index. */
   readonly objectType: string;
+  /** How the objects of an objref are told apart. */
   readonly index: "none" | "int32" | "string";
+  /** Clients get or receive only. */
   readonly isReadonly: boolean;
+  /** Clients set or send only. */
   readonly isWriteonly: boolean;
+  /** Packets or values may be lost or overtake each other. */
   readonly isUnreliable: boolean;
   /** Whether locks leave it, or its reading, alone. */
   readonly nolock: boolean;
+  /** Whether locks leave reading it alone. */
   readonly nolockread: boolean;
 }
 
 /** An object type; its name is qualified. */
 export interface ObjectType {
+  /** Qualified. */
   readonly name: string;
+  /** The comments before it. */
   readonly doc: string;
   /** As the definition writes them: those of other definitions qualified. */
   readonly implements: readonly string[];
+  /** By their names, those of what it implements included. */
   readonly members: ReadonlyMap<string, Member>;
 }
 
 /** A constant; `value` is a number, bigint, string, list of numbers or, of a struct constant, names. */
 export interface Constant {
+  /** As in the definition. */
   readonly name: string;
+  /** As it is written. */
   readonly type: string;
+  /** What it is. */
   readonly value: number | bigint | string | (number | bigint)[] | Record<string, string>;
+  /** The comments before it. */
   readonly doc: string;
 }
 
+/** One value. */
 export const scalarForm: ArrayForm = { kind: "scalar" };
 
 /** Spells a type. */
@@ -170,6 +200,7 @@ export function typeText(base: BaseType, array: ArrayForm, container: ContainerF
   return container === "none" ? text : `${text}{${container}}`;
 }
 
+/** A type from its parts. */
 export function makeType(base: BaseType, array: ArrayForm = scalarForm, container: ContainerForm = "none"): ValueType {
   return { base, array, container, text: typeText(base, array, container) };
 }
@@ -179,10 +210,14 @@ export function itemType(type: ValueType): ValueType {
   return type.container === "none" ? type : makeType(type.base, type.array);
 }
 
+/** No value: what a function without a result returns. */
 export const voidType = makeType({ kind: "void" });
+/** `varvalue`: a value of any type. */
 export const anyType = makeType({ kind: "any" });
+/** `string`. */
 export const stringType = makeType({ kind: "string" });
 
+/** The type of a number, or of an array of numbers. */
 export function numberType(number: NumberName, array: ArrayForm = scalarForm): ValueType {
   return makeType({ kind: "number", number }, array);
 }

@@ -10,6 +10,7 @@ import { WebSocketFrames } from "./web_socket_frames.js";
 
 /** Web sockets on the ports of TCP. */
 export interface WebSocketOptions {
+  /** Whether web sockets are taken. They are unless it is said. */
   isEnabled: boolean;
   /**
    * Origins of pages that may connect: `scheme://host[:port]`, `*.` before a host for those below it. Programs

@@ -21,6 +21,7 @@ export interface Caller {
 
 /** What a generator function gives: one step after the other, as an async generator does. */
 export interface GeneratorSource<R = unknown, P = unknown> {
+  /** One step; `done` at the end. What it throws is sent, and ends the generator. */
   next(parameter: P): IteratorResult<R, unknown> | Promise<IteratorResult<R, unknown>>;
   /** The client wants no more. */
   return?(value?: unknown): unknown;
@@ -32,14 +33,19 @@ export interface GeneratorSource<R = unknown, P = unknown> {
 export interface Monitor {
   /** False when it could not be had within so many milliseconds. */
   enter(timeout: number): Promise<boolean>;
+  /** Gives it back. */
   exit(): void;
 }
 
 /** What an object does. Results may be promises. Members without a handler raise NotImplementedError. */
 export interface ObjectHandlers {
+  /** Gives the value of a property. */
   get?(property: string, caller: Caller): unknown;
+  /** Takes the value of a property. */
   set?(property: string, value: unknown, caller: Caller): unknown;
+  /** Does what a function does, and gives its result. */
   call?(name: string, args: readonly unknown[], caller: Caller): unknown;
+  /** Gives the generator of a generator function. */
   generate?(name: string, args: readonly unknown[], caller: Caller): GeneratorSource | Promise<GeneratorSource>;
   /** Null for no object. `index` is undefined for an objref without one. */
   object?(objref: string, index: number | string | undefined): ServedObject | null | Promise<ServedObject | null>;
@@ -53,6 +59,7 @@ export interface ObjectHandlers {
 
 /** An object of one type. It may be offered at several paths. */
 export class ServedObject {
+  /** What the definition says of it. */
   readonly type: ObjectType;
   /** @internal */
   readonly packer: Packer;
@@ -67,8 +74,10 @@ export class ServedObject {
   private readonly memories = new Map<string, ServedMemory>();
 
   constructor(
+    /** The definitions that it was made with. */
     readonly definitions: Definitions,
     type: string,
+    /** What it does. */
     readonly handlers: ObjectHandlers,
   ) {
     this.type = definitions.object(type);
@@ -83,22 +92,27 @@ export class ServedObject {
     return member;
   }
 
+  /** An event of the object. Throws MemberNotFound. */
   event(name: string): ServedEvent {
     return kept(this.events, name, () => new ServedEvent(this, this.member(name, "event")));
   }
 
+  /** A callback of the object. Throws MemberNotFound. */
   callback(name: string): ServedCallback {
     return kept(this.callbacks, name, () => new ServedCallback(this, this.member(name, "callback")));
   }
 
+  /** A pipe of the object. Throws MemberNotFound. */
   pipe(name: string): ServedPipe {
     return kept(this.pipes, name, () => new ServedPipe(this, this.member(name, "pipe")));
   }
 
+  /** A wire of the object. Throws MemberNotFound. */
   wire(name: string): ServedWire {
     return kept(this.wires, name, () => new ServedWire(this, this.member(name, "wire")));
   }
 
+  /** A memory of the object. Throws MemberNotFound. */
   memory(name: string): ServedMemory {
     return kept(this.memories, name, () => new ServedMemory(this, this.member(name, "memory")));
   }

@@ -37,6 +37,7 @@ export class ServedPipe<T = unknown> {
     return this.connected.add(handler);
   }
 
+  /** The ends of all clients that have connected. */
   get ends(): PipeEnd<T>[] {
     return [...this.held].map(({ end }) => end);
   }

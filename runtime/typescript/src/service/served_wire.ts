@@ -39,6 +39,7 @@ export class ServedWire<T = unknown> {
     this.valueListeners = new Listeners(drop);
   }
 
+  /** Calls the handler with each end that a client connects, and the client's number. */
   onConnect(handler: (end: WireEnd<T>, client: number) => void): Unsubscribe {
     return this.connected.add(handler);
   }
@@ -48,6 +49,7 @@ export class ServedWire<T = unknown> {
     return this.valueListeners.add(handler);
   }
 
+  /** The ends of all clients that have connected. */
   get ends(): WireEnd<T>[] {
     return [...this.held].map(({ end }) => end);
   }

@@ -27,9 +27,13 @@ export interface ServiceOptions {
 const stringMap = makeType({ kind: "any" }, { kind: "scalar" }, "string");
 const stringList = makeType(stringType.base, stringType.array, "list");
 
+/** A service that a node offers, until it is closed or the node is. */
 export class Service {
+  /** What clients are told about the service. */
   readonly attributes: ReadonlyMap<string, unknown>;
+  /** Who may log in; undefined: nobody can, and nobody has to. */
   readonly users: Users | undefined;
+  /** Nothing can be used without logging in. */
   readonly requiresUser: boolean;
   /** @internal */
   readonly locks = new ObjectLocks();
@@ -43,7 +47,9 @@ export class Service {
 
   /** @internal Made by registering. */
   constructor(
+    /** As it was registered. */
     readonly name: string,
+    /** The object that clients get first. */
     readonly root: ServedObject,
     options: ServiceOptions,
     private readonly settings: NodeSettings,
@@ -69,6 +75,7 @@ export class Service {
     return this.connectedListeners.add(handler);
   }
 
+  /** Calls the handler with the number of each client that has left. */
   onClientDisconnected(handler: (client: number) => void): Unsubscribe {
     return this.leftListeners.add(handler);
   }

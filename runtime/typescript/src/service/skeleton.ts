@@ -24,8 +24,11 @@ export interface Servant {
 export interface MemberMethods<S> {
   /** As the definition calls it. */
   readonly member: string;
+  /** Of a property: gives its value; of an objref: gives the object. */
   readonly get?: keyof S & string;
+  /** Of a property: takes its value. */
   readonly set?: keyof S & string;
+  /** Of a function or generator. */
   readonly call?: keyof S & string;
   /** Of an objref: what serves an object that is no skeleton. */
   readonly skeleton?: () => new (servant: never) => Skeleton;
@@ -101,22 +104,27 @@ export abstract class Skeleton {
     return skeletonOf(found, made as unknown as new (servant: object) => Skeleton).rr_served;
   }
 
+  /** For generated code: an event. */
   protected rr_event<A extends unknown[]>(name: string): ServedEvent<A> {
     return this.rr_served.event(name);
   }
 
+  /** For generated code: a callback. */
   protected rr_callback<A extends unknown[], R>(name: string): ServedCallback<A, R> {
     return this.rr_served.callback(name) as unknown as ServedCallback<A, R>;
   }
 
+  /** For generated code: a pipe. */
   protected rr_pipe<T>(name: string): ServedPipe<T> {
     return this.rr_served.pipe(name) as unknown as ServedPipe<T>;
   }
 
+  /** For generated code: a wire. */
   protected rr_wire<T>(name: string): ServedWire<T> {
     return this.rr_served.wire(name) as unknown as ServedWire<T>;
   }
 
+  /** For generated code: a memory. */
   protected rr_memory<C extends MemoryContent>(name: string): ServedMemory<C> {
     return this.rr_served.memory(name);
   }

@@ -6,7 +6,9 @@ import { VarValue } from "../value/values.js";
 
 /** Who has logged in. */
 export interface User {
+  /** By which the user has logged in. */
   readonly name: string;
+  /** Such as `objectlock`, `objectlockoverride`. */
   readonly privileges: ReadonlySet<string>;
 }
 

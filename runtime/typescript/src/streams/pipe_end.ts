@@ -41,8 +41,11 @@ export class PipeEnd<T = unknown> implements AsyncIterable<T> {
 
   /** Made by connecting, or by a client's connecting. */
   constructor(
+    /** The pipe in its definition. */
     readonly member: Member,
+    /** Its number among the ends of the pipe and client. */
     readonly index: number,
+    /** Both sides have agreed that packets may be lost or overtake each other. */
     readonly isUnreliable: boolean,
     private readonly transport: PipeTransport,
   ) {
@@ -55,6 +58,7 @@ export class PipeEnd<T = unknown> implements AsyncIterable<T> {
     this.closedListeners = new Listeners(report);
   }
 
+  /** Whether it was closed, by either side, or lost. */
   get isClosed(): boolean {
     return !this.isOpen;
   }

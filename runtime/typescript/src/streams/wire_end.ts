@@ -23,7 +23,9 @@ export interface WireTransport {
 
 /** A value with its time, which is the sender's. */
 export interface TimedValue<T> {
+  /** As it was sent. */
   readonly value: T;
+  /** When it was sent, by the sender's clock. */
   readonly time: TimeSpec;
 }
 
@@ -60,6 +62,7 @@ export class WireEnd<T = unknown> implements AsyncIterable<TimedValue<T>> {
 
   /** Made by connecting, or by a client's connecting. */
   constructor(
+    /** The wire in its definition. */
     readonly member: Member,
     private readonly transport: WireTransport,
   ) {
@@ -70,6 +73,7 @@ export class WireEnd<T = unknown> implements AsyncIterable<TimedValue<T>> {
     this.closedListeners = new Listeners(report);
   }
 
+  /** Whether it was closed, by either side, or lost. */
   get isClosed(): boolean {
     return !this.isOpen;
   }
@@ -146,6 +150,7 @@ export class WireEnd<T = unknown> implements AsyncIterable<TimedValue<T>> {
     }
   }
 
+  /** Calls the handler with values that come. */
   onValue(handler: (value: T, time: TimeSpec) => void): Unsubscribe {
     return this.valueListeners.add(handler);
   }

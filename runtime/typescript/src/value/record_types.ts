@@ -12,11 +12,13 @@ import { MultiDimArray, VarValue } from "./values.js";
 /** Makes values of one struct, pod or namedarray. */
 export class RecordType<T extends object> {
   constructor(
+    /** The definition that declares the type. */
     protected readonly module: ServiceModule,
     /** Qualified. */
     readonly name: string,
   ) {}
 
+  /** What the definition says of it. */
   protected get declared(): Declared {
     return this.module.definitions.record(this.name);
   }

@@ -3,7 +3,9 @@
 
 /** A complex number. */
 export interface Complex {
+  /** The real part. */
   re: number;
+  /** The imaginary part. */
   im: number;
 }
 
@@ -25,7 +27,9 @@ export type NumberArray =
  * `dims` [rows, columns] is at i + j * rows.
  */
 export class MultiDimArray<A extends ArrayLike<unknown> = ArrayLike<unknown>> {
+  /** The length of each dimension. */
   readonly dims: readonly number[];
+  /** All items, first index fastest. */
   readonly array: A;
 
   /** Throws RangeError when the array has another count of items than the dimensions say. */
@@ -60,14 +64,18 @@ export class MultiDimArray<A extends ArrayLike<unknown> = ArrayLike<unknown>> {
  */
 export class VarValue<T = unknown> {
   constructor(
+    /** As definitions spell it, named types qualified. */
     readonly type: string,
+    /** What it is in JavaScript. */
     readonly value: T,
   ) {}
 }
 
 /** Time since 1970-01-01 UTC; nanoseconds from 0 to 999,999,999. */
 export interface TimeSpec {
+  /** Negative before 1970. */
   seconds: bigint;
+  /** From 0 to 999,999,999. */
   nanoseconds: number;
 }
 

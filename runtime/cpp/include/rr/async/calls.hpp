@@ -18,6 +18,7 @@ namespace rr {
 template <class Handler, class S>
 class FindCompletion final : public HandlerCompletion<Handler> {
  public:
+  /// Ends at `handler`; `member` is the objref that is followed.
   FindCompletion(Handler handler, const Member& member)
       : HandlerCompletion<Handler>(std::move(handler)), member_(&member) {}
   void* result() override { return &found_; }

@@ -32,6 +32,7 @@ namespace rr {
 /// Ends a call when the cancellation slot of its handler says so, or another stop is requested.
 class SlotStop {
  public:
+  /// Listens to `slot`, and to `other`. Only terminal cancellation counts.
   SlotStop(boost::asio::cancellation_slot slot, const std::stop_token& other)
       : other_(other, Request{stop_}) {
     slot.assign([stop = stop_](boost::asio::cancellation_type kind) mutable {
@@ -40,6 +41,7 @@ class SlotStop {
       if (terminal != boost::asio::cancellation_type::none) stop.request_stop();
     });
   }
+  /// Is stopped when either of them says so.
   [[nodiscard]] std::stop_token token() const { return stop_.get_token(); }
 
  private:
@@ -56,6 +58,7 @@ class SlotStop {
 template <class Handler, class Base = Completion>
 class HandlerCompletion : public Base {
  public:
+  /// Keeps the executor of `handler` busy until finish().
   explicit HandlerCompletion(Handler handler)
       : work_(boost::asio::get_associated_executor(handler)), handler_(std::move(handler)) {}
 
@@ -73,6 +76,7 @@ class HandlerCompletion : public Base {
   }
 
  protected:
+  /// Calls the handler with these on its executor; without one, on this thread.
   template <class... Results>
   void finish(Results... results) {
     const auto executor = boost::asio::get_associated_executor(handler_);
@@ -135,10 +139,13 @@ class CallCompletion<Handler, void> final : public HandlerCompletion<Handler> {
 /// The signature of a completion.
 template <class R>
 struct CompletionSignature {
+  /// The error, null in success, and the result, default-constructed in failure.
   using type = void(std::exception_ptr, R);
 };
+/// The signature of a completion that brings no result.
 template <>
 struct CompletionSignature<void> {
+  /// The error, null in success.
   using type = void(std::exception_ptr);
 };
 

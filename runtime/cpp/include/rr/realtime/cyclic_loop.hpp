@@ -11,12 +11,14 @@
 /// Loops of a fixed rate, on the machine's clock or on one that a test moves.
 namespace rr::realtime {
 
+/// Times and spans of time.
 using Nanoseconds = std::chrono::nanoseconds;
 
 /// Where a loop has its time from, counted from some point that stays.
 class Clock {
  public:
   virtual ~Clock() = default;
+  /// The time now.
   [[nodiscard]] virtual Nanoseconds now() = 0;
   /// Returns at `time` or soon after; at once when that has passed.
   virtual void sleep_until(Nanoseconds time) = 0;
@@ -25,6 +27,7 @@ class Clock {
 /// CLOCK_MONOTONIC, slept on with absolute times.
 class SteadyClock final : public Clock {
  public:
+  /// The time now, by CLOCK_MONOTONIC.
   [[nodiscard]] Nanoseconds now() override;
   void sleep_until(Nanoseconds time) override;
 };
@@ -33,10 +36,12 @@ class SteadyClock final : public Clock {
 /// runs as fast as it can; several are kept in step by Lockstep. For one thread.
 class SimulatedClock final : public Clock {
  public:
+  /// The time to which it was moved last; 0 at first.
   [[nodiscard]] Nanoseconds now() override { return now_; }
   void sleep_until(Nanoseconds time) override {
     if (time > now_) now_ = time;
   }
+  /// Moves it to `time`, also back.
   void set(Nanoseconds time) { now_ = time; }
 
  private:
@@ -47,13 +52,18 @@ class SimulatedClock final : public Clock {
 /// One thread adds; any may read meanwhile, and finds each count right, not all from one moment.
 class JitterHistogram {
  public:
+  /// Bins of one microsecond each; one more counts what is longer.
   static constexpr std::size_t bin_count = 1000;
 
+  /// Counts one time. Negative ones count as 0.
   void add(Nanoseconds time);
+  /// How many times were added.
   [[nodiscard]] std::uint64_t count() const { return count_.load(std::memory_order_relaxed); }
+  /// The longest of them; 0 for none.
   [[nodiscard]] Nanoseconds largest() const {
     return Nanoseconds(largest_.load(std::memory_order_relaxed));
   }
+  /// Their mean; 0 for none.
   [[nodiscard]] Nanoseconds mean() const;
   /// Below this are so many of all (0.999: all but one of a thousand), to the next microsecond;
   /// when that lies beyond the last bin, the largest.
@@ -70,7 +80,7 @@ class JitterHistogram {
 
 /// What a loop has seen of itself. Any thread may read it while the loop runs.
 struct LoopCounts {
-  std::atomic<std::uint64_t> cycles{0};
+  std::atomic<std::uint64_t> cycles{0};    ///< that have been run
   std::atomic<std::uint64_t> overruns{0};  ///< cycles that ended after the next one was due
   std::atomic<std::uint64_t> skipped{0};   ///< cycles that were left out to be in step again
   JitterHistogram lateness;                ///< from when a cycle was due until it began
@@ -111,8 +121,11 @@ class CyclicLoop {
   }
   /// Ends run() after the cycle that it is in. By any thread, or by the function.
   void stop() { is_stopped_.store(true, std::memory_order_relaxed); }
+  /// When the next cycle is due, by the clock.
   [[nodiscard]] Nanoseconds next_due() const { return next_.due; }
+  /// From one cycle to the next.
   [[nodiscard]] Nanoseconds period() const { return period_; }
+  /// What the loop has seen of itself; any thread may read it.
   [[nodiscard]] const LoopCounts& counts() const { return counts_; }
 
  private:

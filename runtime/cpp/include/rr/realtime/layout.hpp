@@ -14,19 +14,19 @@ namespace rr::realtime {
 
 /// What a signal is made of; numbered as elements on the wire (03, section 2).
 enum class SignalType : std::uint8_t {
-  double_ = 1,
-  single = 2,
-  int8 = 3,
-  uint8 = 4,
-  int16 = 5,
-  uint16 = 6,
-  int32 = 7,
-  uint32 = 8,
-  int64 = 9,
-  uint64 = 10,
-  cdouble = 12,
-  csingle = 13,
-  bool_ = 14,
+  double_ = 1,   ///< IEEE 754, 8 bytes
+  single = 2,    ///< IEEE 754, 4 bytes
+  int8 = 3,      ///< 1 byte
+  uint8 = 4,     ///< 1 byte
+  int16 = 5,     ///< 2 bytes
+  uint16 = 6,    ///< 2 bytes
+  int32 = 7,     ///< 4 bytes
+  uint32 = 8,    ///< 4 bytes
+  int64 = 9,     ///< 8 bytes
+  uint64 = 10,   ///< 8 bytes
+  cdouble = 12,  ///< two doubles: real and imaginary part
+  csingle = 13,  ///< two singles: real and imaginary part
+  bool_ = 14,    ///< 1 byte
 };
 
 /// Bytes of one item, in memory and in a frame; 0 for what is no signal type.
@@ -36,17 +36,17 @@ enum class SignalType : std::uint8_t {
 
 /// A row of the table that a layout is made from: one run of equal numbers in the pod.
 struct SignalEntry {
-  const char* name;  ///< `q`, `wrist.force`, `joints[2].angle`
-  SignalType type;
+  const char* name;      ///< `q`, `wrist.force`, `joints[2].angle`
+  SignalType type;       ///< of an item
   std::uint32_t count;   ///< of items; 1 for a single number
   std::uint32_t offset;  ///< in the pod, in bytes
 };
 
 /// One signal of a layout.
 struct Signal {
-  std::string name;
-  SignalType type{};
-  std::uint32_t count = 0;
+  std::string name;          ///< `q`, `wrist.force`, `joints[2].angle`
+  SignalType type{};         ///< of an item
+  std::uint32_t count = 0;   ///< of items
   std::uint32_t offset = 0;  ///< in the pod
   std::uint32_t place = 0;   ///< in the frame's payload
 };
@@ -59,7 +59,9 @@ class Layout {
   /// more bytes than a frame may hold in all (`largest_payload`).
   Layout(std::string name, std::span<const SignalEntry> entries, std::size_t size);
 
+  /// The pod's qualified name.
   [[nodiscard]] const std::string& name() const { return name_; }
+  /// In the order of the pod.
   [[nodiscard]] std::span<const Signal> signals() const { return signals_; }
   /// nullptr when there is none of that name.
   [[nodiscard]] const Signal* find(std::string_view name) const;

@@ -14,8 +14,10 @@ namespace rr::realtime {
 /// same.
 class Lockstep {
  public:
+  /// What a loop runs in each cycle.
   using Function = std::function<void(const Cycle&)>;
 
+  /// The clock of all loops. It moves in run_until().
   [[nodiscard]] SimulatedClock& clock() { return clock_; }
   /// A loop of this period, first due one period after now.
   CyclicLoop& add(Nanoseconds period, Function function);

@@ -29,7 +29,9 @@ class LookupTable {
   LookupTable(const LookupTable&) = delete;
   LookupTable& operator=(const LookupTable&) = delete;
 
+  /// Positions of a row.
   [[nodiscard]] std::size_t width() const { return width_; }
+  /// The most rows that a table may have.
   [[nodiscard]] std::size_t capacity() const { return capacity_; }
 
   /// Has the loop follow a new table from its sample `at_sample` on, or from its next one when that

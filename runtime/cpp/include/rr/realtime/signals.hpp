@@ -16,6 +16,7 @@ namespace rr::realtime {
 
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
+/// What can be handed from thread to thread as bytes: numbers, and structs and arrays of them.
 template <class T>
 concept Pod = std::is_trivially_copyable_v<T> && std::is_default_constructible_v<T>;
 
@@ -25,7 +26,9 @@ concept Pod = std::is_trivially_copyable_v<T> && std::is_default_constructible_v
 template <Pod T>
 class SignalGroup {
  public:
+  /// T{} at first, which counts as written.
   SignalGroup() { write(T{}); }
+  /// This value at first, which counts as written.
   explicit SignalGroup(const T& first) { write(first); }
   SignalGroup(const SignalGroup&) = delete;
   SignalGroup& operator=(const SignalGroup&) = delete;
@@ -82,7 +85,9 @@ class SignalGroup {
 template <Pod T>
 class Mailbox {
  public:
+  /// T{} at first.
   Mailbox() = default;
+  /// This value at first, as if it had been taken.
   explicit Mailbox(const T& first) { places_[read_] = first; }
   Mailbox(const Mailbox&) = delete;
   Mailbox& operator=(const Mailbox&) = delete;

@@ -21,8 +21,10 @@ namespace rr::realtime {
 template <Pod T>
 class CommandGroup {
  public:
+  /// This value at first, as if the loop had taken it.
   explicit CommandGroup(const T& first = T{}) : newest_(first), mailbox_(first) {}
 
+  /// Sets the newest value, which the loop takes in its next cycle.
   void set(const T& value) {
     update([&](T& newest) { newest = value; });
   }

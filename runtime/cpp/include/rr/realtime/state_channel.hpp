@@ -53,14 +53,16 @@ class FrameOrder {
   std::bitset<window> has_come_;  // by sequence number modulo window
 };
 
-/// What the two ends have in common, without the pod's type.
+/// The sender's end, without the pod's type.
 class StateOutput {
  public:
   /// `epoch` is larger for a sender that begins later; 0 stands for the time of day in nanoseconds.
   explicit StateOutput(Layout layout, std::uint64_t epoch = 0);
   /// The next frame, which stays until the next call.
   std::span<const std::byte> make(const void* pod, Nanoseconds stamp);
+  /// Frames made so far: the sequence number of the next one.
   [[nodiscard]] std::uint64_t sequence() const { return header_.sequence; }
+  /// What the frames hold.
   [[nodiscard]] const Layout& layout() const { return layout_; }
 
  private:
@@ -69,14 +71,20 @@ class StateOutput {
   std::array<std::byte, largest_frame> frame_{};
 };
 
+/// The receiver's end, without the pod's type.
 class StateInput {
  public:
+  /// Takes frames of this layout only.
   explicit StateInput(Layout layout) : layout_(std::move(layout)) {}
   /// Whether the frame was newer than all before; then `pod` has its signals.
   bool take(std::span<const std::byte> frame, void* pod);
+  /// The sender's time of the newest frame, by its own clock.
   [[nodiscard]] Nanoseconds stamp() const { return stamp_; }
+  /// The sequence number of the newest frame.
   [[nodiscard]] std::uint64_t sequence() const { return sequence_; }
+  /// What has come and what has not.
   [[nodiscard]] const ReceiveCounts& counts() const { return counts_; }
+  /// What the frames hold.
   [[nodiscard]] const Layout& layout() const { return layout_; }
 
  private:
@@ -137,6 +145,7 @@ class StateReceiver {
   }
   /// The newest value; nothing when none has come, or the newest is older than the lifespan.
   [[nodiscard]] const T* newest(Nanoseconds now) const { return is_fresh(now) ? &value_ : nullptr; }
+  /// Whether a value has come, and not longer than the lifespan ago.
   [[nodiscard]] bool is_fresh(Nanoseconds now) const {
     return arrival_ && now - *arrival_ <= lifespan_;
   }
@@ -146,7 +155,9 @@ class StateReceiver {
   [[nodiscard]] std::optional<Nanoseconds> arrival() const { return arrival_; }
   /// Of that: the sender's time, by its own clock.
   [[nodiscard]] Nanoseconds stamp() const { return input_.stamp(); }
+  /// Of that: its sequence number.
   [[nodiscard]] std::uint64_t sequence() const { return input_.sequence(); }
+  /// What has come and what has not; any thread may read it.
   [[nodiscard]] const ReceiveCounts& counts() const { return input_.counts(); }
 
  private:

@@ -16,9 +16,12 @@ class UdpSocket {
   /// Throws rr::Error (invalid_argument for what is no address, system_resource_error).
   UdpSocket(const std::string& address, std::uint16_t port);
   ~UdpSocket();
+  /// Takes over the socket.
   UdpSocket(UdpSocket&& other) noexcept;
+  /// Closes this socket, and takes over the other one.
   UdpSocket& operator=(UdpSocket&& other) noexcept;
 
+  /// The port at which it listens.
   [[nodiscard]] std::uint16_t port() const;
   /// From now on sends to this peer and hears nobody else. A name is looked up, which may take its
   /// time. Throws rr::Error.
