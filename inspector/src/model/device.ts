@@ -84,7 +84,7 @@ export class DeviceObject {
   /** Does something and writes it down. */
   async run<T>(kind: OperationKind, member: Member | undefined, args: readonly Argument[], action: () => Promise<T>, detail?: string): Promise<T> {
     return await this.device.record(
-      { kind, url: this.device.url, definitions: this.device.definitions, steps: this.steps, objectType: this.type, ...(member ? { member } : {}), args, ...(detail === undefined ? {} : { detail }) },
+      { kind, url: this.device.url, rootType: this.device.root.value?.type ?? "", definitions: this.device.definitions, steps: this.steps, objectType: this.type, ...(member ? { member } : {}), args, ...(detail === undefined ? {} : { detail }) },
       action,
       member && (kind === "get" || kind === "call" || kind === "peek" || kind === "next") ? (value) => resultText(member, value) : undefined,
     );

@@ -53,7 +53,7 @@ export function emptyDraft(type: ValueType, depth = 0): Draft {
   if (base.kind === "any") return { kind: "null" };
   if (array.kind === "dims") {
     const dims = array.dims ?? [0, 0];
-    return { kind: "block", dims: dims.join(" x "), text: base.kind === "number" ? zeros(dims, base.number) : "[]" };
+    return { kind: "block", dims: dims.join(" x "), text: base.kind === "number" ? zeros(dims, base.number) : emptyItems(type, dims) };
   }
   if (array.kind === "array") {
     const count = array.isMaximum ? 0 : (array.length ?? 0);
@@ -71,6 +71,23 @@ export function emptyDraft(type: ValueType, depth = 0): Draft {
     default:
       return { kind: "text", text: "" };
   }
+}
+
+/** Pods and namedarrays of fixed dimensions, as the JSON that they are edited as. */
+function emptyItems(type: ValueType, dims: readonly number[]): string {
+  const one = emptyDraft(item(type));
+  const count = dims.length === 0 ? 0 : dims.reduce((all, dim) => all * dim, 1);
+  return `[${new Array<string>(count).fill(JSON.stringify(plainDraft(one, item(type)))).join(",\n")}]`;
+}
+
+function plainDraft(draft: Draft, type: ValueType): unknown {
+  if (draft.kind === "record" && type.base.kind === "record") {
+    return Object.fromEntries(type.base.record.fields.map((field) => [field.name, plainDraft(draft.fields[field.name] ?? { kind: "null" }, field.type)]));
+  }
+  if (draft.kind === "items") return draft.items.map((one) => plainDraft(one, item(type)));
+  if (draft.kind === "block") return draft.text.startsWith("[") ? JSON.parse(draft.text) : splitNumbers(draft.text).map(Number);
+  if (draft.kind !== "text") return draft.kind === "bool" ? draft.on : null;
+  return type.array.kind === "array" ? splitNumbers(draft.text).map(Number) : Number(draft.text);
 }
 
 function zeroText(number: NumberName): string {
@@ -230,7 +247,7 @@ function blockText(base: BaseType, dims: readonly number[], items: ArrayLike<unk
 
 /** Pods and namedarrays of blocks are edited as JSON: numbers as texts where JSON has none for them. */
 function plainOf(base: BaseType, value: unknown): unknown {
-  if (base.kind !== "record") return typeof value === "bigint" || (typeof value === "number" && !Number.isFinite(value)) ? numberText(value) : value;
+  if (base.kind !== "record") return typeof value === "bigint" || (typeof value === "number" && (!Number.isFinite(value) || Object.is(value, -0))) ? numberText(value) : value;
   const fields = value as Readonly<Record<string, unknown>>;
   return Object.fromEntries(base.record.fields.map((field) => [field.name, plainField(field.type, fields[field.name])]));
 }
@@ -334,7 +351,9 @@ export class DraftReader {
     const flat = rows.flat();
     const written = (draft.dims.match(/\d+/g) ?? []).map(Number);
     const isMatrix = wanted ? wanted.length === 2 : written.length === 2;
-    const dims = wanted ?? (isMatrix ? [rows.length, rows[0]?.length ?? 0] : written);
+    // Without numbers there are no lines to be counted.
+    const isEmpty = flat.length === 0 && written.includes(0);
+    const dims = wanted ?? (isMatrix && !isEmpty ? [rows.length, rows[0]?.length ?? 0] : written);
     const count = dims.length === 0 ? 0 : dims.reduce((all, dim) => all * dim, 1);
     if (flat.length !== count) return this.fail(where, `${flat.length} numbers, where ${dims.join(" x ")} are ${count}`);
     if (isMatrix && count > 0 && (rows.length !== dims[0] || rows.some((row) => row.length !== dims[1]))) {

@@ -46,6 +46,8 @@ export interface Operation {
   /** From the root object to the one that was used. */
   readonly steps: readonly PathStep[];
   readonly objectType: string;
+  /** Of the root object of the service. */
+  readonly rootType?: string;
   readonly member?: Member;
   readonly args: readonly Argument[];
   /** Of a lock: whose; of a login: the user; of a memory: place and count. */

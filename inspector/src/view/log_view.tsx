@@ -3,13 +3,13 @@
 import type { VNode } from "preact";
 import { useSignal } from "@preact/signals";
 import type { App } from "../model/app.js";
-import { codeOf, languages, type Language } from "../model/copy_as.js";
+import { codeOf, languages, type Language } from "../copy/code.js";
 import { placeText, type HistoryEntry } from "../model/history.js";
 import { valueText } from "../model/value_text.js";
 import { clock, duration } from "./clock.js";
 
 export function LogView({ app }: { app: App }): VNode {
-  const language = useSignal<Language>("typescript");
+  const language = useSignal<Language>("shell");
   const shown = useSignal<{ readonly id: number; readonly text: string } | undefined>(undefined);
   const entries = app.history.entries.value;
   const copy = (entry: HistoryEntry): void => {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Panels: plots, pictures and scenes that stay while other objects are looked at.
 import type { VNode } from "preact";
-import { useSignal, useSignalEffect } from "@preact/signals";
+import { untracked, useSignal, useSignalEffect } from "@preact/signals";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import type { App, Panel } from "../model/app.js";
 import { feedKey } from "../model/feed.js";
@@ -60,7 +60,9 @@ function PlotPanel({ app, panel }: { app: App; panel: Panel }): VNode {
   useSignalEffect(() => {
     const seconds = model.window.value;
     const hidden = [...model.hidden.value];
-    app.change(panel, { seconds, hidden });
+    untracked(() => {
+      app.change(panel, { seconds, hidden });
+    });
   });
   const title = panel.sources.map(sourceTitle).join(", ");
   const failed = panel.sources.map(({ object, member }) => app.feeds.of(object, member)).find((feed) => feed.state.value === "failed");

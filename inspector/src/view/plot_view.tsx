@@ -15,8 +15,8 @@ const colors = ["--line-1", "--line-2", "--line-3", "--line-4", "--line-5", "--l
 const dashes = [[], [8, 4], [2, 3], [10, 3, 2, 3]];
 const windows = [1, 2, 5, 10, 30, 60, 300, 1800];
 const plotHeight = 240;
-/** Pixels of a column: each has two points, its low and its high. */
-const columnWidth = 2;
+/** Lines above this have columns of two pixels instead of one; each column has two points, its low and its high. */
+const mostFineLines = 8;
 const mostAxes = 4;
 // The enum of the library is there for the compiler only, which may not look into it in modules of their own.
 /* eslint-disable @typescript-eslint/no-unsafe-enum-assignment */
@@ -157,7 +157,7 @@ export function PlotView({ model, label, at, onChoose, range }: PlotProps): VNod
       const state = `${from} ${to} ${total} ${latest.current.at ?? ""} ${model.cursors.peek().join(" ")} ${plot.width}`;
       if (state === drawn) return;
       drawn = state;
-      const columns = Math.max(50, Math.floor(plot.over.clientWidth / columnWidth));
+      const columns = Math.max(50, Math.floor(plot.over.clientWidth / (lines.length > mostFineLines ? 2 : 1)));
       frame.fill(lines, from, to, columns);
       plot.setData(frame.data, false);
       plot.setScale("x", { min: from, max: to });
