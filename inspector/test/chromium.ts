@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// Chromium, driven over its DevTools protocol by a pipe: no port, no library.
+import { spawn, type ChildProcess } from "node:child_process";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import type { Readable, Writable } from "node:stream";
+
+type Json = Readonly<Record<string, unknown>>;
+
+interface Pending {
+  readonly resolve: (result: Json) => void;
+  readonly reject: (error: Error) => void;
+}
+
+/** A browser without a window. Close it, or it stays. */
+export class Chromium {
+  private readonly profile = mkdtempSync(join(tmpdir(), "inspector-"));
+  private readonly process: ChildProcess;
+  private readonly out: Writable;
+  private readonly pending = new Map<number, Pending>();
+  private readonly pages = new Map<string, Page>();
+  private last = 0;
+  private rest = "";
+
+  constructor(program = process.env.ROBDEF_BROWSER ?? "chromium") {
+    const flags = [
+      "--headless=new", "--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-dev-shm-usage", "--remote-debugging-pipe",
+      "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars", "--force-color-profile=srgb", `--user-data-dir=${this.profile}`, "about:blank",
+    ];
+    this.process = spawn(program, flags, { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
+    this.out = this.process.stdio[3] as Writable;
+    (this.process.stdio[4] as Readable).setEncoding("utf8").on("data", (text: string) => {
+      const parts = (this.rest + text).split("\0");
+      this.rest = parts.pop() ?? "";
+      for (const part of parts) this.take(JSON.parse(part) as Json);
+    });
+    this.process.on("exit", () => {
+      for (const { reject } of this.pending.values()) reject(new Error("the browser has ended"));
+    });
+    this.out.on("error", () => undefined);
+  }
+
+  send(method: string, params: Json = {}, sessionId?: string): Promise<Json> {
+    const id = ++this.last;
+    return new Promise((resolve, reject) => {
+      this.pending.set(id, { resolve, reject });
+      this.out.write(`${JSON.stringify({ id, method, params, ...(sessionId === undefined ? {} : { sessionId }) })}\0`);
+    });
+  }
+
+  private take(message: Json): void {
+    const waiting = typeof message.id === "number" ? this.pending.get(message.id) : undefined;
+    if (waiting) {
+      this.pending.delete(message.id as number);
+      const error = message.error as { message: string } | undefined;
+      if (error) waiting.reject(new Error(error.message));
+      else waiting.resolve((message.result ?? {}) as Json);
+      return;
+    }
+    if (typeof message.sessionId === "string") this.pages.get(message.sessionId)?.event(String(message.method), (message.params ?? {}) as Json);
+  }
+
+  /** A page of so many pixels, at a URL. */
+  async open(url: string, { width = 1280, height = 860, scheme = "light" }: { width?: number; height?: number; scheme?: "light" | "dark" } = {}): Promise<Page> {
+    const { targetId } = await this.send("Target.createTarget", { url: "about:blank" });
+    const { sessionId } = await this.send("Target.attachToTarget", { targetId, flatten: true });
+    const page = new Page(this, String(sessionId), String(targetId));
+    this.pages.set(String(sessionId), page);
+    for (const domain of ["Page", "Runtime", "Log", "DOM"]) await page.send(`${domain}.enable`);
+    await page.send("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: false });
+    await page.scheme(scheme);
+    await page.go(url);
+    return page;
+  }
+
+  async close(): Promise<void> {
+    const ended = new Promise((resolve) => this.process.once("exit", resolve));
+    await this.send("Browser.close").catch(() => undefined);
+    const timer = setTimeout(() => this.process.kill("SIGKILL"), 5000);
+    await ended;
+    clearTimeout(timer);
+    rmSync(this.profile, { recursive: true, force: true, maxRetries: 5 });
+  }
+}
+
+/** A page in the browser. */
+export class Page {
+  /** What the page said about itself: errors, exceptions, violations of its policy. */
+  readonly complaints: string[] = [];
+  private loaded: (() => void) | undefined;
+
+  constructor(
+    private readonly browser: Chromium,
+    private readonly session: string,
+    private readonly target: string,
+  ) {}
+
+  send(method: string, params: Json = {}): Promise<Json> {
+    return this.browser.send(method, params, this.session);
+  }
+
+  event(method: string, params: Json): void {
+    if (method === "Page.loadEventFired") this.loaded?.();
+    if (method === "Runtime.exceptionThrown") {
+      const details = params.exceptionDetails as { text: string; exception?: { description?: string } };
+      this.complaints.push(details.exception?.description ?? details.text);
+    }
+    if (method === "Log.entryAdded") {
+      const entry = params.entry as { level: string; text: string; source: string };
+      if (entry.level === "error") this.complaints.push(`${entry.source}: ${entry.text}`);
+    }
+    if (method === "Runtime.consoleAPICalled" && params.type === "error") {
+      this.complaints.push((params.args as { value?: unknown; description?: string }[]).map((one) => String(one.value ?? one.description)).join(" "));
+    }
+  }
+
+  async scheme(scheme: "light" | "dark"): Promise<void> {
+    await this.send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: scheme }] });
+  }
+
+  async go(url: string): Promise<void> {
+    const loaded = new Promise<void>((resolve) => (this.loaded = resolve));
+    const { errorText } = await this.send("Page.navigate", { url });
+    if (typeof errorText === "string" && errorText !== "") throw new Error(`${url}: ${errorText}`);
+    await loaded;
+  }
+
+  /** The value of an expression in the page; promises are awaited. */
+  async evaluate<T>(expression: string): Promise<T> {
+    const { result, exceptionDetails } = (await this.send("Runtime.evaluate", { expression, awaitPromise: true, returnByValue: true, userGesture: true })) as {
+      result: { value: T };
+      exceptionDetails?: { text: string; exception?: { description?: string } };
+    };
+    if (exceptionDetails) throw new Error(exceptionDetails.exception?.description ?? exceptionDetails.text);
+    return result.value;
+  }
+
+  /** Waits until an expression is true. */
+  async until(expression: string, what = expression, timeout = 10_000): Promise<void> {
+    const end = Date.now() + timeout;
+    while (!(await this.evaluate<boolean>(`Boolean(${expression})`))) {
+      if (Date.now() > end) {
+        const text = await this.evaluate<string>("document.body.innerText");
+        throw new Error(`not within ${timeout} ms: ${what}; the page says:\n${text.slice(0, 3000)}\n${this.complaints.join("\n")}`);
+      }
+      await new Promise((resolve) => setTimeout(resolve, 20));
+    }
+  }
+
+  /** Waits for an element and clicks it as a mouse does. */
+  async click(selector: string): Promise<void> {
+    await this.until(`document.querySelector(${JSON.stringify(selector)})`, selector);
+    const [x, y] = await this.evaluate<[number, number]>(`(() => { const e = document.querySelector(${JSON.stringify(selector)}); e.scrollIntoView({ block: "center" }); const r = e.getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()`);
+    for (const type of ["mousePressed", "mouseReleased"]) await this.send("Input.dispatchMouseEvent", { type, x, y, button: "left", clickCount: 1 });
+  }
+
+  /** Puts a text in place of what a field has. */
+  async type(selector: string, text: string): Promise<void> {
+    await this.until(`document.querySelector(${JSON.stringify(selector)})`, selector);
+    await this.evaluate(`(() => { const e = document.querySelector(${JSON.stringify(selector)}); e.scrollIntoView({ block: "center" }); e.focus(); e.select(); })()`);
+    await this.send("Input.insertText", { text });
+  }
+
+  async key(key: string, code = key): Promise<void> {
+    const text = key.length === 1 ? { text: key } : key === "Enter" ? { text: "\r" } : {};
+    await this.send("Input.dispatchKeyEvent", { type: "keyDown", key, code, windowsVirtualKeyCode: keyCodes[key] ?? 0, ...text });
+    await this.send("Input.dispatchKeyEvent", { type: "keyUp", key, code, windowsVirtualKeyCode: keyCodes[key] ?? 0 });
+  }
+
+  /** Chooses a file in a field for files. */
+  async choose(selector: string, file: string): Promise<void> {
+    const { root } = (await this.send("DOM.getDocument")) as { root: { nodeId: number } };
+    const { nodeId } = await this.send("DOM.querySelector", { nodeId: root.nodeId, selector });
+    await this.send("DOM.setFileInputFiles", { nodeId, files: [file] });
+  }
+
+  async screenshot(file: string): Promise<void> {
+    const { data } = await this.send("Page.captureScreenshot", { format: "png" });
+    writeFileSync(file, Buffer.from(String(data), "base64"));
+  }
+
+  async close(): Promise<void> {
+    await this.browser.send("Target.closeTarget", { targetId: this.target });
+  }
+}
+
+const keyCodes: Readonly<Record<string, number>> = { Enter: 13, ArrowDown: 40, ArrowUp: 38, ArrowLeft: 37, ArrowRight: 39, Tab: 9, Home: 36, End: 35, " ": 32 };
