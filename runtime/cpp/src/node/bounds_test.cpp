@@ -169,7 +169,7 @@ TEST(Bounds, AClientThatDoesNotReadIsGivenUp) {
 // Sends echoes of 100 kB to a service that is busy. The worst that a call has come to.
 ErrorCode send_to_busy_service(std::size_t request_queue_limit) {
   const auto object = std::make_shared<GatedCounter>();
-  Pair pair({.request_queue_limit = request_queue_limit}, {.send_queue_limit = 8'000'000}, object);
+  Pair pair({.request_queue_limit = request_queue_limit}, {.send_queue_limit = 16'000'000}, object);
   auto counter = pair.connect();
   auto busy = std::async(std::launch::async, [&] { error_of([&] { counter->reset(); }); });
   EXPECT_TRUE(object->gate.has_entered());
@@ -177,7 +177,7 @@ ErrorCode send_to_busy_service(std::size_t request_queue_limit) {
   std::vector<std::future<std::string>> echoes;
   for (int i = 0; i < 240 && counter.is_open(); ++i) {
     echoes.push_back(counter->async_echo(text, use_future));
-    std::this_thread::sleep_for(1ms);  // time for the other side to take it
+    std::this_thread::sleep_for(2ms);  // time for the other side to take it
   }
   object->gate.open();
   busy.get();
