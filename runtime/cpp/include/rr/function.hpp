@@ -6,7 +6,9 @@
 #include <type_traits>
 #include <utility>
 
-namespace rr {
+#include "rr/visibility.hpp"
+
+namespace RR_VISIBLE rr {
 
 template <class Signature>
 class Function;

@@ -8,8 +8,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "rr/visibility.hpp"
+
 /// Loops of a fixed rate, on the machine's clock or on one that a test moves.
-namespace rr::realtime {
+namespace RR_VISIBLE rr {
+namespace realtime {
 
 using Nanoseconds = std::chrono::nanoseconds;
 
@@ -134,4 +137,5 @@ struct ThreadRights {
 /// as the system allows.
 ThreadRights become_realtime(int priority);
 
-}  // namespace rr::realtime
+}  // namespace realtime
+}  // namespace rr
