@@ -16,7 +16,7 @@ for file in "$out"/*; do
 done
 [ "$(ls "$out" | wc -l)" = "$(ls "$again" | wc -l)" ] || fail 'the second time there are other files'
 rm -rf "$again"
-lintian --info --display-info --pedantic --suppress-tags initial-upload-closes-no-bugs,no-symbols-control-file "$out"/*.deb >"$out/lintian.txt" 2>&1 ||
+lintian --allow-root --display-info --pedantic "$out"/*.deb >"$out/lintian.txt" 2>&1 ||
   { cat "$out/lintian.txt" >&2; fail 'lintian has found something'; }
 cat "$out/lintian.txt"
 ! grep -E '^[EW]:' "$out/lintian.txt" || fail 'lintian has found something'
