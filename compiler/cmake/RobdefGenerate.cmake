@@ -226,6 +226,10 @@ function(robdef_generate target)
     return()
   endif()
   target_include_directories(${target} PUBLIC "$<BUILD_INTERFACE:${arg_OUTPUT_DIR}>")
+  if(arg_LANGUAGE STREQUAL "cpp")
+    # A program uses either stubs or skeletons: the linker leaves out the others.
+    target_compile_options(${target} PRIVATE -ffunction-sections -fdata-sections)
+  endif()
   # By property, so that the caller may link in either form of target_link_libraries.
   set(library robdef::runtime)
   if(arg_RUNTIME)

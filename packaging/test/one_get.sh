@@ -12,12 +12,12 @@ trap '[ -z "$service" ] || kill "$service" 2>/dev/null || true; rm -rf "$work"' 
 fail() { echo "one_get: $*" >&2; exit 1; }
 
 "$robdef" generate --no-config --lang cpp -o "$work" "$here/experimental.one.robdef"
-compile() { "$compiler" -std=c++20 -O2 -I"$work" -I"$include" -c "$1" -o "$2"; }
+compile() { "$compiler" -std=c++20 -O2 -ffunction-sections -fdata-sections -I"$work" -I"$include" -c "$1" -o "$2"; }
 compile "$work/experimental/one.cpp" "$work/one.o"
 compile "$here/one_get.cpp" "$work/get.o"
 compile "$here/one_service.cpp" "$work/service.o"
 for program in get service; do
-  "$compiler" "$work/$program.o" "$work/one.o" "$libraries/librobdef.a" -pthread -o "$work/$program"
+  "$compiler" "$work/$program.o" "$work/one.o" "$libraries/librobdef.a" -pthread -Wl,--gc-sections -o "$work/$program"
 done
 strip -o "$work/stripped" "$work/get"
 size=$(stat -c %s "$work/stripped")
