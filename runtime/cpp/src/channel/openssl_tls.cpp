@@ -56,13 +56,13 @@ void OpenSslTls::watch(const std::shared_ptr<Connection>& connection,
 
 namespace {
 
-std::shared_ptr<const Tls> make_tls(const TlsOptions& options, const NodeId& own,
-                                    std::shared_ptr<Reactor> reactor,
-                                    const std::function<void(LogLevel, std::string_view)>& log) {
+std::shared_ptr<const Tls> make(const TlsOptions& options, const NodeId& own,
+                                std::shared_ptr<Reactor> reactor,
+                                const std::function<void(LogLevel, std::string_view)>& log) {
   return std::make_shared<const OpenSslTls>(options, own, std::move(reactor), log);
 }
 
-NodeId certified_id(const TlsOptions& options) {
+NodeId certificate_node(const TlsOptions& options) {
   const Identity identity = read_identity(options.certificate_file, options.key_file);
   const auto node = node_of(*identity.certificate);
   if (!node) {
@@ -76,5 +76,5 @@ NodeId certified_id(const TlsOptions& options) {
 
 }  // namespace rr::channel
 
-const rr::channel::TlsComponent rr_component_tls = {&rr::channel::make_tls,
-                                                    &rr::channel::certified_id};
+const rr::channel::TlsComponent rr_component_tls = {&rr::channel::make,
+                                                    &rr::channel::certificate_node};
