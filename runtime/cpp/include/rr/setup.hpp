@@ -57,6 +57,10 @@ struct SetupOptions {
   std::vector<std::string> tcp_ws_add_origin{};
   std::vector<std::string> tcp_ws_remove_origin{};
   bool tcp_ws_allow_local_pages = false;  ///< WebSocketOptions::allow_local_pages
+  /// Serves the page of the inspector at the TCP port: WebSocketOptions::inspector_page.
+  bool web_inspector = false;
+  /// Its file; empty: the one that is installed with the runtime.
+  std::string web_inspector_page{};
   /// Reports of this level and above go to standard error, unless `node.log` takes them. One of
   /// `debug`, `info`, `warning`, `error`, and `disable`.
   std::string log_level = "warning";

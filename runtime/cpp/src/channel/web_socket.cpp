@@ -170,9 +170,13 @@ class WebSocketClient final : public WebSocketLayer {
 
 class WebSocketServer final : public WebSocketLayer {
  public:
-  WebSocketServer(std::shared_ptr<WebSockets> owner, WebSockets::Home& home,
-                  const std::vector<std::string>& origins)
-      : WebSocketLayer(std::move(owner), home), origins_(origins) {
+  struct Rules {
+    const std::vector<std::string>& origins;
+    const WebPage* page;  ///< null: none is served
+    bool is_encrypted;
+  };
+  WebSocketServer(std::shared_ptr<WebSockets> owner, WebSockets::Home& home, const Rules& rules)
+      : WebSocketLayer(std::move(owner), home), rules_(rules) {
     parser_.header_limit(longest_header);
   }
 
@@ -182,6 +186,7 @@ class WebSocketServer final : public WebSocketLayer {
       take_frames(wire, plain, reply);
       return;
     }
+    if (has_sent_page_) return;  // the browser closes once it has read the page
     append(head_, wire);
     beast::error_code error;
     const std::size_t used = parser_.put(asio::const_buffer(head_.data(), head_.size()), error);
@@ -193,6 +198,11 @@ class WebSocketServer final : public WebSocketLayer {
     if (error) refuse(http::status::bad_request, reply);
     if (!parser_.is_header_done()) return;
     const http::status status = judge(parser_.get());
+    if (status == http::status::ok) {
+      has_sent_page_ = true;
+      append(reply, bytes_of(rules_.page->answer()));
+      return;
+    }
     if (status != http::status::switching_protocols) refuse(status, reply);
     accept(reply);
     const Bytes rest = std::exchange(head_, {});
@@ -200,7 +210,7 @@ class WebSocketServer final : public WebSocketLayer {
   }
 
  private:
-  // In the order of 04, section 2.2.
+  // In the order of 04, section 2.2. `ok`: the page is asked for.
   [[nodiscard]] http::status judge(const Request& request) const {
     if (request.method() != http::verb::get) return http::status::not_found;
     if (request.version() != 11) return http::status::bad_request;
@@ -208,6 +218,9 @@ class WebSocketServer final : public WebSocketLayer {
     const std::string_view path = target.substr(0, target.find('?'));
     const bool has_one_query = target.find('?') == target.rfind('?');
     if ((path != "/" && path != "*") || !has_one_query) return http::status::not_found;
+    if (asks_for_page(request)) {
+      return is_own_host(host_of(request)) ? http::status::ok : http::status::misdirected_request;
+    }
     if (!http::token_list(request[http::field::upgrade]).exists("websocket") ||
         request.count(http::field::sec_websocket_key) == 0 ||
         !http::token_list(request[http::field::sec_websocket_version]).exists("13")) {
@@ -219,10 +232,25 @@ class WebSocketServer final : public WebSocketLayer {
     }
     const auto origin = request[http::field::origin];
     if (request.count(http::field::origin) != 0 &&
-        !is_allowed_origin({origin.data(), origin.size()}, origins_)) {
+        !may_connect({origin.data(), origin.size()}, request)) {
       return http::status::forbidden;
     }
     return http::status::switching_protocols;
+  }
+
+  [[nodiscard]] bool asks_for_page(const Request& request) const {
+    return rules_.page != nullptr && request.count(http::field::upgrade) == 0;
+  }
+  static std::string host_of(const Request& request) {
+    return std::string(request[http::field::host]);
+  }
+  // The page that this node has served has the origin that it is asked at.
+  [[nodiscard]] bool may_connect(std::string_view origin, const Request& request) const {
+    if (is_allowed_origin(origin, rules_.origins)) return true;
+    const std::string host = host_of(request);
+    const std::string own = (rules_.is_encrypted ? "https://" : "http://") + host;
+    return rules_.page != nullptr && host.find('*') == std::string::npos && is_own_host(host) &&
+           is_allowed_origin(origin, {own});
   }
 
   [[noreturn]] void refuse(http::status status, Bytes& reply) {
@@ -256,23 +284,25 @@ class WebSocketServer final : public WebSocketLayer {
     open();
   }
 
-  const std::vector<std::string>& origins_;
+  const Rules rules_;
+  bool has_sent_page_ = false;
   http::request_parser<http::empty_body> parser_;
   Bytes head_;  // of the request, that the parser has not used
 };
 
 }  // namespace
 
-WebSockets::WebSockets(std::vector<std::string> origins)
-    : origins_(std::move(origins)), home_(std::make_unique<Home>()) {}
+WebSockets::WebSockets(std::vector<std::string> origins, std::shared_ptr<const WebPage> page)
+    : origins_(std::move(origins)), page_(std::move(page)), home_(std::make_unique<Home>()) {}
 WebSockets::~WebSockets() = default;
 
 std::unique_ptr<Layer> WebSockets::make_client(const Url& url) {
   return std::make_unique<WebSocketClient>(shared_from_this(), *home_, url);
 }
 
-std::unique_ptr<Layer> WebSockets::make_server() {
-  return std::make_unique<WebSocketServer>(shared_from_this(), *home_, origins_);
+std::unique_ptr<Layer> WebSockets::make_server(bool is_encrypted) {
+  const WebSocketServer::Rules rules{origins_, page_.get(), is_encrypted};
+  return std::make_unique<WebSocketServer>(shared_from_this(), *home_, rules);
 }
 
 }  // namespace rr::channel

@@ -9,28 +9,36 @@
 #include "rr/options.hpp"
 #include "rr/url.hpp"
 #include "runtime/cpp/src/channel/layer.hpp"
+#include "runtime/cpp/src/channel/web_page.hpp"
 
 namespace rr::channel {
 
 /// Web sockets around streams (04, sections 2.2 and 2.3), those of one node. Any thread may use it.
 class WebSockets : public std::enable_shared_from_this<WebSockets> {
  public:
-  /// Pages of these origins may connect, and what says no origin.
-  explicit WebSockets(std::vector<std::string> origins);
+  /// Pages of these origins may connect, and what says no origin. Where a page is served, it may
+  /// connect, too: to the node that served it.
+  explicit WebSockets(std::vector<std::string> origins,
+                      std::shared_ptr<const WebPage> page = nullptr);
   ~WebSockets();
   WebSockets(const WebSockets&) = delete;
   WebSockets& operator=(const WebSockets&) = delete;
 
   /// As the client of a URL.
   [[nodiscard]] std::unique_ptr<Layer> make_client(const Url& url);
-  [[nodiscard]] std::unique_ptr<Layer> make_server();
+  /// `is_encrypted`: there is TLS around it.
+  [[nodiscard]] std::unique_ptr<Layer> make_server(bool is_encrypted);
 
   struct Home;  // what the protocol's library wants to live in
 
  private:
   const std::vector<std::string> origins_;
+  const std::shared_ptr<const WebPage> page_;
   const std::unique_ptr<Home> home_;
 };
+
+/// The page that options name; null for none. Throws rr::Error (invalid_configuration).
+std::shared_ptr<const WebPage> served_page(const WebSocketOptions& options);
 
 /// The origins that options allow.
 std::vector<std::string> allowed_origins(const WebSocketOptions& options);

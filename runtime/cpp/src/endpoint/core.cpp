@@ -127,8 +127,8 @@ Core::Core(NodeOptions options)
   rounds_ = std::make_shared<Rounds>(reactor_, period);
   channel::watch_pools(pools_, reactor_);
   tls_ = std::make_shared<const channel::Tls>(options_->tls, options_->id, reactor_, options_->log);
-  web_sockets_ =
-      std::make_shared<channel::WebSockets>(channel::allowed_origins(options_->web_socket));
+  web_sockets_ = std::make_shared<channel::WebSockets>(
+      channel::allowed_origins(options_->web_socket), channel::served_page(options_->web_socket));
   channels_ = channel::all_channels(context());
 }
 
