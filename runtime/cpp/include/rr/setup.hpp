@@ -134,6 +134,11 @@ class SecureServerNodeSetup : public NodeSetup {
       : NodeSetup(SetupOptions::secure_server(std::move(name), port), argc, argv) {}
 };
 
+/// The page of the inspector that is installed with the runtime, compressed by gzip: beside the
+/// program, as `../share/robdef/inspector.html.gz`, or where the runtime was installed. The page
+/// itself is beside it, without `.gz`. Throws rr::Error (invalid_configuration) where it is not.
+std::string installed_inspector_page();
+
 /// All URLs by which a service of the node may be reached, one a line.
 void print_candidate_urls(std::ostream& out, const Node& node, std::string_view service);
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/cpp/src/node/inspector_page.hpp"
-
 #include <filesystem>
 #include <system_error>
 
 #include "rr/error.hpp"
+#include "rr/setup.hpp"
 
 namespace rr {
 

@@ -12,7 +12,6 @@
 #include "rr/wire.hpp"
 #include "runtime/cpp/src/channel/directories.hpp"
 #include "runtime/cpp/src/channel/tls.hpp"
-#include "runtime/cpp/src/node/inspector_page.hpp"
 #include "runtime/cpp/src/node/kept_node_id.hpp"
 
 namespace rr {
