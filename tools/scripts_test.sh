@@ -25,4 +25,7 @@ for script in ./try ./check; do
   said=$("$script" --nonsense 2>&1 </dev/null) || code=$?
   [[ $code = 2 && $said = "usage: $script"* ]] || complain "$script --nonsense ended with $code and said: $said"
 done
+
+# Files of other tools have a copy of the version.
+tools/version --check || status=1
 exit $status

@@ -49,7 +49,7 @@ set(robdef_layers
 
   "runtime/cpp/include/rr:"
   # Of the wire runtime, errors only; what binds the two has a header of its own.
-  "runtime/cpp/include/rr/realtime: runtime/cpp/include/rr/error.hpp"
+  "runtime/cpp/include/rr/realtime: runtime/cpp/include/rr/error.hpp runtime/cpp/include/rr/visibility.hpp"
   "runtime/cpp/include/rr/realtime/service.hpp: runtime/cpp/include/rr"
   "runtime/cpp/src/realtime: runtime/cpp/include/rr/crc32.hpp runtime/cpp/include/rr/error.hpp runtime/cpp/include/rr/realtime"
   "runtime/cpp/src/realtime/service: runtime/cpp/include/rr runtime/cpp/src/realtime runtime/cpp/src/node/testing"
@@ -95,7 +95,7 @@ set(robdef_layers
   "runtime/arduino: runtime/cpp/src/serial runtime/cpp/include/rr runtime/cpp/src/node/testing"
 
   # The suite's connections have the same layers around them as those of nodes.
-  "conformance: runtime/cpp/include/rr runtime/cpp/src/replay runtime/cpp/src/channel/layer.hpp runtime/cpp/src/channel/tls.hpp runtime/cpp/src/channel/web_socket.hpp"
+  "conformance: runtime/cpp/include/rr runtime/cpp/src/replay runtime/cpp/src/channel/components.hpp runtime/cpp/src/channel/layer.hpp runtime/cpp/src/channel/openssl_tls.hpp runtime/cpp/src/channel/tls.hpp runtime/cpp/src/channel/web_socket.hpp"
   "conformance/runners/board: runtime/cpp/include/rr conformance runtime/arduino/bench/plugged_board.hpp"
   "conformance/runners/matlab: conformance runtime/cpp/include/rr runtime/matlab"
   "benchmarks: runtime/cpp/include/rr compiler"

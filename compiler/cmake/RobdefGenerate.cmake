@@ -8,6 +8,7 @@
 #   [IMPORT_PATHS dir ...]    where imported definitions are looked for; the folders of FILES and the
 #                             environment variable ROBOTRACONTEUR_ROBDEF_PATH are searched too
 #   [CONFIG robdef.toml]      project file with renames and levels of warnings; none by default, wherever one is
+#   [RUNTIME robdef::core]    what is linked instead of robdef::runtime, which is everything
 #   [OUTPUT_DIR dir])         default: <current binary folder>/TARGET_robdef
 #
 # Generates code while TARGET is built, and adds it to TARGET: the sources, the include folder and
@@ -137,7 +138,7 @@ function(robdef_known_service file known service check)
 endfunction()
 
 function(robdef_generate target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "CONFIG;LANGUAGE;OUTPUT_DIR;PLUGIN" "FILES;IMPORT_PATHS;PLUGIN_OPTIONS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "CONFIG;LANGUAGE;OUTPUT_DIR;PLUGIN;RUNTIME" "FILES;IMPORT_PATHS;PLUGIN_OPTIONS")
   if(arg_UNPARSED_ARGUMENTS OR NOT arg_FILES)
     message(FATAL_ERROR "usage: robdef_generate(TARGET FILES ... LANGUAGE cpp [IMPORT_PATHS ...] [OUTPUT_DIR dir]); not understood: ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -225,8 +226,15 @@ function(robdef_generate target)
     return()
   endif()
   target_include_directories(${target} PUBLIC "$<BUILD_INTERFACE:${arg_OUTPUT_DIR}>")
+  if(arg_LANGUAGE STREQUAL "cpp")
+    # A program uses either stubs or skeletons: the linker leaves out the others.
+    target_compile_options(${target} PRIVATE -ffunction-sections -fdata-sections)
+  endif()
   # By property, so that the caller may link in either form of target_link_libraries.
   set(library robdef::runtime)
+  if(arg_RUNTIME)
+    set(library ${arg_RUNTIME})
+  endif()
   if(arg_LANGUAGE STREQUAL "cbus")
     set(library robdef::cbus)
   endif()

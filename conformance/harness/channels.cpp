@@ -14,7 +14,8 @@
 #include "conformance/harness/decoded.hpp"
 #include "conformance/harness/entry_types.hpp"
 #include "conformance/harness/starttls.hpp"
-#include "runtime/cpp/src/channel/tls.hpp"
+#include "runtime/cpp/src/channel/components.hpp"
+#include "runtime/cpp/src/channel/openssl_tls.hpp"
 #include "runtime/cpp/src/channel/web_socket.hpp"
 
 namespace rr::conformance {
@@ -64,7 +65,7 @@ class Channel::Secrets {
       rr::TlsOptions options;
       options.certificate_file = certificate_of(node);
       options.authority_files = {authority_file()};
-      side = std::make_unique<channel::Tls>(options, id_of(node));
+      side = std::make_unique<channel::OpenSslTls>(options, id_of(node));
     }
     return *side;
   }
@@ -76,8 +77,7 @@ class Channel::Secrets {
 };
 
 Channel::Channel(std::string name)
-    : name_(std::move(name)),
-      web_sockets_(std::make_shared<channel::WebSockets>(std::vector<std::string>())) {
+    : name_(std::move(name)), web_sockets_(channel::make_web_sockets({})) {
   if (std::ranges::find(channel_names(), name_) == channel_names().end()) {
     throw std::runtime_error("there is no channel " + name_);
   }

@@ -6,6 +6,7 @@ set -euo pipefail
 robdef=$1 native=$2 work=$3
 here=$(cd "$(dirname "$0")" && pwd)
 export DOTNET_CLI_TELEMETRY_OPTOUT=1 DOTNET_NOLOGO=1
+version=$("$here/../../tools/version")
 fail() { echo "package_test: $*" >&2; exit 1; }
 
 rm -rf "$work"
@@ -22,8 +23,8 @@ dotnet pack "$here/Robdef.Runtime" -c Release -m:2 --artifacts-path "$work/runti
   "-p:RobdefFrameworks=\"$frameworks\"" -p:RunAnalyzers=false -p:NativeDir="$native" -p:RobdefCompiler="$robdef" \
   -p:RobdefProjectUrl=https://example.org/robdef -p:RobdefRepositoryUrl=https://example.org/robdef.git
 
-[ -f "$work/feed/Robdef.Runtime.0.1.0.snupkg" ] || fail "there are no symbols"
-python3 -m zipfile -e "$work/feed/Robdef.Runtime.0.1.0.nupkg" "$work/unpacked"
+[ -f "$work/feed/Robdef.Runtime.$version.snupkg" ] || fail "there are no symbols"
+python3 -m zipfile -e "$work/feed/Robdef.Runtime.$version.nupkg" "$work/unpacked"
 for line in '<projectUrl>https://example.org/robdef</projectUrl>' '<icon>icon.png</icon>' '<readme>README.md</readme>' \
   '<repository type="git" url="https://example.org/robdef.git"' 'robotics'; do
   grep -q "$line" "$work/unpacked/Robdef.Runtime.nuspec" || fail "the package does not say $line"
@@ -46,9 +47,9 @@ build() { dotnet build -c Release -m:2 -v:normal --no-restore >"$1" 2>&1 || { ca
 times() { stat -c %y obj/Release/net10.0/robdef/generated.stamp bin/Release/net10.0/sample.dll; }
 
 dotnet restore
-for file in lib/net10.0/Robdef.Runtime.dll runtimes/linux-x64/native/librobdef_runtime.so tools/linux-x64/robdef \
+for file in lib/net10.0/Robdef.Runtime.dll runtimes/linux-x64/native/librobdef_c.so tools/linux-x64/robdef \
   build/Robdef.Runtime.targets README.md icon.png; do
-  [ -f "$work/packages/robdef.runtime/0.1.0/$file" ] || fail "the package has no $file"
+  [ -f "$work/packages/robdef.runtime/$version/$file" ] || fail "the package has no $file"
 done
 build first.log
 [ "$(bin/Release/net10.0/sample)" = "counted to 6" ] || fail "the sample does not work"
@@ -107,7 +108,7 @@ build edited.log
 # A platform without a native library is refused before the program is there.
 publish() { dotnet publish -c Release -m:2 -r "$1" --self-contained false -p:UseAppHost=false -o "published-$1" >"publish-$1.log" 2>&1; }
 publish linux-x64 || { cat publish-linux-x64.log >&2; fail "publishing has failed"; }
-[ -f published-linux-x64/librobdef_runtime.so ] || fail "the native library is not published"
+[ -f published-linux-x64/librobdef_c.so ] || fail "the native library is not published"
 ! publish win-x64 || fail "a program without its native library was published"
 grep -q 'error ROBDEF001: Robdef.Runtime has no native library for win-x64' publish-win-x64.log || { cat publish-win-x64.log >&2; fail "the error is not shown"; }
 

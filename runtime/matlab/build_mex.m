@@ -31,8 +31,9 @@ if from_sources
   place.library = '';
 end
 place.archives = {fullfile(runtime, 'src', 'serial', 'librobdef_serial.a'), ...
-                  fullfile(runtime, 'src', 'dynamic', 'librobdef_dynamic.a'), ...
-                  fullfile(runtime, 'librobdef_runtime.a')};
+                  fullfile(runtime, 'src', 'dynamic', 'librobdef_dynamic.a')};
+place.runtime = {fullfile(runtime, 'librobdef_tls.a'), fullfile(runtime, 'librobdef_web.a'), ...
+                 fullfile(runtime, 'librobdef.a')};
 place.exports = fullfile(here, 'exports.map');
 before = addpath(fullfile(here, 'toolbox'));
 restore = onCleanup(@() path(before));

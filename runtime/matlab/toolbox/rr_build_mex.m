@@ -13,8 +13,8 @@ place.includes = {fullfile(prefix, 'include'), fullfile(folder, 'client', 'cpp')
                   fullfile(folder, 'client', 'mex'), root};
 place.own = fullfile(root, 'runtime', 'matlab', 'src');
 place.library = fullfile(libraries, 'librobdef_matlab_mex.a');
-place.archives = in_folder(libraries, {'librobdef_serial.a', 'librobdef_dynamic.a', ...
-                                       'librobdef_runtime.a'});
+place.archives = in_folder(libraries, {'librobdef_serial.a', 'librobdef_dynamic.a'});
+place.runtime = in_folder(libraries, {'librobdef_tls.a', 'librobdef_web.a', 'librobdef.a'});
 place.static = fullfile(root, 'runtime', 'matlab', 'static');
 place.with_mex = ~exist('OCTAVE_VERSION', 'builtin');
 place.exports = fullfile(support, 'exports.map');
@@ -29,9 +29,9 @@ end
 function folder = library_folder(prefix)
 for place = {'lib', 'lib64', 'lib/x86_64-linux-gnu', 'lib/aarch64-linux-gnu'}
   folder = fullfile(prefix, place{1});
-  if exist(fullfile(folder, 'librobdef_runtime.a'), 'file')
+  if exist(fullfile(folder, 'librobdef.a'), 'file')
     return
   end
 end
-error('RobotRaconteur:InvalidArgument', 'there is no librobdef_runtime.a below %s', prefix);
+error('RobotRaconteur:InvalidArgument', 'there is no librobdef.a below %s', prefix);
 end

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "rr/skeleton.hpp"
+#include "rr/visibility.hpp"
 
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// The answer to one call of a function, as the async_ member of a skeleton gets it: give it at
 /// once, or take a Reply and give it later, from any thread:

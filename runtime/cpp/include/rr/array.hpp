@@ -14,8 +14,9 @@
 #include <vector>
 
 #include "rr/buffer.hpp"
+#include "rr/visibility.hpp"
 
-namespace rr {
+namespace RR_VISIBLE rr {
 
 // Here instead of <algorithm>, which would cost every generated header thousands of lines.
 // Never inlined: it would be, into the comparison of every struct.

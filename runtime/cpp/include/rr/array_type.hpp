@@ -9,9 +9,10 @@
 
 #include "rr/array.hpp"
 #include "rr/type_of.hpp"
+#include "rr/visibility.hpp"
 
 /// How the array forms of rr/array.hpp travel.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// What an array consists of: numbers, or items of a pod or namedarray.
 struct ItemType {

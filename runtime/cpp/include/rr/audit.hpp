@@ -11,9 +11,10 @@
 #include <utility>
 
 #include "rr/node_id.hpp"
+#include "rr/visibility.hpp"
 
 /// Who did what with the services of a node (docs/howto/access.md).
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// What has happened.
 enum class AuditKind : std::uint8_t {

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "rr/node_id.hpp"
+#include "rr/visibility.hpp"
 
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// A certificate that an authority has issued.
 struct IssuedCertificate {

@@ -7,7 +7,9 @@
 #include <span>
 #include <utility>
 
-namespace rr {
+#include "rr/visibility.hpp"
+
+namespace RR_VISIBLE rr {
 
 /// Memory that several values keep alive together: a receive buffer that arrays are slices of, or
 /// a sent array's owner. Counts references by itself, so that a handle is one pointer.

@@ -9,7 +9,9 @@
 #include <type_traits>
 #include <utility>
 
-namespace rr {
+#include "rr/visibility.hpp"
+
+namespace RR_VISIBLE rr {
 
 /// How long one call may take, and what ends it before its answer comes. The last parameter of
 /// members that call the other side, and the one before the token of their asynchronous forms:

@@ -8,9 +8,10 @@
 
 #include "rr/definition.hpp"
 #include "rr/stub.hpp"
+#include "rr/visibility.hpp"
 
 /// Callbacks: functions of a client that the service calls (07, section 12).
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// Reads the parameters of a callback and calls the program's function. Made by Callback::set.
 class CallbackFunction {

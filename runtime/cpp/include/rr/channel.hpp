@@ -12,9 +12,10 @@
 
 #include "rr/buffer.hpp"
 #include "rr/url.hpp"
+#include "rr/visibility.hpp"
 
 /// Custom transports between nodes; docs/howto/channels.md has an example.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// What a channel is like.
 struct ChannelTraits {

@@ -16,13 +16,14 @@
 #include "rr/node_id.hpp"
 #include "rr/stub.hpp"
 #include "rr/varvalue.hpp"
+#include "rr/visibility.hpp"
 
 /// The client's side of a connected service.
-namespace rr {
-
-namespace client {
+namespace rr::client {
 class DefinitionReader;
-}
+}  // namespace rr::client
+
+namespace RR_VISIBLE rr {
 
 /// How to connect.
 struct ConnectOptions {

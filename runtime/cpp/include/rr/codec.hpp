@@ -9,11 +9,12 @@
 #include "rr/buffer.hpp"
 #include "rr/reader.hpp"
 #include "rr/type.hpp"
+#include "rr/visibility.hpp"
 #include "rr/wire.hpp"
 #include "rr/writer.hpp"
 
 /// Values to bytes and back without a node: one element of the wire, for files, logs and tests.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 class TypeRegistry;
 

@@ -4,9 +4,10 @@
 #include <complex>
 
 #include "rr/type.hpp"
+#include "rr/visibility.hpp"
 
 /// cdouble and csingle: real part, then imaginary part (03, section 4).
-namespace rr {
+namespace RR_VISIBLE rr {
 
 template <>
 inline constexpr ElementType number_of<std::complex<double>> = ElementType::cdouble;

@@ -13,9 +13,10 @@
 #include <vector>
 
 #include "rr/type_of.hpp"
+#include "rr/visibility.hpp"
 
 /// What may be null, and the containers.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// Like std::optional, but on the heap, so that a struct may contain itself. Copies are deep. `T`
 /// may be incomplete where a Recursive<T> is declared.

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <span>
 
-namespace rr {
+#include "rr/visibility.hpp"
+
+namespace RR_VISIBLE rr {
 
 /// CRC-32 with the polynomial 0x04C11DB7, reflected, from and to all ones: that of IEEE 802.3.
 /// `sum` is that of the bytes before, 0 for none. Allocates nothing.

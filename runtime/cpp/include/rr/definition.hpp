@@ -11,10 +11,11 @@
 #include "rr/error.hpp"
 #include "rr/holding.hpp"
 #include "rr/type.hpp"
+#include "rr/visibility.hpp"
 
 /// What generated code says about its definition: constant tables, one of each per definition,
 /// object and member. The runtime drives calls from them.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 class Stub;
 struct Definition;

@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "rr/visibility.hpp"
+
 /// What a client does with the definitions that a service sends it.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// What a client takes of them. Beyond a limit connecting, or finding an object, fails with
 /// buffer_limit_violation; after the time with request_timeout.

@@ -17,14 +17,15 @@
 #include "rr/node_id.hpp"
 #include "rr/service_filter.hpp"
 #include "rr/stub.hpp"
+#include "rr/visibility.hpp"
 
 /// Finding other nodes and their services, and being found (05).
-namespace rr {
-
-namespace discovery {
+namespace rr::discovery {
 class NodeDiscovery;
 class ServiceInfos;
-}  // namespace discovery
+}  // namespace rr::discovery
+
+namespace RR_VISIBLE rr {
 
 /// Where the packets of discovery go and are listened to (05, section 1).
 struct DiscoveryNetwork {

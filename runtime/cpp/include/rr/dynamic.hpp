@@ -22,6 +22,7 @@
 #include "rr/node.hpp"
 #include "rr/pipes.hpp"
 #include "rr/subscription.hpp"
+#include "rr/visibility.hpp"
 #include "rr/wires.hpp"
 
 /// A client that needs no generated code: members by name, with values of types that are known at
@@ -36,7 +37,8 @@
 /// (docs/explanation/threads.md). Everything throws rr::Error: member_not_found and
 /// member_format_mismatch for a name that is no such member, data_type_mismatch for a value that
 /// does not fit, all naming the member and the type that is expected, before anything is sent.
-namespace rr::dynamic {
+namespace RR_VISIBLE rr {
+namespace dynamic {
 
 class DynamicStub;
 struct ObjectTable;
@@ -322,4 +324,5 @@ ServiceSubscription subscribe_types(Node& node, std::vector<std::string> types,
 /// varvalue holds.
 VarValue to_varvalue(const Value& value);
 
-}  // namespace rr::dynamic
+}  // namespace dynamic
+}  // namespace rr

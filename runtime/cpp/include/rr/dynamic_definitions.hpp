@@ -9,12 +9,14 @@
 
 #include "rr/definition.hpp"
 #include "rr/dynamic_value.hpp"
+#include "rr/visibility.hpp"
 
-namespace rr {
+namespace RR_VISIBLE rr {
 class TypeRegistry;
 }
 
-namespace rr::dynamic {
+namespace RR_VISIBLE rr {
+namespace dynamic {
 
 class Tables;
 
@@ -89,4 +91,5 @@ class Definitions {
   std::shared_ptr<const Tables> tables_;
 };
 
-}  // namespace rr::dynamic
+}  // namespace dynamic
+}  // namespace rr

@@ -14,6 +14,7 @@
 
 #include "rr/dynamic.hpp"
 #include "rr/service.hpp"
+#include "rr/visibility.hpp"
 
 /// A service that needs no generated code: objects from the text of a definition, whose members are
 /// functions of the program that get and give values of types that are known at run time only.
@@ -35,7 +36,8 @@
 ///
 /// All throw rr::Error: member_not_found and member_format_mismatch for a name that is no such
 /// member, data_type_mismatch for a value that does not fit.
-namespace rr::dynamic {
+namespace RR_VISIBLE rr {
+namespace dynamic {
 
 class DynamicSkeleton;
 
@@ -287,4 +289,5 @@ Service register_service(Node& node, std::string name, const ServedObject& root,
                          ServiceOptions options = {},
                          const std::optional<std::set<std::string>>& extra = {});
 
-}  // namespace rr::dynamic
+}  // namespace dynamic
+}  // namespace rr

@@ -17,10 +17,12 @@
 #include "rr/array.hpp"
 #include "rr/complex.hpp"
 #include "rr/type.hpp"
+#include "rr/visibility.hpp"
 
 /// Values whose types are known at run time only (03), and those types. docs/howto/dynamic.md shows
 /// how they are used.
-namespace rr::dynamic {
+namespace RR_VISIBLE rr {
+namespace dynamic {
 
 class Value;
 class Tables;
@@ -274,4 +276,5 @@ class Value {
   std::shared_ptr<const Content> content_;
 };
 
-}  // namespace rr::dynamic
+}  // namespace dynamic
+}  // namespace rr

@@ -7,7 +7,9 @@
 #include <string>
 #include <string_view>
 
-namespace rr {
+#include "rr/visibility.hpp"
+
+namespace RR_VISIBLE rr {
 
 class VarValue;
 

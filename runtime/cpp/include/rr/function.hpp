@@ -6,7 +6,9 @@
 #include <type_traits>
 #include <utility>
 
-namespace rr {
+#include "rr/visibility.hpp"
+
+namespace RR_VISIBLE rr {
 
 /// A function object by its signature; see Function<R(Arguments...)>.
 template <class Signature>

@@ -13,10 +13,11 @@
 #include "rr/definition.hpp"
 #include "rr/sequence.hpp"
 #include "rr/stub.hpp"
+#include "rr/visibility.hpp"
 
 /// Generators: functions that give, or take, values one after the other (07, section 8). What a
 /// service returns is in rr/sequence.hpp.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// Where a step of a generator leaves its result.
 class GeneratorStep : public Completion {

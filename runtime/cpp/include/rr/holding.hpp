@@ -3,7 +3,9 @@
 
 #include <memory>
 
-namespace rr {
+#include "rr/visibility.hpp"
+
+namespace RR_VISIBLE rr {
 
 /// How values of one C++ type are kept where the type is not known: what arrives on pipes, wires
 /// and callbacks is decoded into a value of its own, which is then handed on without a copy.

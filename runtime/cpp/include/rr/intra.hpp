@@ -9,8 +9,9 @@
 
 #include "rr/channel.hpp"
 #include "rr/node_id.hpp"
+#include "rr/visibility.hpp"
 
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// Where nodes of one process find each other by `rr+intra` (04, section 1). A message is laid out
 /// once, in memory that the other node takes over: its arrays are that memory, and nothing passes

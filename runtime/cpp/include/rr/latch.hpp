@@ -8,8 +8,9 @@
 #include <string_view>
 
 #include "rr/error.hpp"
+#include "rr/visibility.hpp"
 
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// Remembers the first thing that went wrong while a message is read or written. The layers that
 /// touch bytes never throw; whoever started them looks here at the end.

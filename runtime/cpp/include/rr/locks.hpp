@@ -7,9 +7,10 @@
 
 #include "rr/call.hpp"
 #include "rr/stub.hpp"
+#include "rr/visibility.hpp"
 
 /// Keeping others from an object of a service (07, section 6). All throw rr::Error.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// For whom an object is locked: `user`, all sessions of the user, or `session`, this session
 /// alone.

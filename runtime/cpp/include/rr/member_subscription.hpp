@@ -17,10 +17,15 @@
 #include "rr/node_id.hpp"
 #include "rr/stub.hpp"
 #include "rr/time_spec.hpp"
+#include "rr/visibility.hpp"
 
 /// Members of all services of a subscription, which go on when a service comes back. See
 /// rr/subscription.hpp.
-namespace rr {
+namespace rr::subscription {
+class Links;
+}  // namespace rr::subscription
+
+namespace RR_VISIBLE rr {
 
 /// Which client of a subscription: the node and the name of the service that it is connected to.
 struct SubscriptionClientId {
@@ -29,10 +34,6 @@ struct SubscriptionClientId {
   /// Ordered by node, then by service.
   auto operator<=>(const SubscriptionClientId&) const = default;
 };
-
-namespace subscription {
-class Links;
-}  // namespace subscription
 
 /// What the three kinds have in common. Copies are handles of the same subscription, which lasts
 /// until it is closed or the ServiceSubscription is, whether or not somebody holds a handle. Any

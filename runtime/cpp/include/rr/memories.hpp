@@ -15,10 +15,11 @@
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
 #include "rr/stub.hpp"
+#include "rr/visibility.hpp"
 
 /// Memories: arrays of which parts are read and written (07, section 13). Positions and counts are
 /// in items; of several dimensions the first is the one whose items lie side by side.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// What a service offers as a memory, without its type: generated code hands it to the runtime.
 /// Calls come on threads of the node and may overlap.

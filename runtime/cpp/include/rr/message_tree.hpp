@@ -9,11 +9,12 @@
 #include <vector>
 
 #include "rr/node_id.hpp"
+#include "rr/visibility.hpp"
 #include "rr/wire.hpp"
 
 /// Whole messages as plain values that own everything, each field of the wire kept: for recorders,
 /// debuggers and replays. Programs that only want the values use the readers, which copy nothing.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// One element. In format 4 `flags` say which fields are on the wire (02, section 4); a code stands
 /// for the text beside it, which is then not on the wire unless its own flag is set too. Fields

@@ -19,8 +19,9 @@
 #include "rr/skeleton.hpp"
 #include "rr/stub.hpp"
 #include "rr/subscription.hpp"
+#include "rr/visibility.hpp"
 
-namespace rr {
+namespace RR_VISIBLE rr {
 
 class Discovery;
 class ServiceInfoSubscription;

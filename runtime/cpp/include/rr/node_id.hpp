@@ -8,7 +8,9 @@
 #include <string>
 #include <string_view>
 
-namespace rr {
+#include "rr/visibility.hpp"
+
+namespace RR_VISIBLE rr {
 
 /// Identity of a node: a UUID, in text order. All zero means any node, or unknown.
 struct NodeId {

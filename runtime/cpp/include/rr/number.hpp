@@ -7,10 +7,11 @@
 #include <type_traits>
 
 #include "rr/complex.hpp"
+#include "rr/visibility.hpp"
 #include "rr/wire.hpp"
 
 /// Numbers whose type is known at run time.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// Numbers, complex ones and bool.
 constexpr bool is_number(ElementType type) {

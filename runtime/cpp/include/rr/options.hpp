@@ -15,9 +15,10 @@
 #include "rr/audit.hpp"
 #include "rr/definition_check.hpp"
 #include "rr/node_id.hpp"
+#include "rr/visibility.hpp"
 #include "rr/wire.hpp"
 
-namespace rr {
+namespace RR_VISIBLE rr {
 
 class IntraSpace;
 class MessageChannel;

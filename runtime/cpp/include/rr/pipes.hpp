@@ -13,16 +13,17 @@
 #include "rr/function.hpp"
 #include "rr/holding.hpp"
 #include "rr/stub.hpp"
+#include "rr/visibility.hpp"
 
 /// Pipes: packets in order, in both directions (07, section 11). A pipe has any number of endpoints
 /// for each client, told apart by an index.
-namespace rr {
+namespace rr::service {
+class PipePlace;
+}  // namespace rr::service
+
+namespace RR_VISIBLE rr {
 
 class Skeleton;
-
-namespace service {
-class PipePlace;
-}
 
 /// What becomes of a packet for which a queue has no room.
 enum class WhenFull : std::uint8_t {

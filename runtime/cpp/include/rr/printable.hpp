@@ -5,8 +5,10 @@
 #include <string>
 #include <string_view>
 
+#include "rr/visibility.hpp"
+
 /// Text of another node, for terminals and logs.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// What becomes of line breaks and tabs.
 enum class LineBreaks : bool {

@@ -13,10 +13,11 @@
 
 #include "rr/buffer.hpp"
 #include "rr/latch.hpp"
+#include "rr/visibility.hpp"
 #include "rr/writer.hpp"
 
 /// Reading messages without allocating: everything here is a view of the received bytes.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 class TypeRegistry;
 

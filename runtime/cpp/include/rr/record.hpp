@@ -10,9 +10,10 @@
 
 #include "rr/array_type.hpp"
 #include "rr/type_of.hpp"
+#include "rr/visibility.hpp"
 
 /// Structs, pods and namedarrays of a definition.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// How values are made and ended whose C++ type is known at run time only.
 struct ValueOperations {

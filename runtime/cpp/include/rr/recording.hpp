@@ -11,9 +11,10 @@
 #include <vector>
 
 #include "rr/tap.hpp"
+#include "rr/visibility.hpp"
 
 /// Reads what a Recorder has written (docs/howto/recording.md).
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// A message that was sent or received.
 struct RecordedMessage {

@@ -7,8 +7,9 @@
 
 #include "rr/definition.hpp"
 #include "rr/record.hpp"
+#include "rr/visibility.hpp"
 
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// The definitions that a program knows, and what is in them, by qualified name. Built once, then
 /// read by any number of threads. Definitions are constants of generated code and outlive it.

@@ -9,9 +9,10 @@
 #include <vector>
 
 #include "rr/users.hpp"
+#include "rr/visibility.hpp"
 
 /// What each user may do with a service (docs/howto/access.md).
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// What can be done with a member or an object. Each is a bit of a RightSet.
 enum class Right : std::uint16_t {

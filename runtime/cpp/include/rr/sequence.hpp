@@ -10,9 +10,10 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/visibility.hpp"
 
 /// What generator functions of a service return (07, section 8).
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// What a service gives for one call of a generator function, without its types. Steps come one at
 /// a time, on a thread of the node, never under a lock. Where there are types derive from

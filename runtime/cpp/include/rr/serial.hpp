@@ -7,7 +7,9 @@
 #include <memory>
 #include <string>
 
-namespace rr {
+#include "rr/visibility.hpp"
+
+namespace RR_VISIBLE rr {
 
 class MessageChannel;
 class Node;

@@ -17,9 +17,10 @@
 #include "rr/timer.hpp"
 #include "rr/users.hpp"
 #include "rr/varvalue.hpp"
+#include "rr/visibility.hpp"
 
 /// The service's side: what a node offers under a name.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// A client that is connected to a service.
 struct ServiceClient {

@@ -10,9 +10,10 @@
 
 #include "rr/node_id.hpp"
 #include "rr/varvalue.hpp"
+#include "rr/visibility.hpp"
 
 /// Which services a subscription connects to (05, section 8).
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// A service that may be connected to, by what is known of it.
 struct FoundService {

@@ -11,9 +11,10 @@
 #include "rr/discovery.hpp"
 #include "rr/node.hpp"
 #include "rr/options.hpp"
+#include "rr/visibility.hpp"
 
 /// A node that is set up by its command line and environment, as users know it.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// What a set-up starts. Each has a flag `--robotraconteur-...` named as itself, with `-` for `_`,
 /// and a variable `ROBOTRACONTEUR_...`, in capitals; flags win over variables, these over what the

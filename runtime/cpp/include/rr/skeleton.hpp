@@ -20,9 +20,10 @@
 #include "rr/stub.hpp"
 #include "rr/type.hpp"
 #include "rr/varvalue.hpp"
+#include "rr/visibility.hpp"
 
 /// What generated skeletons stand on: the service's side of an object.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 class ServiceContext;
 class Skeleton;

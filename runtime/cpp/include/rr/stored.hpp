@@ -9,9 +9,10 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/visibility.hpp"
 
 /// What generated Default classes stand on.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// A property's value. May be read and set from any threads at once.
 template <class T>

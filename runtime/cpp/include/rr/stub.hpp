@@ -17,9 +17,10 @@
 #include "rr/error.hpp"
 #include "rr/type.hpp"
 #include "rr/varvalue.hpp"
+#include "rr/visibility.hpp"
 
 /// What generated stubs stand on: the client's side of an object.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// Number of the contract between generated code and this runtime. Generated headers refuse
 /// another.

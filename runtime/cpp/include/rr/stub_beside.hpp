@@ -6,8 +6,9 @@
 #include "rr/client.hpp"
 #include "rr/definition.hpp"
 #include "rr/stub.hpp"
+#include "rr/visibility.hpp"
 
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// One more stub for the object of another, in the same session: of generated code for an object of
 /// rr::dynamic, say. Its time-out is the other's; its events and callbacks are its own. The object

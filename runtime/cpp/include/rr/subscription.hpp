@@ -18,13 +18,14 @@
 #include "rr/member_subscription.hpp"
 #include "rr/service_filter.hpp"
 #include "rr/stub.hpp"
+#include "rr/visibility.hpp"
 
 /// Subscriptions: connections to services that come and go (07, section 15; 05, section 8).
-namespace rr {
-
-namespace subscription {
+namespace rr::subscription {
 class Services;
-}  // namespace subscription
+}  // namespace rr::subscription
+
+namespace RR_VISIBLE rr {
 
 /// How a subscription connects.
 struct SubscriptionOptions {

@@ -11,6 +11,7 @@
 
 #include "rr/error.hpp"
 #include "rr/node_id.hpp"
+#include "rr/visibility.hpp"
 #include "rr/wire.hpp"
 #include "rr/writer.hpp"
 
@@ -21,7 +22,7 @@
 ///
 /// What is written is read again with rr/recording.hpp, `robdef inspect` and `robdef replay`. The
 /// file is described in docs/howto/recording.md.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// Which way a message went: `to_service`, from who opened the connection to who accepted it, or
 /// `to_client`, back.

@@ -4,8 +4,9 @@
 #include <cstdint>
 
 #include "rr/type.hpp"
+#include "rr/visibility.hpp"
 
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// The one struct that every node knows without a definition: time since 1970-01-01 UTC (03,
 /// section 6).

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "rr/time_spec.hpp"
+#include "rr/visibility.hpp"
 
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// A value and the moment it was sent, by the sender's clock.
 template <class T>

@@ -10,9 +10,10 @@
 
 #include "rr/node_id.hpp"
 #include "rr/options.hpp"
+#include "rr/visibility.hpp"
 
 /// Functions that a node calls at their time.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// A function that is called again and again, or once: see NodeContext. Ends with cancel(), when it
 /// is destroyed, or when its node is shut down.

@@ -7,11 +7,12 @@
 #include <type_traits>
 
 #include "rr/reader.hpp"
+#include "rr/visibility.hpp"
 #include "rr/wire.hpp"
 #include "rr/writer.hpp"
 
 /// How one C++ type is found to travel. The types themselves are in rr/type.hpp.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// Reads and writes values of one C++ type. Constants without state; compared by address.
 class Type {

@@ -6,8 +6,9 @@
 #include <string_view>
 
 #include "rr/node_id.hpp"
+#include "rr/visibility.hpp"
 
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// Where a service is: `rr+tcp://host:port/?service=name[&nodeid=...][&nodename=...]`, or in the
 /// form of 2011 `tcp://host:port/<node>/<service>` (04, section 1).

@@ -10,9 +10,10 @@
 
 #include "rr/node_id.hpp"
 #include "rr/varvalue.hpp"
+#include "rr/visibility.hpp"
 
 /// Who may use a service (07, section 6).
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// The privilege to lock objects.
 inline constexpr std::string_view lock_privilege = "objectlock";

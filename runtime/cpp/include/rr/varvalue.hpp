@@ -12,8 +12,9 @@
 #include "rr/buffer.hpp"
 #include "rr/error.hpp"
 #include "rr/type.hpp"
+#include "rr/visibility.hpp"
 
-namespace rr {
+namespace RR_VISIBLE rr {
 
 class VarValue;
 /// What containers inside a varvalue hold, whatever their sender's item type was (03, section 8).

@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <string_view>
 
+#include "rr/visibility.hpp"
+
 /// Numbers of the wire protocol (01 section 5, README of the specification).
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// What an element holds (01, section 5).
 enum class ElementType : std::uint16_t {

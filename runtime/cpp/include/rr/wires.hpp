@@ -13,10 +13,11 @@
 #include "rr/holding.hpp"
 #include "rr/stub.hpp"
 #include "rr/timed.hpp"
+#include "rr/visibility.hpp"
 
 /// Wires: values of which only the newest counts (07, section 13). The client's "in" is what the
 /// service sends, its "out" what it sends itself; the service's side uses the same words.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 class Skeleton;
 

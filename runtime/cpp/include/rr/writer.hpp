@@ -14,9 +14,10 @@
 #include "rr/buffer.hpp"
 #include "rr/latch.hpp"
 #include "rr/node_id.hpp"
+#include "rr/visibility.hpp"
 #include "rr/wire.hpp"
 
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// How an element is called: a name, or a number (list items, int32 keys, pod items), which format
 /// 2 spells as decimal text.

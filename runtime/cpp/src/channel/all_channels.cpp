@@ -4,6 +4,7 @@
 #include "rr/error.hpp"
 #include "rr/intra.hpp"
 #include "runtime/cpp/src/channel/channel.hpp"
+#include "runtime/cpp/src/channel/components.hpp"
 
 namespace rr::channel {
 
@@ -30,6 +31,8 @@ std::map<std::string, std::shared_ptr<Channel>> all_channels(const ChannelContex
       throw Error(ErrorCode::invalid_argument, "`" + scheme + "` cannot be given to a channel");
     }
   }
+  std::erase_if(channels,
+                [](const auto& channel) { return !missing_component(channel.first).empty(); });
   return channels;
 }
 

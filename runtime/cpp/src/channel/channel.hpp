@@ -39,7 +39,7 @@ struct ChannelContext {
   std::shared_ptr<const NodeOptions> options;  ///< with the id filled in
   std::shared_ptr<Admission> accepted;
   Pools pools{};
-  std::shared_ptr<const Tls> tls{};           ///< always, in a node
+  std::shared_ptr<const Tls> tls{};           ///< null where the program has no TLS
   std::shared_ptr<WebSockets> web_sockets{};  ///< likewise
 };
 

@@ -6,6 +6,8 @@
 #include <span>
 #include <string>
 
+#include "rr/visibility.hpp"
+
 /// Files that hold secrets, or that others rely on: nobody else can have put them there, and each
 /// is written whole or not at all.
 namespace rr::channel {
@@ -17,15 +19,15 @@ inline constexpr mode_t public_file = 0644;
 /// Writes a file in place of an earlier one: beside it, with these rights, and on the disk before
 /// it takes its name. A link of that name is replaced, not followed. Throws rr::Error
 /// (invalid_configuration); so do the others.
-void replace_file(const std::string& path, std::span<const char> bytes, mode_t mode);
+RR_INSIDE void replace_file(const std::string& path, std::span<const char> bytes, mode_t mode);
 /// Writes a file that must not be there yet. Throws invalid_operation when it is.
-void create_file(const std::string& path, std::span<const char> bytes, mode_t mode);
+RR_INSIDE void create_file(const std::string& path, std::span<const char> bytes, mode_t mode);
 /// Makes a folder for its user alone, those above it as usual. One that is there already must not
 /// be writable by others.
-void make_private_folder(const std::string& path);
+RR_INSIDE void make_private_folder(const std::string& path);
 
 /// Keeps other processes and threads out of a folder until it is released.
-class FolderLock {
+class RR_INSIDE FolderLock {
  public:
   explicit FolderLock(const std::string& folder);
   ~FolderLock();

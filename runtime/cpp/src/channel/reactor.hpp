@@ -16,6 +16,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "rr/visibility.hpp"
 #include "runtime/cpp/src/channel/flusher.hpp"
 #include "runtime/cpp/src/channel/late_work.hpp"
 #include "runtime/cpp/src/channel/thread_share.hpp"
@@ -56,7 +57,7 @@ class Pollable {
 ///
 /// A thread that has found one busy connection alone may stay with it, in receive calls that block,
 /// which are a third cheaper than epoll's; somebody else polls from then on.
-class Reactor final : public Watcher {
+class RR_INSIDE Reactor final : public Watcher {
  public:
   /// What a program, or a test, says of the threads.
   struct Terms {

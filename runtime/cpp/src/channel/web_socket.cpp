@@ -13,14 +13,10 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/channel/components.hpp"
 #include "runtime/cpp/src/channel/memory_stream.hpp"
 
 namespace rr::channel {
-
-// Timers of the library, which are never started, are registered here.
-struct WebSockets::Home {
-  boost::asio::io_context context;
-};
 
 namespace {
 
@@ -34,6 +30,14 @@ constexpr const char* protocol_name = "robotraconteur.robotraconteur.com";
 constexpr std::uint32_t longest_header = 8192;
 constexpr std::size_t read_size = 16 * 1024;
 
+// What all web sockets of a node live in.
+struct Home {
+  explicit Home(std::vector<std::string> pages) : origins(std::move(pages)) {}
+
+  const std::vector<std::string> origins;
+  asio::io_context context{};  // where timers of the library, which are never started, register
+};
+
 using Stream = websocket::stream<MemoryStream, false>;
 using Request = http::request<http::empty_body>;
 
@@ -44,10 +48,10 @@ std::span<const std::byte> bytes_of(std::string_view text) {
 // What both sides have in common: frames.
 class WebSocketLayer : public Layer {
  public:
-  explicit WebSocketLayer(std::shared_ptr<WebSockets> owner, WebSockets::Home& home)
-      : owner_(std::move(owner)),
-        executor_(home.context, ends_),
-        stream_(std::in_place, home.context, ends_) {
+  explicit WebSocketLayer(std::shared_ptr<Home> home)
+      : home_(std::move(home)),
+        executor_(home_->context, ends_),
+        stream_(std::in_place, home_->context, ends_) {
     stream_->binary(true);
     stream_->auto_fragment(false);
     stream_->read_message_max(
@@ -117,7 +121,7 @@ class WebSocketLayer : public Layer {
     stream_->async_read_some(asio::buffer(buffer_), bound(handle));
   }
 
-  const std::shared_ptr<WebSockets> owner_;  // of what the stream lives in
+  const std::shared_ptr<Home> home_;
   MemoryEnds ends_;
   const MemoryExecutor executor_;
   std::optional<Stream> stream_;
@@ -130,8 +134,8 @@ class WebSocketLayer : public Layer {
 
 class WebSocketClient final : public WebSocketLayer {
  public:
-  WebSocketClient(std::shared_ptr<WebSockets> owner, WebSockets::Home& home, const Url& url)
-      : WebSocketLayer(std::move(owner), home),
+  WebSocketClient(std::shared_ptr<Home> home, const Url& url)
+      : WebSocketLayer(std::move(home)),
         host_((url.host.find(':') == std::string::npos ? url.host : "[" + url.host + "]") + ":" +
               std::to_string(url.port)),
         target_((url.path.empty() ? "/" : url.path) + (url.query.empty() ? "" : "?" + url.query)) {
@@ -170,9 +174,8 @@ class WebSocketClient final : public WebSocketLayer {
 
 class WebSocketServer final : public WebSocketLayer {
  public:
-  WebSocketServer(std::shared_ptr<WebSockets> owner, WebSockets::Home& home,
-                  const std::vector<std::string>& origins)
-      : WebSocketLayer(std::move(owner), home), origins_(origins) {
+  explicit WebSocketServer(const std::shared_ptr<Home>& home)
+      : WebSocketLayer(home), origins_(home->origins) {
     parser_.header_limit(longest_header);
   }
 
@@ -261,18 +264,26 @@ class WebSocketServer final : public WebSocketLayer {
   Bytes head_;  // of the request, that the parser has not used
 };
 
+class BeastWebSockets final : public WebSockets {
+ public:
+  explicit BeastWebSockets(std::vector<std::string> origins)
+      : home_(std::make_shared<Home>(std::move(origins))) {}
+
+  std::unique_ptr<Layer> make_client(const Url& url) override {
+    return std::make_unique<WebSocketClient>(home_, url);
+  }
+  std::unique_ptr<Layer> make_server() override { return std::make_unique<WebSocketServer>(home_); }
+
+ private:
+  const std::shared_ptr<Home> home_;
+};
+
+std::shared_ptr<WebSockets> make(const WebSocketOptions& options) {
+  return std::make_shared<BeastWebSockets>(allowed_origins(options));
+}
+
 }  // namespace
 
-WebSockets::WebSockets(std::vector<std::string> origins)
-    : origins_(std::move(origins)), home_(std::make_unique<Home>()) {}
-WebSockets::~WebSockets() = default;
-
-std::unique_ptr<Layer> WebSockets::make_client(const Url& url) {
-  return std::make_unique<WebSocketClient>(shared_from_this(), *home_, url);
-}
-
-std::unique_ptr<Layer> WebSockets::make_server() {
-  return std::make_unique<WebSocketServer>(shared_from_this(), *home_, origins_);
-}
-
 }  // namespace rr::channel
+
+const rr::channel::WebComponent rr_component_web = {&rr::channel::make};

@@ -13,23 +13,15 @@
 namespace rr::channel {
 
 /// Web sockets around streams (04, sections 2.2 and 2.3), those of one node. Any thread may use it.
-class WebSockets : public std::enable_shared_from_this<WebSockets> {
+/// See components.hpp for who makes one.
+class WebSockets {
  public:
-  /// Pages of these origins may connect, and what says no origin.
-  explicit WebSockets(std::vector<std::string> origins);
-  ~WebSockets();
-  WebSockets(const WebSockets&) = delete;
-  WebSockets& operator=(const WebSockets&) = delete;
+  virtual ~WebSockets() = default;
 
   /// As the client of a URL.
-  [[nodiscard]] std::unique_ptr<Layer> make_client(const Url& url);
-  [[nodiscard]] std::unique_ptr<Layer> make_server();
-
-  struct Home;  // what the protocol's library wants to live in
-
- private:
-  const std::vector<std::string> origins_;
-  const std::unique_ptr<Home> home_;
+  [[nodiscard]] virtual std::unique_ptr<Layer> make_client(const Url& url) = 0;
+  /// For pages of the origins that the options allow, and what says no origin.
+  [[nodiscard]] virtual std::unique_ptr<Layer> make_server() = 0;
 };
 
 /// The origins that options allow.

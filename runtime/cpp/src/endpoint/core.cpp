@@ -9,8 +9,7 @@
 #include "rr/printable.hpp"
 #include "rr/tap.hpp"
 #include "rr/url.hpp"
-#include "runtime/cpp/src/channel/tls.hpp"
-#include "runtime/cpp/src/channel/web_socket.hpp"
+#include "runtime/cpp/src/channel/components.hpp"
 #include "runtime/cpp/src/endpoint/timer.hpp"
 
 namespace rr::endpoint {
@@ -126,9 +125,8 @@ Core::Core(NodeOptions options)
                                                         channel::Milliseconds(longest_round));
   rounds_ = std::make_shared<Rounds>(reactor_, period);
   channel::watch_pools(pools_, reactor_);
-  tls_ = std::make_shared<const channel::Tls>(options_->tls, options_->id, reactor_, options_->log);
-  web_sockets_ =
-      std::make_shared<channel::WebSockets>(channel::allowed_origins(options_->web_socket));
+  tls_ = channel::make_tls(options_->tls, options_->id, reactor_, options_->log);
+  web_sockets_ = channel::make_web_sockets(options_->web_socket);
   channels_ = channel::all_channels(context());
 }
 
@@ -208,9 +206,11 @@ channel::Channel& Core::channel(const std::string& scheme) {
   const std::lock_guard lock(mutex_);
   const auto found = channels_.find(scheme);
   if (found == channels_.end()) {
+    const std::string component = channel::missing_component(scheme);
     throw Error(ErrorCode::invalid_argument,
                 "there is no channel for `" + scheme + "://`" +
-                    (scheme == "rr+serial" ? ": give the node rr::serial_channel()" : ""));
+                    (scheme == "rr+serial" ? ": give the node rr::serial_channel()" : "") +
+                    (component.empty() ? "" : ": link the program with " + component));
   }
   return *found->second;
 }

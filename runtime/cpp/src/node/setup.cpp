@@ -10,8 +10,8 @@
 
 #include "rr/error.hpp"
 #include "rr/wire.hpp"
+#include "runtime/cpp/src/channel/components.hpp"
 #include "runtime/cpp/src/channel/directories.hpp"
-#include "runtime/cpp/src/channel/tls.hpp"
 #include "runtime/cpp/src/node/kept_node_id.hpp"
 
 namespace rr {

@@ -14,8 +14,8 @@
 
 #include "rr/authority.hpp"
 #include "rr/message_tree.hpp"
+#include "runtime/cpp/src/channel/openssl_tls.hpp"
 #include "runtime/cpp/src/channel/testing/host_proxy.hpp"
-#include "runtime/cpp/src/channel/tls.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 #include "runtime/cpp/src/node/testing/raw_peer.hpp"
 #include "runtime/cpp/src/replay/stream.hpp"
@@ -232,7 +232,7 @@ class CertifiedClient : public ::testing::Test {
   }
   // Connects with a certificate, and says that it is `said`.
   void connect_as(const NodeId& certified, const NodeId& said) {
-    const channel::Tls tls(certificate_of(certified), certified);
+    const channel::OpenSslTls tls(certificate_of(certified), certified);
     Stream stream = Stream::connect("127.0.0.1", port);
     stream.send(write_tree(request(EntryType::stream_op, "STARTTLS", {})));
     replay::Bytes bytes;

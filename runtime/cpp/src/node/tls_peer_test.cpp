@@ -13,7 +13,7 @@
 
 #include "rr/authority.hpp"
 #include "rr/message_tree.hpp"
-#include "runtime/cpp/src/channel/tls.hpp"
+#include "runtime/cpp/src/channel/openssl_tls.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 #include "runtime/cpp/src/replay/stream.hpp"
 
@@ -89,7 +89,7 @@ class TlsPeer : public ::testing::Test {
   }
   // Encrypts as a server with the certificate of a node.
   void encrypt(Stream& stream, const NodeId& as) const {
-    const channel::Tls tls(certificate_of(as), as);
+    const channel::OpenSslTls tls(certificate_of(as), as);
     stream.put(tls.make_server(false), limit);
   }
 
@@ -192,7 +192,7 @@ TEST_F(TlsClientPeer, InOnePieceWithTheRequestForTlsIsNotServedEither) {
 
 TEST_F(TlsClientPeer, ThatSaysItIsAnotherThanItsCertificateIsNotServed) {
   const NodeId certified = NodeId::random();
-  const channel::Tls tls(certificate_of(certified), certified);
+  const channel::OpenSslTls tls(certificate_of(certified), certified);
   MessageTree request = operation(EntryType::stream_op, "STARTTLS", {});
   // A client with a certificate says so, or it is not asked for it.
   request.entries[0].elements.resize(1);

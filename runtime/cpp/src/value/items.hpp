@@ -7,6 +7,7 @@
 
 #include "rr/array_type.hpp"
 #include "rr/record.hpp"
+#include "rr/visibility.hpp"
 
 /// What all array forms, and single pods and namedarrays, have in common: a number of items in
 /// memory, and the element that they travel in (03, sections 4, 9 and 10).
@@ -27,7 +28,7 @@ static_assert(sizeof(AnyMultiArray) == sizeof(MultiArray<double>));
 inline constexpr std::size_t allocation_cost = 24;
 
 /// Fails the decoder for an element of another type than `expected`: null is an error of its own.
-bool fail_type(Decoder& decoder, const Element& element);
+RR_INSIDE bool fail_type(Decoder& decoder, const Element& element);
 
 /// What elements of such items are: the number type, or pod_array, or namedarray_array.
 ElementType element_type(const ItemType& item);
@@ -36,8 +37,8 @@ ElementType multi_element_type(const ItemType& item);
 
 /// Writes the element of an array of `count` items. With an owner, or when large, they may be
 /// attached instead of copied.
-void write_items(Writer& writer, const ElementName& name, const ItemType& item, const void* items,
-                 std::size_t count, const MemoryRef& owner);
+RR_INSIDE void write_items(Writer& writer, const ElementName& name, const ItemType& item,
+                           const void* items, std::size_t count, const MemoryRef& owner);
 
 /// An element of an array whose type was found to be right.
 struct ReceivedItems {

@@ -7,7 +7,7 @@ namespace Robdef.Runtime.Native;
 /// <summary>The functions of rr.h that are used. What they do and own is said there.</summary>
 internal static unsafe partial class Functions
 {
-    private const string Library = "robdef_runtime";
+    private const string Library = "robdef_c";
     private const uint Version = 0x00010004;
 
     static Functions()

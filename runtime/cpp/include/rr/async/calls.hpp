@@ -10,9 +10,10 @@
 #include "rr/async/completion.hpp"
 #include "rr/skeleton.hpp"
 #include "rr/stub.hpp"
+#include "rr/visibility.hpp"
 
 /// Properties, functions, objrefs and callbacks; see rr/async.hpp.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// Of the search for an object.
 template <class Handler, class S>

@@ -18,6 +18,7 @@
 
 #include "rr/call.hpp"
 #include "rr/stub.hpp"
+#include "rr/visibility.hpp"
 
 #if BOOST_VERSION >= 107700
 #include <boost/asio/associated_cancellation_slot.hpp>
@@ -26,7 +27,7 @@
 #endif
 
 /// What the asynchronous forms of rr/async.hpp end with.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 #if BOOST_VERSION >= 107700
 /// Ends a call when the cancellation slot of its handler says so, or another stop is requested.

@@ -12,9 +12,10 @@
 #include "rr/client.hpp"
 #include "rr/node.hpp"
 #include "rr/subscription.hpp"
+#include "rr/visibility.hpp"
 
 /// Clients, and those of subscriptions; see rr/async.hpp.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// Of a stub that is waited for.
 template <class Handler, class S>

@@ -10,9 +10,10 @@
 #include "rr/async/completion.hpp"
 #include "rr/generators.hpp"
 #include "rr/stub.hpp"
+#include "rr/visibility.hpp"
 
 /// Generators; see rr/async.hpp.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 /// Of a call that opens a generator.
 template <class Handler, class R, class P>

@@ -11,9 +11,10 @@
 
 #include "rr/async/completion.hpp"
 #include "rr/memories.hpp"
+#include "rr/visibility.hpp"
 
 /// Memories; see rr/async.hpp.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 template <class T>
 template <class Token>

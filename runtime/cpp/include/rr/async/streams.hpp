@@ -8,10 +8,11 @@
 
 #include "rr/async/completion.hpp"
 #include "rr/pipes.hpp"
+#include "rr/visibility.hpp"
 #include "rr/wires.hpp"
 
 /// Wires and pipes; see rr/async.hpp.
-namespace rr {
+namespace RR_VISIBLE rr {
 
 template <class T>
 template <class Token>

@@ -8,8 +8,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "rr/visibility.hpp"
+
 /// Loops of a fixed rate, on the machine's clock or on one that a test moves.
-namespace rr::realtime {
+namespace RR_VISIBLE rr {
+namespace realtime {
 
 /// Times and spans of time.
 using Nanoseconds = std::chrono::nanoseconds;
@@ -147,4 +150,5 @@ struct ThreadRights {
 /// as the system allows.
 ThreadRights become_realtime(int priority);
 
-}  // namespace rr::realtime
+}  // namespace realtime
+}  // namespace rr

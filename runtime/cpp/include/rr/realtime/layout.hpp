@@ -8,9 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include "rr/visibility.hpp"
+
 /// What a group of signals looks like: in memory, where it is a pod, and in a frame, where its
 /// numbers follow each other without gaps, least significant byte first.
-namespace rr::realtime {
+namespace RR_VISIBLE rr {
+namespace realtime {
 
 /// What a signal is made of; numbered as elements on the wire (03, section 2).
 enum class SignalType : std::uint8_t {
@@ -96,4 +99,5 @@ class Layout {
 /// Most bytes of signals in one frame: with its own 44 bytes it fits an Ethernet packet.
 inline constexpr std::size_t largest_payload = 1428;
 
-}  // namespace rr::realtime
+}  // namespace realtime
+}  // namespace rr

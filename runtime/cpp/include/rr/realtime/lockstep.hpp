@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "rr/realtime/cyclic_loop.hpp"
+#include "rr/visibility.hpp"
 
-namespace rr::realtime {
+namespace RR_VISIBLE rr {
+namespace realtime {
 
 /// Several loops in one thread on a simulated clock: always the one that is due first, and of those
 /// that are due at once in the order in which they were added. The same program so always does the
@@ -34,4 +36,5 @@ class Lockstep {
   std::vector<Part> parts_;
 };
 
-}  // namespace rr::realtime
+}  // namespace realtime
+}  // namespace rr

@@ -9,7 +9,10 @@
 #include <span>
 #include <vector>
 
-namespace rr::realtime {
+#include "rr/visibility.hpp"
+
+namespace RR_VISIBLE rr {
+namespace realtime {
 
 /// Positions at sampled times, which a loop follows, and which are replaced while it runs: in one
 /// step, at a chosen sample. There is the old table or the new one, never a mixture.
@@ -76,4 +79,5 @@ class LookupTable {
   std::uint64_t number_ = 0;
 };
 
-}  // namespace rr::realtime
+}  // namespace realtime
+}  // namespace rr

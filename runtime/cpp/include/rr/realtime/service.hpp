@@ -18,11 +18,13 @@
 #include "rr/realtime/signals.hpp"
 #include "rr/realtime/state_bus.hpp"
 #include "rr/type_of.hpp"
+#include "rr/visibility.hpp"
 #include "rr/wires.hpp"
 
 /// A loop's bus as members of an object: wires for its signals, a memory for its lookup table. None
 /// of this runs in the loop's thread, and nothing that clients do makes the loop wait.
-namespace rr::realtime {
+namespace RR_VISIBLE rr {
+namespace realtime {
 
 /// The layout of a pod as its description has it. Throws rr::Error (invalid_argument) for what is
 /// no pod, and for what has no fixed place (`double[6-]`).
@@ -94,4 +96,5 @@ class TableMemory final : public StoredArrayMemory<double> {
   LookupTable& table_;
 };
 
-}  // namespace rr::realtime
+}  // namespace realtime
+}  // namespace rr

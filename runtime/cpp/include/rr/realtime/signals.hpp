@@ -10,9 +10,12 @@
 #include <thread>
 #include <type_traits>
 
+#include "rr/visibility.hpp"
+
 /// Pods that threads hand each other without locks. Both classes allocate nothing and never call
 /// the kernel, but for SignalGroup::read().
-namespace rr::realtime {
+namespace RR_VISIBLE rr {
+namespace realtime {
 
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
@@ -118,4 +121,5 @@ class Mailbox {
   std::uint8_t read_ = 0;   // of the reader
 };
 
-}  // namespace rr::realtime
+}  // namespace realtime
+}  // namespace rr

@@ -12,9 +12,11 @@
 
 #include "rr/realtime/layout.hpp"
 #include "rr/realtime/signals.hpp"
+#include "rr/visibility.hpp"
 
 /// The signals of a loop by name, for everybody else.
-namespace rr::realtime {
+namespace RR_VISIBLE rr {
+namespace realtime {
 
 /// A group that is set from outside and read by the loop. All but take() and value() may be called
 /// by any threads, never by the loop.
@@ -127,4 +129,5 @@ class StateBus {
   std::map<std::string, Group, std::less<>> groups_;
 };
 
-}  // namespace rr::realtime
+}  // namespace realtime
+}  // namespace rr

@@ -16,11 +16,13 @@
 #include "rr/realtime/signals.hpp"
 #include "rr/realtime/state_frame.hpp"
 #include "rr/realtime/udp_socket.hpp"
+#include "rr/visibility.hpp"
 
 /// State exchanged by UDP between loops: nothing is repeated, the newest wins, what is too old
 /// counts as none. Both ends belong to one thread, their loop's, and once made never allocate or
 /// lock; of the kernel they need one call for each packet.
-namespace rr::realtime {
+namespace RR_VISIBLE rr {
+namespace realtime {
 
 /// What has come and what has not. Any thread may read it while the loop goes on.
 struct ReceiveCounts {
@@ -167,4 +169,5 @@ class StateReceiver {
   std::optional<Nanoseconds> arrival_;
 };
 
-}  // namespace rr::realtime
+}  // namespace realtime
+}  // namespace rr

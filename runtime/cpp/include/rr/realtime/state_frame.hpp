@@ -6,6 +6,7 @@
 #include <span>
 
 #include "rr/realtime/layout.hpp"
+#include "rr/visibility.hpp"
 
 /// The packet in which real-time nodes exchange state: each is complete, and older ones mean
 /// nothing. All numbers have their least significant byte first:
@@ -19,7 +20,8 @@
 ///   32  8  time stamp in nanoseconds, by the sender's clock
 ///   40     payload: the signals as Layout packs them
 ///   .   4  CRC-32 (that of Ethernet) of all before it
-namespace rr::realtime {
+namespace RR_VISIBLE rr {
+namespace realtime {
 
 /// What stands before the payload of a frame.
 struct FrameHeader {
@@ -54,4 +56,5 @@ enum class FrameFault : std::uint8_t {
 FrameFault open_frame(std::span<const std::byte> frame, FrameHeader& header,
                       std::span<const std::byte>& payload);
 
-}  // namespace rr::realtime
+}  // namespace realtime
+}  // namespace rr

@@ -7,7 +7,10 @@
 #include <span>
 #include <string>
 
-namespace rr::realtime {
+#include "rr/visibility.hpp"
+
+namespace RR_VISIBLE rr {
+namespace realtime {
 
 /// A UDP socket that never waits. Opened while a program is set up, then used by one thread.
 class UdpSocket {
@@ -37,4 +40,5 @@ class UdpSocket {
   int file_ = -1;
 };
 
-}  // namespace rr::realtime
+}  // namespace realtime
+}  // namespace rr

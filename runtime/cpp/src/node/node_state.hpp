@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "rr/error.hpp"
+#include "rr/node.hpp"
+#include "runtime/cpp/src/channel/channel.hpp"
+#include "runtime/cpp/src/client/session.hpp"
+#include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/subscription/host.hpp"
+
+namespace rr {
+
+/// The places where a node listens.
+class Places {
+ public:
+  void add(std::unique_ptr<channel::Listener> listener) {
+    const std::lock_guard lock(mutex_);
+    if (has_ended_) throw Error(ErrorCode::invalid_operation, "the node is shut down");
+    listeners_.push_back(std::move(listener));
+  }
+  void end() {
+    std::vector<std::unique_ptr<channel::Listener>> old;
+    const std::lock_guard lock(mutex_);
+    has_ended_ = true;
+    old.swap(listeners_);  // they end when the lock has gone
+  }
+  /// As the listeners say.
+  std::vector<std::string> urls() {
+    std::vector<std::string> result;
+    const std::lock_guard lock(mutex_);
+    for (const auto& listener : listeners_) {
+      for (std::string& url : listener->urls()) result.push_back(std::move(url));
+    }
+    return result;
+  }
+  /// All of them say the newest nonce, whoever comes last. Returns what went wrong.
+  template <class Announcer>
+  std::string tell_nonce(const Announcer& announcer) {
+    std::string failure;
+    const std::lock_guard lock(mutex_);
+    const std::string nonce = announcer.nonce();
+    for (const auto& listener : listeners_) {
+      try {
+        listener->services_changed(nonce);
+      } catch (const Error& error) {
+        failure = error.message();
+      }
+    }
+    return failure;
+  }
+
+ private:
+  std::mutex mutex_;
+  bool has_ended_ = false;
+  std::vector<std::unique_ptr<channel::Listener>> listeners_;
+};
+
+/// What a node has when it is first used: services, subscriptions, discovery. Programs that use
+/// none of one are linked without it, so node.cpp names none of them.
+class NodePart {
+ public:
+  virtual ~NodePart() = default;
+  /// Ends what it has to do with others. Waits for nobody.
+  virtual void end() = 0;
+  [[nodiscard]] virtual bool is_own_thread() const { return false; }
+};
+
+/// What a node is made of.
+struct NodeState {
+  std::shared_ptr<endpoint::Core> core;
+
+  /// The part of a slot, which is made from the state unless it is there.
+  template <class Part>
+  Part& part(std::unique_ptr<NodePart> NodeState::*slot) {
+    const std::lock_guard lock(making);
+    std::unique_ptr<NodePart>& place = this->*slot;
+    if (!place) {
+      place = std::make_unique<Part>(*this);
+      if (have_parts_ended) place->end();
+    }
+    return static_cast<Part&>(*place);
+  }
+  mutable std::recursive_mutex making;  // a part may need another one
+  bool have_parts_ended = false;
+  std::unique_ptr<NodePart> services;
+  std::unique_ptr<NodePart> subscriptions;
+  std::unique_ptr<NodePart> discovery;
+
+  // Threads of run_aside(), and whether they have done their work.
+  struct Worker {
+    std::thread thread;
+    std::shared_ptr<std::atomic<bool>> is_done;
+  };
+
+  std::mutex mutex;
+  bool is_shut_down = false;
+  const std::shared_ptr<Places> places = std::make_shared<Places>();
+  std::vector<std::weak_ptr<channel::Connection>> accepted;
+  std::vector<std::weak_ptr<Session>> sessions;
+  std::vector<Worker> workers;
+  static thread_local const NodeState* served_aside;  // by this thread, if it is a worker
+
+  std::mutex ending;  // while a thread waits for the others to end; taken before `mutex`
+
+  /// Drops what has gone whenever the list would grow.
+  template <class T>
+  static void remember(std::vector<std::weak_ptr<T>>& list, const std::shared_ptr<T>& item) {
+    if (list.size() == list.capacity()) {
+      std::erase_if(list, [](const std::weak_ptr<T>& other) { return other.expired(); });
+    }
+    list.push_back(item);
+  }
+
+  /// Ends a session when the node is shut down. Throws rr::Error when it has been.
+  void keep(const std::shared_ptr<Session>& session);
+  void run_aside(std::function<void()> work);
+  /// What parts need of the node.
+  [[nodiscard]] subscription::Host host();
+  [[nodiscard]] bool is_own_thread() const;
+
+  /// Ends what the node has to do with others. Waits for nobody.
+  void begin_end();
+  /// Waits for the node's threads, and so for what runs on them. Not on one of them.
+  void finish_end();
+
+ private:
+  void join_done();
+  void end_part(std::unique_ptr<NodePart> NodeState::*slot);
+};
+
+struct Node::State : NodeState {};
+
+}  // namespace rr
