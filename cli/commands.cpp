@@ -13,6 +13,7 @@
 #include "cli/authority.hpp"
 #include "cli/authority_verbs.hpp"
 #include "cli/discover.hpp"
+#include "cli/inspect_page.hpp"
 #include "cli/live/commands.hpp"
 #include "cli/live/pulled_definitions.hpp"
 #include "cli/live/table.hpp"
@@ -25,13 +26,16 @@ namespace robdef {
 namespace {
 
 constexpr std::array commands = {
-    CommandRow{Command::inspect, "inspect", "[OPTION...] FILE...",
-               "print what a recording of messages holds",
+    CommandRow{Command::inspect, "inspect", "[OPTION...] FILE... | --page [URL]",
+               "print what a recording holds, or open a page that shows devices",
                "Prints a line for each message of a recording: the time since its beginning,\n"
                "the connection, > to the service or < to the client, the entries with their\n"
                "service path, member, request id and error, and the elements with the types\n"
                "that they have on the wire. A file that is cut off is read up to there. The\n"
-               "file - is standard input.\n"},
+               "file - is standard input.\n"
+               "With --page, prints the address of the inspector for the service at a URL, and\n"
+               "opens it in a browser when there is a display and standard output is a\n"
+               "terminal: the page of its node, if that serves one, or the installed file.\n"},
     CommandRow{Command::record, "record", "--connect HOST:PORT --listen PORT -o FILE [OPTION...]",
                "record the messages between clients and a service",
                "Listens at a port, connects each client that comes there to a service, passes\n"
@@ -105,6 +109,12 @@ constexpr std::array options = {
               {Command::inspect},
               "print counts, bytes and rates of entries and\nthe times of requests instead",
               take_recording_switch<&RecordingOptions::is_summary>},
+    OptionRow{"--page",
+              "",
+              "",
+              {Command::inspect},
+              "print, and open, the address of a page that\nshows the service at a URL",
+              take_recording_switch<&RecordingOptions::is_page>},
     OptionRow{"--connect",
               "",
               "HOST:PORT",
@@ -289,6 +299,13 @@ std::string missing_to_replay(const Options& options) {
   return "";
 }
 
+std::string missing_to_inspect(const Options& options) {
+  if (more(options).recording.is_page) {
+    return options.inputs.size() > 1 ? "one URL at a time can be shown" : "";
+  }
+  return options.inputs.empty() ? "no file given" : "";
+}
+
 std::string missing_to_bridge(const Options& options) {
   if (options.inputs.empty()) return "no board given";
   return more(options).recording.port ? "" : "`--listen` is missing";
@@ -315,7 +332,7 @@ std::optional<std::string> missing(const Options& options) {
     case Command::discover:
       return options.inputs.empty() ? "" : "`robdef discover` takes no files";
     case Command::inspect:
-      return options.inputs.empty() ? "no file given" : "";
+      return missing_to_inspect(options);
     case Command::breaking:
       return missing_to_compare(options);
     case Command::get:
@@ -335,6 +352,7 @@ std::optional<ExitStatus> run_command(const Options& options, std::ostream& out,
                                       std::ostream& err) {
   switch (options.command) {
     case Command::inspect:
+      if (more(options).recording.is_page) return show_page(options, out, err);
       return inspect(options, out, err);
     case Command::record:
       return record(options, out, err);

@@ -15,6 +15,7 @@ struct RecordingOptions {
   std::string path;                         ///< of a service or an object, with all below it
   std::optional<std::uint32_t> connection;  ///< none: all
   bool is_summary = false;
+  bool is_page = false;  ///< the inspector instead of a recording
 
   // record and replay
   std::string output;                 ///< file to write

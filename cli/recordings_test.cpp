@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <functional>
 #include <rr/recording.hpp>
 #include <rr/tap.hpp>
@@ -146,6 +147,38 @@ TEST_F(Recordings, WrongUseIsExplained) {
   const Ended nowhere = run({"record", "--connect", "nothing", "--listen", "0", "-o", "x"});
   EXPECT_EQ(nowhere.status, 1);
   EXPECT_THAT(nowhere.err, HasSubstr("`nothing` is not HOST:PORT"));
+}
+
+TEST_F(Recordings, ThePageOfANodeIsOpenedWhereItServesOne) {
+  const std::string file = folder_ / "page.html";
+  std::ofstream(file) << "<html></html>";
+  rr::Node serving({.web_socket = {.inspector_page = file}});
+  const std::string host = "127.0.0.1:" + std::to_string(serving.listen_tcp(0, "127.0.0.1"));
+  const std::string part = "/#url=rr%2Bws://" + host + "/%3Fservice%3Dcounter\n";
+  const Ended ended = run({"inspect", "--page", "rr+tcp://" + host + "/?service=counter"});
+  EXPECT_EQ(ended.out, "http://" + host + part);
+  EXPECT_EQ(ended.err, "");
+  EXPECT_EQ(run({"inspect", "--page", "tcp://" + host + "/some.node/counter"}).out,
+            "http://" + host + "/#url=rr%2Bws://" + host +
+                "/%3Fnodename%3Dsome.node%26service%3Dcounter\n");
+}
+
+TEST_F(Recordings, ThePageIsTheInstalledFileOtherwise) {
+  rr::Node plain;
+  const std::string host = "127.0.0.1:" + std::to_string(plain.listen_tcp(0, "127.0.0.1"));
+  const Ended ended = run({"inspect", "--page", "rr+tcp://" + host + "/?service=counter"});
+  // The build folder may have it installed, or not.
+  if (ended.status == 0) {
+    EXPECT_THAT(ended.out, AllOf(StartsWith("file:///"), HasSubstr("inspector.html#url=rr%2Bws")));
+    EXPECT_THAT(ended.err, HasSubstr("allow-local-pages"));
+  } else {
+    EXPECT_THAT(ended.err, HasSubstr("not installed at"));
+  }
+  EXPECT_THAT(run({"inspect", "--page", "rr+tcp://127.0.0.1:1/?service=a"}).err,
+              HasSubstr("nothing answers at 127.0.0.1:1"));
+  EXPECT_THAT(run({"inspect", "--page", "rr+local:///?service=a"}).err,
+              HasSubstr("a page cannot use rr+local"));
+  EXPECT_EQ(run({"inspect", "--page", "a", "b"}).status, 2);
 }
 
 }  // namespace

@@ -111,7 +111,7 @@ _robdef() {
       watch) options="--count --for $live --help" ;;
       connect) options="$live --help" ;;
       explain) options='--list --json --help' ;;
-      inspect) options='--json --entries --path --connection --summary --help' ;;
+      inspect) options='--json --entries --path --connection --summary --page --help' ;;
       record) options='--connect --listen --everywhere --output -o --drop --keep-credentials --help' ;;
       discover) options="--once --type --format --wait --ipv4 --interface --port $tls --help" ;;
       lsp) options='--stdio --import-path -I --help' ;;

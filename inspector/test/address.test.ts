@@ -16,6 +16,7 @@ describe("An address", () => {
       ["rr+tcp://host/?service=a", "rr+ws://host:48653/?service=a"],
       ["rr+tcp://[::1]/?service=a", "rr+ws://[::1]:48653/?service=a"],
       ["tcp://host:1/?service=a", "rr+ws://host:1/?service=a"],
+      ["tcp://localhost:6257/RobotCameraHost/CameraHost", "rr+ws://localhost:6257/?nodename=RobotCameraHost&service=CameraHost"],
     ] as const) {
       const read = readAddress(tcp);
       assert.equal(read.kind === "service" && read.url, ws);

@@ -121,7 +121,9 @@ export class Page {
 
   async go(url: string): Promise<void> {
     const loaded = new Promise<void>((resolve) => (this.loaded = resolve));
-    const { errorText } = await this.send("Page.navigate", { url });
+    const { errorText, loaderId } = await this.send("Page.navigate", { url });
+    // Another part of the same document is there at once.
+    if (loaderId === undefined) return;
     if (typeof errorText === "string" && errorText !== "") throw new Error(`${url}: ${errorText}`);
     await loaded;
   }
@@ -137,7 +139,7 @@ export class Page {
   }
 
   /** Waits until an expression is true. */
-  async until(expression: string, what = expression, timeout = 10_000): Promise<void> {
+  async until(expression: string, what = expression, timeout = 30_000): Promise<void> {
     const end = Date.now() + timeout;
     while (!(await this.evaluate<boolean>(`Boolean(${expression})`))) {
       if (Date.now() > end) {
@@ -148,11 +150,13 @@ export class Page {
     }
   }
 
-  /** Waits for an element and clicks it as a mouse does. */
+  /** Waits for an element that can be seen and is covered by no other, and clicks it. */
   async click(selector: string): Promise<void> {
-    await this.until(`document.querySelector(${JSON.stringify(selector)})`, selector);
-    const [x, y] = await this.evaluate<[number, number]>(`(() => { const e = document.querySelector(${JSON.stringify(selector)}); e.scrollIntoView({ block: "center" }); const r = e.getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()`);
-    for (const type of ["mousePressed", "mouseReleased"]) await this.send("Input.dispatchMouseEvent", { type, x, y, button: "left", clickCount: 1 });
+    const found = `document.querySelector(${JSON.stringify(selector)})`;
+    await this.until(
+      `(() => { const e = ${found}; if (!e || e.disabled) return false; e.scrollIntoView({ block: "center" }); const r = e.getBoundingClientRect(); const top = document.elementFromPoint(r.x + r.width / 2, r.y + r.height / 2); if (!top || !(e.contains(top) || top.contains(e))) return false; e.focus(); e.click(); return true; })()`,
+      `a click on ${selector}`,
+    );
   }
 
   /** Puts a text in place of what a field has. */

@@ -295,6 +295,7 @@ export async function startWorkshop({ origins = [], allowLocalPages = false, sta
   };
 }
 
+const mostWaiting = 4;
 const pictureWidth = 640;
 const pictureHeight = 480;
 
@@ -323,13 +324,26 @@ function cellOf(standard: string, state: { lamp: number }, timers: ReturnType<ty
     },
     call: () => picture(),
   });
+  // A client that is slow gets fewer pictures.
+  const waiting = new WeakMap<object, number>();
+  cell.pipe("camera").onConnect((end) => {
+    end.requestsAcknowledgements = true;
+    const send = end.send.bind(end);
+    end.send = (value) => {
+      waiting.set(end, (waiting.get(end) ?? 0) + 1);
+      return send(value);
+    };
+    end.onAcknowledged(() => {
+      waiting.set(end, (waiting.get(end) ?? 1) - 1);
+    });
+  });
   const begin = performance.now();
   timers.push(
     setInterval(() => {
       cell.wire("tcp").send(pose((performance.now() - begin) / 1000));
     }, 20),
     setInterval(() => {
-      cell.pipe("camera").broadcast(picture());
+      for (const end of cell.pipe("camera").ends) if ((waiting.get(end) ?? 0) < mostWaiting) end.send(picture());
     }, 1000 / 30),
   );
   return cell;

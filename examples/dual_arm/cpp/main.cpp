@@ -21,17 +21,19 @@ using namespace std::chrono_literals;
 namespace wire = dual_arm::wire;
 
 constexpr const char* usage =
-    "usage: dual_arm [--picture FILE.png] [--real-time] [--serve SECONDS]\n"
+    "usage: dual_arm [--picture FILE.png] [--real-time] [--serve SECONDS] [--inspector FILE]\n"
     "Moves both arms: first along a table, then by a scripted gamepad.\n"
     "  --real-time      each node in a thread on the machine's clock, not all on a simulated one\n"
     "  --serve SECONDS  moves nothing by itself, and is there for clients for so long; 0 is until "
     "it\n"
-    "                   is interrupted\n";
+    "                   is interrupted\n"
+    "  --inspector FILE serves the page of the inspector at the host's port\n";
 
 struct Options {
   std::string picture;
   bool is_timed = false;
   std::optional<int> serve;  // seconds
+  std::string inspector;
 };
 
 bool read(int argc, char** argv, Options& options) {
@@ -41,6 +43,8 @@ bool read(int argc, char** argv, Options& options) {
       options.is_timed = true;
     } else if (i + 1 < argc && word == "--picture") {
       options.picture = argv[++i];
+    } else if (i + 1 < argc && word == "--inspector") {
+      options.inspector = argv[++i];
     } else if (i + 1 < argc && word == "--serve") {
       options.serve = serving::read_seconds(argv[++i]);
       if (!options.serve) return false;
@@ -138,7 +142,8 @@ int main(int argc, char** argv) try {
   if (options.serve) stay.emplace(*options.serve);
   dual_arm::Robot robot;
   const auto host = std::make_shared<dual_arm::Host>(robot);
-  rr::Node server({.name = "experimental.dual_arm_host"});
+  rr::Node server(
+      {.name = "experimental.dual_arm_host", .web_socket = {.inspector_page = options.inspector}});
   const auto service = server.register_service("DualArm", host);
   const auto port = server.listen_tcp(0, "127.0.0.1");
   const std::string url = "rr+tcp://127.0.0.1:" + std::to_string(port) + "?service=DualArm";

@@ -171,15 +171,18 @@ class Host final : public host::CameraHostDefault {
 };
 
 constexpr const char* usage =
-    "usage: smart_room_service [--port N] [--seconds N] [--everywhere]\n"
+    "usage: smart_room_service [--port N] [--seconds N] [--everywhere] "
+    "[--inspector FILE]\n"
     "Serves the simulated smart room until it is interrupted, or for so many seconds.\n"
     "  --port N      TCP port, 0 for any free one (default 6257)\n"
-    "  --everywhere  for clients of other machines, too; without it of this one only\n";
+    "  --everywhere  for clients of other machines, too; without it of this one only\n"
+    "  --inspector   serves the page of the inspector, this file, at http://localhost:N/\n";
 
 struct Options {
   int port = 6257;
   int seconds = 0;
   bool is_everywhere = false;
+  std::string inspector;
 };
 
 /// False when the words are no options.
@@ -191,6 +194,10 @@ bool read(int argc, char** argv, Options& options) {
       continue;
     }
     if (++i == argc) return false;
+    if (name == "--inspector") {
+      options.inspector = argv[i];
+      continue;
+    }
     int* const value = name == "--port"      ? &options.port
                        : name == "--seconds" ? &options.seconds
                                              : nullptr;
@@ -211,7 +218,7 @@ int main(int argc, char** argv) try {
     return 2;
   }
   serving::Stay stay(options.seconds);
-  rr::Node node({.name = "RobotCameraHost"});
+  rr::Node node({.name = "RobotCameraHost", .web_socket = {.inspector_page = options.inspector}});
   const auto service =
       node.register_service("CameraHost", std::make_shared<Host>(std::make_shared<Room>()));
   const auto port = node.listen_tcp(static_cast<std::uint16_t>(options.port),

@@ -18,6 +18,10 @@ const rows: Readonly<Record<string, string>> = {
 
 const special: Readonly<Record<string, string>> = { NaN: "std::nan(\"\")", Infinity: "HUGE_VAL", "-Infinity": "-HUGE_VAL" };
 
+function real(value: number): string {
+  return special[String(value)] ?? floating(value);
+}
+
 const printer: Printer = {
   nothing: "rr::dynamic::Value()",
   number: (value, number) => {
@@ -25,7 +29,7 @@ const printer: Printer = {
     if (typeof value === "bigint") return number === "uint64" ? `${value}ULL` : value === -(2n ** 63n) ? "INT64_MIN" : `${value}LL`;
     return special[String(value)] ?? (number === "double" || number === "single" ? floating(value) : String(value));
   },
-  complex: ({ re, im }) => `rr::dynamic::StringMap{{"re", ${floating(re)}}, {"im", ${floating(im)}}}`,
+  complex: ({ re, im }) => `rr::dynamic::StringMap{{"re", ${real(re)}}, {"im", ${real(im)}}}`,
   text: literal,
   enumValue: (value, name) => (name === undefined ? String(value) : literal(name)),
   numbers: (items, number) => (rows[number] ? `std::vector<${rows[number]}>{${items.join(", ")}}` : `rr::dynamic::List{${items.join(", ")}}`),

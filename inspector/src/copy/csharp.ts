@@ -10,6 +10,10 @@ function className(name: string): string {
   return name.split(".").map(pascal).join(".");
 }
 
+function real(value: number): string {
+  return special[String(value)] ?? floating(value);
+}
+
 const printer: Printer = {
   nothing: "null",
   number: (value, number) => {
@@ -17,7 +21,7 @@ const printer: Printer = {
     if (typeof value === "bigint") return `${value}${suffixes[number] ?? ""}`;
     return special[String(value)] ?? (number === "double" || number === "single" ? `${floating(value)}${number === "single" ? "f" : ""}` : `${value}${suffixes[number] ?? ""}`);
   },
-  complex: ({ re, im }) => `new(${floating(re)}, ${floating(im)})`,
+  complex: ({ re, im }) => `new(${real(re)}, ${real(im)})`,
   text: quoted,
   enumValue: (value, name, type) => (name === undefined ? `(${className(type)})${value < 0 ? `(${value})` : value}` : `${className(type)}.${pascal(name)}`),
   numbers: (items) => `[${items.join(", ")}]`,

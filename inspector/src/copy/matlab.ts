@@ -15,15 +15,19 @@ function chars(text: string): string {
 
 const special: Readonly<Record<string, string>> = { NaN: "NaN", Infinity: "Inf", "-Infinity": "-Inf" };
 
+function real(value: number): string {
+  return special[String(value)] ?? (Object.is(value, -0) ? "-0" : String(value));
+}
+
 const printer: Printer = {
   nothing: "[]",
   number: (value, number) => {
     if (typeof value === "boolean") return String(value);
     // Doubles hold 53 bits.
     if (typeof value === "bigint") return value >= -(2n ** 53n) && value <= 2n ** 53n ? String(value) : number === "uint64" ? wide(value, "uint64") : wide(value, "int64");
-    return special[String(value)] ?? (Object.is(value, -0) ? "-0" : String(value));
+    return real(value);
   },
-  complex: ({ re, im }) => `complex(${special[String(re)] ?? re}, ${special[String(im)] ?? im})`,
+  complex: ({ re, im }) => `complex(${real(re)}, ${real(im)})`,
   text: chars,
   enumValue: (value, name) => (name === undefined ? String(value) : chars(name)),
   numbers: (items) => `[${items.join(" ")}]`,

@@ -10,10 +10,14 @@ function key(name: string): string {
   return /^[A-Za-z_][A-Za-z0-9_]*$/.test(name) && name !== "__proto__" ? name : `[${quoted(name)}]`;
 }
 
+function written(value: number | bigint | boolean): string {
+  return typeof value === "bigint" ? `${value}n` : Object.is(value, -0) ? "-0" : String(value);
+}
+
 const printer: Printer = {
   nothing: "null",
-  number: (value) => (typeof value === "bigint" ? `${value}n` : Object.is(value, -0) ? "-0" : String(value)),
-  complex: ({ re, im }) => `{ re: ${re}, im: ${im} }`,
+  number: written,
+  complex: ({ re, im }) => `{ re: ${written(re)}, im: ${written(im)} }`,
   text: quoted,
   enumValue: (value, name) => `${value}${name === undefined ? "" : ` /* ${name} */`}`,
   numbers: (items, number) => (rows[number] ? `${rows[number]}.of(${items.join(", ")})` : `[${items.join(", ")}]`),

@@ -46,6 +46,9 @@ export function readAddress(written: string): Address {
     const bare = /^rr\+tcp:\/\/(\[[^\]]*\]|[^/:?#]*)(?=$|[/?#])/.exec(url);
     url = bare ? url.replace(bare[0], `rr+ws://${bare[1] ?? ""}:48653`) : url.replace("rr+tcp:", "rr+ws:");
   }
+  // As URLs were written in 2011: tcp://host:port/node/service.
+  const old = /^rr\+(wss?):\/\/([^/?#]+)\/([^/?#]+)\/([^/?#]+)$/.exec(url);
+  if (old) url = `rr+${old[1] ?? "ws"}://${old[2] ?? ""}/?nodename=${old[3] ?? ""}&service=${old[4] ?? ""}`;
   const bareNode = /^(rr\+wss?):\/\/(\[[^\]]*\]|[^/:?#]*)(:\d+)?\/?$/.exec(url);
   if (bareNode) {
     const host = `${bareNode[2] ?? ""}${bareNode[3] ?? ""}`;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the page knows: connected devices, what is selected, panels, and what was done.
 import { effect, signal } from "@preact/signals";
-import { openWebSocket, RRNode, type Member } from "@robdef/runtime";
+import { RRNode, type Member } from "@robdef/runtime";
 import { explainFailure, hostOf, readAddress, serviceAt } from "./address.js";
 import { Device, type DeviceObject } from "./device.js";
 import { errorText, wordsOf } from "./errors.js";
@@ -10,6 +10,7 @@ import { History, type PathStep } from "./history.js";
 import { layoutText, readLayout, type Layout, type MemberPlace, type PanelLayout } from "./layout.js";
 import { forgetUrl, recentUrls, rememberUrl } from "./recent.js";
 import { listServices, type NodeServices } from "./services.js";
+import { openWorkerSocket } from "./worker_socket.js";
 import { Recorder } from "../tape/recorder.js";
 import type { Tape } from "../tape/tape.js";
 
@@ -64,7 +65,7 @@ export class App {
   private lastPanel = 0;
 
   constructor(readonly platform: Platform) {
-    const open = this.recorder.around(openWebSocket);
+    const open = this.recorder.around(openWorkerSocket);
     this.node = new RRNode({ openers: { "rr+ws": open, "rr+wss": open } });
     this.recent.value = recentUrls(platform.storage);
   }

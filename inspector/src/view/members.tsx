@@ -54,11 +54,13 @@ export function ErrorWords({ words }: { words: Words | undefined }): VNode | nul
 /** Buttons that show a member's values elsewhere on the page. */
 export function ShowButtons({ app, object, member }: MemberProps): VNode {
   const { type } = member;
+  // Pictures have numbers and poses, too, which nobody means.
+  const isPicture = isPictureType(type);
   return (
     <>
-      {isPlottable(type) && !member.isWriteonly ? <button type="button" class="small" aria-label={`Plot ${member.name}`} onClick={() => { app.show("plot", object, member); }}>Plot</button> : null}
-      {isPictureType(type) && !member.isWriteonly ? <button type="button" class="small" aria-label={`Show ${member.name} as a picture`} onClick={() => { app.show("picture", object, member); }}>Picture</button> : null}
-      {isPoseType(type) && !member.isWriteonly ? <button type="button" class="small" aria-label={`Show ${member.name} in 3-D`} onClick={() => { app.show("scene", object, member); }}>3-D</button> : null}
+      {!isPicture && isPlottable(type) && !member.isWriteonly ? <button type="button" class="small" aria-label={`Plot ${member.name}`} onClick={() => { app.show("plot", object, member); }}>Plot</button> : null}
+      {isPicture && !member.isWriteonly ? <button type="button" class="small" aria-label={`Show ${member.name} as a picture`} onClick={() => { app.show("picture", object, member); }}>Picture</button> : null}
+      {!isPicture && isPoseType(type) && !member.isWriteonly ? <button type="button" class="small" aria-label={`Show ${member.name} in 3-D`} onClick={() => { app.show("scene", object, member); }}>3-D</button> : null}
     </>
   );
 }

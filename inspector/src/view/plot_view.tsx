@@ -234,7 +234,7 @@ function Legend({ model, at }: { model: PlotModel; at: number | undefined }): VN
           <button type="button" class="small quiet" onClick={() => { model.cursors.value = []; }}>Remove cursors</button>
         </p>
       )}
-      <ul class="legend">
+      <ul class={`legend${first === undefined ? "" : " with-cursors"}`}>
         {model.lines.map((line, i) => (
           <li key={line.key} class={hidden.has(line.key) ? "hidden" : ""}>
             <label>

@@ -27,7 +27,7 @@ export function Tree({ app }: { app: App }): VNode {
     else if (event.key === "Home") go(items[0]);
     else if (event.key === "End") go(items.at(-1));
     else if (event.key === "ArrowRight" && expanded === "true") go(items[at + 1]);
-    else if (event.key === "ArrowLeft" && expanded !== "true") go(current.parentElement?.closest<HTMLElement>("[role=treeitem]") ?? undefined);
+    else if (event.key === "ArrowLeft" && expanded !== "true") go(items.slice(0, at).reverse().find((one) => Number(one.ariaLevel) < Number(current.ariaLevel)));
     else if ((event.key === "ArrowRight" && expanded === "false") || (event.key === "ArrowLeft" && expanded === "true")) {
       event.preventDefault();
       current.querySelector<HTMLElement>(".twisty")?.click();
@@ -66,8 +66,8 @@ function TreeNode({ app, object, level, isFirst }: { app: App; object: DeviceObj
   if (isOpen.value && object.device.state.value === "open") open();
   const isTabStop = isSelected || (isFirst && !app.selected.value);
   return (
-    <li role="treeitem" aria-level={level} aria-selected={isSelected} tabIndex={isTabStop ? 0 : -1} aria-label={`${object.title}, ${shortName(object.type)}`} {...(objrefs.length > 0 ? { "aria-expanded": isOpen.value } : {})}>
-      <div class={`line${isSelected ? " selected" : ""}`}>
+    <li role="none">
+      <div role="treeitem" class={`line${isSelected ? " selected" : ""}`} aria-level={level} aria-selected={isSelected} tabIndex={isTabStop ? 0 : -1} {...(objrefs.length > 0 ? { "aria-expanded": isOpen.value } : {})}>
         {objrefs.length > 0 ? (
           <span class="twisty" aria-hidden="true" onClick={() => { isOpen.value = !isOpen.value; }}>{isOpen.value ? "▾" : "▸"}</span>
         ) : (

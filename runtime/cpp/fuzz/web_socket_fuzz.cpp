@@ -8,19 +8,20 @@
 #include "rr/error.hpp"
 #include "rr/url.hpp"
 #include "runtime/cpp/fuzz/promise.hpp"
+#include "runtime/cpp/src/channel/components.hpp"
 #include "runtime/cpp/src/channel/web_socket.hpp"
 
 using rr::fuzz::promise;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const auto sockets =
-      std::make_shared<rr::channel::WebSockets>(std::vector<std::string>{"https://*.example.org"});
+      rr::channel::make_web_sockets({.origins = {"https://*.example.org"}});
   std::span<const std::byte> input = rr::fuzz::input_of(data, size);
   const std::uint8_t how = rr::fuzz::take_byte(input);
   const bool is_client = (how & 1U) != 0;
   const auto layer = is_client
                          ? sockets->make_client(rr::Url::parse("rr+ws://127.0.0.1:1/?service=any"))
-                         : sockets->make_server();
+                         : sockets->make_server(false);
   rr::channel::Bytes plain;
   rr::channel::Bytes reply;
   if (is_client) layer->begin(reply);

@@ -81,6 +81,10 @@ struct WebSocketOptions {
   /// also any page of the web, which needs only a sandboxed frame for it
   /// (docs/explanation/security.md).
   bool allow_local_pages = false;
+  /// A file with the page of the inspector, which is served at `http://host:port/` and may then
+  /// connect: that page of this node, and no other of this machine. Everybody who reaches the port
+  /// gets it. Empty: nothing is served. Compressed by gzip it may have up to 1 MB.
+  std::string inspector_page{};
 };
 
 /// Local sockets of a node (04, section 7).

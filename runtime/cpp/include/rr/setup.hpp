@@ -78,6 +78,10 @@ struct SetupOptions {
   /// Origins that are taken out of WebSocketOptions::origins.
   std::vector<std::string> tcp_ws_remove_origin{};
   bool tcp_ws_allow_local_pages = false;  ///< WebSocketOptions::allow_local_pages
+  /// Serves the page of the inspector at the TCP port: WebSocketOptions::inspector_page.
+  bool web_inspector = false;
+  /// Its file; empty: the one that is installed with the runtime.
+  std::string web_inspector_page{};
   /// Reports of this level and above go to standard error, unless `node.log` takes them. One of
   /// `debug`, `info`, `warning`, `error`, and `disable`.
   std::string log_level = "warning";
@@ -158,6 +162,11 @@ class SecureServerNodeSetup : public NodeSetup {
                         const char* const* argv = nullptr)
       : NodeSetup(SetupOptions::secure_server(std::move(name), port), argc, argv) {}
 };
+
+/// The page of the inspector that is installed with the runtime, compressed by gzip: beside the
+/// program, as `../share/robdef/inspector.html.gz`, or where the runtime was installed. The page
+/// itself is beside it, without `.gz`. Throws rr::Error (invalid_configuration) where it is not.
+std::string installed_inspector_page();
 
 /// All URLs by which a service of the node may be reached, one a line.
 void print_candidate_urls(std::ostream& out, const Node& node, std::string_view service);

@@ -28,7 +28,7 @@ std::unique_ptr<Layer> PeerLayers::asked(std::byte first) {
     return layer;
   }
   if (first == http_begin && link_.web_sockets && (around_ & web_socket) == 0) {
-    auto layer = link_.web_sockets->make_server();
+    auto layer = link_.web_sockets->make_server((around_ & web_tls) != 0);
     around_ |= web_socket;
     return layer;
   }

@@ -41,6 +41,11 @@ bool matches(const std::string& origin, const std::string& pattern) {
 
 }  // namespace
 
+std::shared_ptr<const WebPage> served_page(const WebSocketOptions& options) {
+  if (!options.is_enabled || options.inspector_page.empty()) return nullptr;
+  return std::make_shared<const WebPage>(options.inspector_page);
+}
+
 std::vector<std::string> allowed_origins(const WebSocketOptions& options) {
   std::vector<std::string> origins = options.origins;
   if (options.allow_local_pages) origins.insert(origins.end(), {"null", "file://"});

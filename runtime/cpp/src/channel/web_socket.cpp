@@ -30,11 +30,17 @@ constexpr const char* protocol_name = "robotraconteur.robotraconteur.com";
 constexpr std::uint32_t longest_header = 8192;
 constexpr std::size_t read_size = 16 * 1024;
 
+// What a node lets pages do.
+struct WebRules {
+  std::vector<std::string> origins;
+  std::shared_ptr<const WebPage> page;  // null: none is served
+};
+
 // What all web sockets of a node live in.
 struct Home {
-  explicit Home(std::vector<std::string> pages) : origins(std::move(pages)) {}
+  explicit Home(WebRules of_node) : rules(std::move(of_node)) {}
 
-  const std::vector<std::string> origins;
+  const WebRules rules;
   asio::io_context context{};  // where timers of the library, which are never started, register
 };
 
@@ -174,8 +180,8 @@ class WebSocketClient final : public WebSocketLayer {
 
 class WebSocketServer final : public WebSocketLayer {
  public:
-  explicit WebSocketServer(const std::shared_ptr<Home>& home)
-      : WebSocketLayer(home), origins_(home->origins) {
+  WebSocketServer(const std::shared_ptr<Home>& home, bool is_encrypted)
+      : WebSocketLayer(home), rules_(home->rules), is_encrypted_(is_encrypted) {
     parser_.header_limit(longest_header);
   }
 
@@ -185,6 +191,7 @@ class WebSocketServer final : public WebSocketLayer {
       take_frames(wire, plain, reply);
       return;
     }
+    if (has_sent_page_) return;  // the browser closes once it has read the page
     append(head_, wire);
     beast::error_code error;
     const std::size_t used = parser_.put(asio::const_buffer(head_.data(), head_.size()), error);
@@ -196,6 +203,11 @@ class WebSocketServer final : public WebSocketLayer {
     if (error) refuse(http::status::bad_request, reply);
     if (!parser_.is_header_done()) return;
     const http::status status = judge(parser_.get());
+    if (status == http::status::ok) {
+      has_sent_page_ = true;
+      append(reply, bytes_of(rules_.page->answer()));
+      return;
+    }
     if (status != http::status::switching_protocols) refuse(status, reply);
     accept(reply);
     const Bytes rest = std::exchange(head_, {});
@@ -203,7 +215,7 @@ class WebSocketServer final : public WebSocketLayer {
   }
 
  private:
-  // In the order of 04, section 2.2.
+  // In the order of 04, section 2.2. `ok`: the page is asked for.
   [[nodiscard]] http::status judge(const Request& request) const {
     if (request.method() != http::verb::get) return http::status::not_found;
     if (request.version() != 11) return http::status::bad_request;
@@ -211,6 +223,9 @@ class WebSocketServer final : public WebSocketLayer {
     const std::string_view path = target.substr(0, target.find('?'));
     const bool has_one_query = target.find('?') == target.rfind('?');
     if ((path != "/" && path != "*") || !has_one_query) return http::status::not_found;
+    if (asks_for_page(request)) {
+      return is_own_host(host_of(request)) ? http::status::ok : http::status::misdirected_request;
+    }
     if (!http::token_list(request[http::field::upgrade]).exists("websocket") ||
         request.count(http::field::sec_websocket_key) == 0 ||
         !http::token_list(request[http::field::sec_websocket_version]).exists("13")) {
@@ -222,10 +237,25 @@ class WebSocketServer final : public WebSocketLayer {
     }
     const auto origin = request[http::field::origin];
     if (request.count(http::field::origin) != 0 &&
-        !is_allowed_origin({origin.data(), origin.size()}, origins_)) {
+        !may_connect({origin.data(), origin.size()}, request)) {
       return http::status::forbidden;
     }
     return http::status::switching_protocols;
+  }
+
+  [[nodiscard]] bool asks_for_page(const Request& request) const {
+    return rules_.page != nullptr && request.count(http::field::upgrade) == 0;
+  }
+  static std::string host_of(const Request& request) {
+    return std::string(request[http::field::host]);
+  }
+  // The page that this node has served has the origin that it is asked at.
+  [[nodiscard]] bool may_connect(std::string_view origin, const Request& request) const {
+    if (is_allowed_origin(origin, rules_.origins)) return true;
+    const std::string host = host_of(request);
+    const std::string own = (is_encrypted_ ? "https://" : "http://") + host;
+    return rules_.page != nullptr && host.find('*') == std::string::npos && is_own_host(host) &&
+           is_allowed_origin(origin, {own});
   }
 
   [[noreturn]] void refuse(http::status status, Bytes& reply) {
@@ -259,27 +289,31 @@ class WebSocketServer final : public WebSocketLayer {
     open();
   }
 
-  const std::vector<std::string>& origins_;
+  const WebRules& rules_;  // of the home
+  const bool is_encrypted_;
+  bool has_sent_page_ = false;
   http::request_parser<http::empty_body> parser_;
   Bytes head_;  // of the request, that the parser has not used
 };
 
 class BeastWebSockets final : public WebSockets {
  public:
-  explicit BeastWebSockets(std::vector<std::string> origins)
-      : home_(std::make_shared<Home>(std::move(origins))) {}
+  explicit BeastWebSockets(WebRules rules) : home_(std::make_shared<Home>(std::move(rules))) {}
 
   std::unique_ptr<Layer> make_client(const Url& url) override {
     return std::make_unique<WebSocketClient>(home_, url);
   }
-  std::unique_ptr<Layer> make_server() override { return std::make_unique<WebSocketServer>(home_); }
+  std::unique_ptr<Layer> make_server(bool is_encrypted) override {
+    return std::make_unique<WebSocketServer>(home_, is_encrypted);
+  }
 
  private:
   const std::shared_ptr<Home> home_;
 };
 
 std::shared_ptr<WebSockets> make(const WebSocketOptions& options) {
-  return std::make_shared<BeastWebSockets>(allowed_origins(options));
+  return std::make_shared<BeastWebSockets>(
+      WebRules{allowed_origins(options), served_page(options)});
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "rr/options.hpp"
 #include "rr/url.hpp"
 #include "runtime/cpp/src/channel/layer.hpp"
+#include "runtime/cpp/src/channel/web_page.hpp"
 
 namespace rr::channel {
 
@@ -20,9 +21,13 @@ class WebSockets {
 
   /// As the client of a URL.
   [[nodiscard]] virtual std::unique_ptr<Layer> make_client(const Url& url) = 0;
-  /// For pages of the origins that the options allow, and what says no origin.
-  [[nodiscard]] virtual std::unique_ptr<Layer> make_server() = 0;
+  /// For pages of the origins that the options allow, and what says no origin. Where a page is
+  /// served, it may connect, too: to the node that served it. `is_encrypted`: there is TLS around.
+  [[nodiscard]] virtual std::unique_ptr<Layer> make_server(bool is_encrypted) = 0;
 };
+
+/// The page that options name; null for none. Throws rr::Error (invalid_configuration).
+std::shared_ptr<const WebPage> served_page(const WebSocketOptions& options);
 
 /// The origins that options allow.
 std::vector<std::string> allowed_origins(const WebSocketOptions& options);

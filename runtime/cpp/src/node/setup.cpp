@@ -87,6 +87,10 @@ void apply_channels(const SetupOptions& setup, NodeOptions& options) {
   append(origins, setup.tcp_ws_add_origin);
   if (setup.tcp_ws_allow_local_pages) options.web_socket.allow_local_pages = true;
   for (const std::string& origin : setup.tcp_ws_remove_origin) std::erase(origins, origin);
+  if (setup.web_inspector) {
+    options.web_socket.inspector_page =
+        setup.web_inspector_page.empty() ? installed_inspector_page() : setup.web_inspector_page;
+  }
 }
 
 // A channel whose flags a set-up knows, and what it does with them.

@@ -88,6 +88,8 @@ const std::array flags = {
     Flag{"tcp-ws-add-origin", &O::tcp_ws_add_origin},
     Flag{"tcp-ws-remove-origin", &O::tcp_ws_remove_origin},
     Flag{"tcp-ws-allow-local-pages", &O::tcp_ws_allow_local_pages},
+    Flag{"web-inspector", &O::web_inspector},
+    Flag{"web-inspector-page", &O::web_inspector_page},
     Flag{"tcp-ipv4-discovery", &O::tcp_ipv4_discovery},
     Flag{"tcp-ipv6-discovery", &O::tcp_ipv6_discovery},
     Flag{"intra-start-server", &O::intra_start_server},

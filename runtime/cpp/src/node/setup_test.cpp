@@ -141,6 +141,7 @@ TEST_F(Setup, EveryFlagThatUsersKnowIsTaken) {
                                    "load-tls",
                                    "require-tls",
                                    "local-tap-enable",
+                                   "web-inspector",
                                    "jumbo-message"};
   for (const char* const name : switches) {
     for (const char* const value : {"=true", "=false", "=1", "=0"}) {
@@ -155,7 +156,8 @@ TEST_F(Setup, EveryFlagThatUsersKnowIsTaken) {
        {"--robotraconteur-tcp-ws-remove-origin=https://b.example",
         "--robotraconteur-tls-certificate=a.pem", "--robotraconteur-tls-key=a.key",
         "--robotraconteur-tls-authority=ca.pem", "--robotraconteur-tls-revocation=revoked.pem",
-        "--robotraconteur-local-tap-name=tap", "--robotraconteur-log-level=FATAL"}) {
+        "--robotraconteur-local-tap-name=tap", "--robotraconteur-web-inspector-page=page.html",
+        "--robotraconteur-log-level=FATAL"}) {
     EXPECT_NO_THROW(taken(SetupOptions::client(), {flag})) << flag;
   }
 }

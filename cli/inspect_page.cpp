@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/inspect_page.hpp"
+
+#include <netdb.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <memory>
+#include <ostream>
+#include <rr/error.hpp>
+#include <rr/printable.hpp>
+#include <rr/setup.hpp>
+#include <rr/url.hpp>
+#include <string>
+#include <string_view>
+
+extern char** environ;
+
+namespace robdef {
+namespace {
+
+// Letters, digits and a few signs stay; the rest with two digits, as in the part of a URL after #.
+std::string escaped(std::string_view text) {
+  constexpr std::string_view digits = "0123456789ABCDEF";
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_plain = (byte >= '0' && byte <= '9') || (byte >= 'A' && byte <= 'Z') ||
+                          (byte >= 'a' && byte <= 'z') || c == '-' || c == '.' || c == '_' ||
+                          c == '~' || c == '/' || c == ':';
+    if (is_plain) {
+      result += c;
+    } else {
+      result += {'%', digits[byte >> 4U], digits[byte & 15U]};
+    }
+  }
+  return result;
+}
+
+struct CloseSocket {
+  int socket;
+  ~CloseSocket() {
+    if (socket >= 0) close(socket);
+  }
+};
+
+// What begins the answer to a request for `/`; empty when nothing answers within two seconds.
+std::string answer_of(const std::string& host, std::uint16_t port) {
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  if (getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found) != 0) return "";
+  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> all(found, freeaddrinfo);
+  const std::string in_url = host.find(':') == std::string::npos ? host : "[" + host + "]";
+  const std::string request =
+      "GET / HTTP/1.1\r\nHost: " + in_url + ":" + std::to_string(port) + "\r\n\r\n";
+  for (const addrinfo* each = found; each != nullptr; each = each->ai_next) {
+    const CloseSocket peer{socket(each->ai_family, each->ai_socktype | SOCK_CLOEXEC, 0)};
+    const timeval limit{.tv_sec = 2, .tv_usec = 0};  // of connecting, too
+    setsockopt(peer.socket, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
+    setsockopt(peer.socket, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+    if (connect(peer.socket, each->ai_addr, each->ai_addrlen) != 0) continue;
+    if (send(peer.socket, request.data(), request.size(), MSG_NOSIGNAL) < 0) continue;
+    std::array<char, 64> begin{};
+    const ssize_t size = recv(peer.socket, begin.data(), begin.size(), 0);
+    if (size > 0) return {begin.data(), static_cast<std::size_t>(size)};
+  }
+  return "";
+}
+
+bool serves_page(const std::string& answer) { return answer.starts_with("HTTP/1.1 200 "); }
+
+std::string host_of(const rr::Url& url) {
+  const std::string name =
+      url.host.find(':') == std::string::npos ? url.host : "[" + url.host + "]";
+  return name + ":" + std::to_string(url.port);
+}
+
+// Of web sockets, as pages need it: nodes answer them at the port of TCP.
+std::string page_url(const rr::Url& url) {
+  const std::string scheme = url.scheme == "rr+wss" ? "rr+wss" : "rr+ws";
+  const std::string node = url.node_name.empty() ? "" : "nodename=" + escaped(url.node_name) + "&";
+  return scheme + "://" + host_of(url) + "/?" + node + "service=" + escaped(url.service);
+}
+
+std::string installed_file() {
+  const std::string compressed = rr::installed_inspector_page();
+  return "file://" + escaped(compressed.substr(0, compressed.size() - 3));
+}
+
+std::string address_for(const std::string& written, std::ostream& err) {
+  if (written.empty()) return installed_file();
+  const rr::Url url = rr::Url::parse(written);
+  if (url.scheme != "rr+tcp" && url.scheme != "rr+ws" && url.scheme != "rr+wss") {
+    throw rr::Error(rr::ErrorCode::invalid_argument,
+                    "a page cannot use " + url.scheme + "; give the node's URL of TCP");
+  }
+  const std::string part = "#url=" + escaped(page_url(url));
+  if (url.scheme != "rr+wss") {
+    const std::string answer = answer_of(url.host, url.port);
+    if (answer.empty()) {
+      throw rr::Error(rr::ErrorCode::connection_error, "nothing answers at " + host_of(url));
+    }
+    if (serves_page(answer)) return "http://" + host_of(url) + "/" + part;
+  }
+  const std::string address = installed_file() + part;
+  err << "robdef: the node does not serve the page (--robotraconteur-web-inspector); the file "
+         "needs "
+         "--robotraconteur-tcp-ws-allow-local-pages there\n";
+  return address;
+}
+
+// Where there is a display, and somebody at a terminal to see it.
+void open_in_browser(std::string address) {
+  const bool has_display =
+      std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
+  if (!has_display || isatty(STDOUT_FILENO) == 0) return;
+  std::string program = "xdg-open";
+  std::array<char*, 3> arguments{program.data(), address.data(), nullptr};
+  pid_t child = 0;
+  if (posix_spawnp(&child, "xdg-open", nullptr, nullptr, arguments.data(), environ) == 0) {
+    int status = 0;
+    waitpid(child, &status, 0);  // it hands on to the browser, and ends
+  }
+}
+
+}  // namespace
+
+ExitStatus show_page(const Options& options, std::ostream& out, std::ostream& err) {
+  try {
+    const std::string address =
+        address_for(options.inputs.empty() ? "" : options.inputs.front(), err);
+    out << address << '\n';
+    open_in_browser(address);
+    return exit_fine;
+  } catch (const rr::Error& error) {
+    err << "robdef: " << rr::printable(error.message()) << '\n';
+    return exit_errors;
+  }
+}
+
+}  // namespace robdef

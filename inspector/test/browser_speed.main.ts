@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// How fast the page is: times of frames with 20 wires at 1 kHz, pictures at 30 Hz, the first plot, memory over a session.
+// ROBDEF_INSPECTOR_PAGE: its file; ROBDEF_STANDARD_DIR: the standard definitions. Limits are held unless ROBDEF_SLOW is set.
+import assert from "node:assert/strict";
+import { after, before, describe, it } from "node:test";
+import { fileURLToPath } from "node:url";
+import { Chromium, type Page } from "./chromium.js";
+import { startWorkshop, type Workshop } from "./workshop.js";
+
+const pageFile = process.env.ROBDEF_INSPECTOR_PAGE ?? fileURLToPath(new URL("../dist/inspector.html", import.meta.url));
+const standard = process.env.ROBDEF_STANDARD_DIR;
+const isSlow = process.env.ROBDEF_SLOW !== undefined;
+const address = `file://${pageFile}`;
+const wires = 20;
+const seconds = 8;
+
+let browser: Chromium;
+let workshop: Workshop;
+
+/** Notes for each frame how long its callbacks ran, and when it began. */
+const watchFrames = `(() => {
+  const real = requestAnimationFrame.bind(window);
+  let frame = 0, work = 0;
+  globalThis.frames_ = [];
+  globalThis.requestAnimationFrame = (callback) => real((now) => {
+    const begin = performance.now();
+    if (now !== frame) { if (frame) frames_.push([frame, work]); frame = now; work = 0; }
+    callback(now);
+    work += performance.now() - begin;
+  });
+})()`;
+
+function percentile(numbers: readonly number[], part: number): number {
+  const sorted = [...numbers].sort((a, b) => a - b);
+  return sorted[Math.min(sorted.length - 1, Math.floor(part * sorted.length))] ?? NaN;
+}
+
+async function measured(page: Page): Promise<{ work: number[]; gaps: number[] }> {
+  await page.evaluate("frames_.length = 0; undefined");
+  await new Promise((resolve) => setTimeout(resolve, seconds * 1000));
+  const frames = await page.evaluate<[number, number][]>("frames_");
+  const gaps = frames.slice(1).map(([begin], i) => begin - (frames[i]?.[0] ?? 0));
+  return { work: frames.map(([, one]) => one), gaps };
+}
+
+function report(what: string, { work, gaps }: { work: number[]; gaps: number[] }): void {
+  const text = (numbers: readonly number[]): string => `median ${percentile(numbers, 0.5).toFixed(1)}, p95 ${percentile(numbers, 0.95).toFixed(1)}, most ${Math.max(...numbers).toFixed(1)} ms`;
+  console.log(`# ${what}: ${work.length} frames in ${seconds} s; work of a frame ${text(work)}; between frames ${text(gaps)}`);
+}
+
+async function open(service: string): Promise<Page> {
+  const page = await browser.open("about:blank", { width: 1500 });
+  await page.send("Page.addScriptToEvaluateOnNewDocument", { source: watchFrames });
+  await page.go(address);
+  await page.until("document.querySelector('.welcome')");
+  await page.type("#address", workshop.url(service));
+  await page.key("Enter");
+  await page.until("document.querySelector('.object')");
+  return page;
+}
+
+before(async () => {
+  workshop = await startWorkshop({ allowLocalPages: true, standard });
+  browser = new Chromium();
+});
+
+after(async () => {
+  await browser.close();
+  await workshop.close();
+});
+
+describe("The page", { timeout: 200_000 }, () => {
+  it(`draws ${wires} wires at 1 kHz`, async () => {
+    const page = await open("bench");
+    await page.until("document.querySelector('[aria-label=\"Plot channel_19\"]')");
+    workshop.drive(1000);
+    const begin = Date.now();
+    await page.click("[aria-label='Plot channel_0']");
+    await page.until("document.querySelectorAll('.legend li').length === 1 && /\\d/.test(document.querySelector('.legend .number').innerText)");
+    const first = Date.now() - begin;
+    console.log(`# first plot: ${first} ms after the click`);
+    for (let i = 1; i < wires; ++i) await page.click(`[aria-label='Plot channel_${i}']`);
+    await page.until(`document.querySelectorAll('.legend li').length === ${wires}`);
+    await new Promise((resolve) => setTimeout(resolve, 11_000));
+    const frames = await measured(page);
+    report(`${wires} wires at 1 kHz`, frames);
+    const rates = await page.evaluate<number>("document.querySelectorAll('.legend li').length");
+    assert.equal(rates, wires);
+    workshop.drive(0);
+    if (!isSlow) {
+      assert.ok(first < 2000, `the first plot took ${first} ms`);
+      assert.ok(percentile(frames.work, 0.95) <= 16, "p95 of the work of a frame");
+    }
+    await page.close();
+  });
+
+  it("shows pictures of 640 x 480 at 30 Hz", { skip: standard === undefined }, async () => {
+    const page = await open("cell");
+    await page.click("[aria-label='Show camera as a picture']");
+    await page.until("document.querySelector('[data-kind=picture] canvas')?.width === 640");
+    const frames = await measured(page);
+    report("pictures", frames);
+    const rate = Number(/(\d+) a second/.exec(await page.evaluate<string>("document.querySelector('[data-kind=picture] figcaption').innerText"))?.[1]);
+    console.log(`# pictures: ${rate} a second`);
+    if (!isSlow) assert.ok(rate >= 28, `${rate} pictures a second`);
+    await page.close();
+  });
+
+  it("does not grow in a long session", async () => {
+    const page = await open("bench");
+    await page.click("[aria-label='Plot channel_0']");
+    await page.click("[aria-label='Plot waves']");
+    await page.click("[aria-label='Watch where']");
+    const heap = async (): Promise<number> => {
+      for (let i = 0; i < 3; ++i) await page.send("HeapProfiler.collectGarbage");
+      const { usedSize } = await page.send("Runtime.getHeapUsage");
+      return Number(usedSize) / 1e6;
+    };
+    // Ten times the values of a wire at 1 kHz; rings are full after it, and later rounds find them so.
+    const round = async (): Promise<number> => {
+      workshop.drive(10_000);
+      for (let i = 0; i < 40; ++i) {
+        await page.click("[aria-label='Get speed']");
+        workshop.bench.event("moved").fire(i, "again");
+        await new Promise((resolve) => setTimeout(resolve, 100));
+      }
+      workshop.drive(0);
+      return await heap();
+    };
+    const sizes = [await round(), await round(), await round(), await round()];
+    console.log(`# heap after rounds: ${sizes.map((one) => one.toFixed(1)).join(", ")} MB`);
+    assert.ok((sizes[3] ?? Infinity) < (sizes[1] ?? 0) * 1.25 + 2, `the heap grows: ${sizes.join(", ")} MB`);
+    await page.close();
+  });
+});
