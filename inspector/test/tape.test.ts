@@ -97,7 +97,10 @@ async function recorded(isFromTheStart: boolean): Promise<{ tape: Tape; bytes: U
     await moved;
     const wire = await root.wire("position").connect();
     const pipe = await root.pipe("waves").connect();
-    await new Promise((resolve) => setTimeout(resolve, 200));
+    for (let i = 0; i < 6; ++i) {
+      await wire.wait();
+      await pipe.receive();
+    }
     await pipe.close();
     await wire.close();
     const tool = await root.object("tools", 1);
