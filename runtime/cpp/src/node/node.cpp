@@ -122,14 +122,6 @@ bool Node::has_channel(std::string_view scheme) const {
   }
 }
 
-std::vector<std::string> Node::urls(std::string_view service) const {
-  std::vector<std::string> result;
-  for (const std::string& url : state_->places->urls()) {
-    result.push_back(service_index::own_service_url(url, id(), service));
-  }
-  return result;
-}
-
 void Node::add_definition(const Definition& definition) {
   state_->core->add_definition(definition);
 }

@@ -90,6 +90,14 @@ std::uint16_t Node::listen_tcp(std::uint16_t port, std::string_view host) {
   return listen("rr+tcp://" + place + ":" + std::to_string(port));
 }
 
+std::vector<std::string> Node::urls(std::string_view service) const {
+  std::vector<std::string> result;
+  for (const std::string& url : state_->places->urls()) {
+    result.push_back(service_index::own_service_url(url, id(), service));
+  }
+  return result;
+}
+
 std::vector<std::string> Node::candidate_urls(std::string_view service) const {
   std::vector<std::string> result;
   const auto addresses = discovery::local_addresses();
