@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/inspect_page.hpp"
 
-#include <netdb.h>
-#include <poll.h>
 #include <spawn.h>
-#include <sys/socket.h>
-#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <boost/asio/ip/tcp.hpp>
+#include <chrono>
+#include <cstdint>
 #include <cstdlib>
-#include <memory>
 #include <ostream>
 #include <rr/error.hpp>
 #include <rr/printable.hpp>
@@ -43,35 +42,16 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
-struct CloseSocket {
-  int socket;
-  ~CloseSocket() {
-    if (socket >= 0) close(socket);
-  }
-};
-
 // What begins the answer to a request for `/`; empty when nothing answers within two seconds.
 std::string answer_of(const std::string& host, std::uint16_t port) {
-  addrinfo hints{};
-  hints.ai_socktype = SOCK_STREAM;
-  addrinfo* found = nullptr;
-  if (getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found) != 0) return "";
-  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> all(found, freeaddrinfo);
   const std::string in_url = host.find(':') == std::string::npos ? host : "[" + host + "]";
-  const std::string request =
-      "GET / HTTP/1.1\r\nHost: " + in_url + ":" + std::to_string(port) + "\r\n\r\n";
-  for (const addrinfo* each = found; each != nullptr; each = each->ai_next) {
-    const CloseSocket peer{socket(each->ai_family, each->ai_socktype | SOCK_CLOEXEC, 0)};
-    const timeval limit{.tv_sec = 2, .tv_usec = 0};  // of connecting, too
-    setsockopt(peer.socket, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
-    setsockopt(peer.socket, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-    if (connect(peer.socket, each->ai_addr, each->ai_addrlen) != 0) continue;
-    if (send(peer.socket, request.data(), request.size(), MSG_NOSIGNAL) < 0) continue;
-    std::array<char, 64> begin{};
-    const ssize_t size = recv(peer.socket, begin.data(), begin.size(), 0);
-    if (size > 0) return {begin.data(), static_cast<std::size_t>(size)};
-  }
-  return "";
+  boost::asio::ip::tcp::iostream peer;
+  peer.expires_after(std::chrono::seconds(2));
+  peer.connect(host, std::to_string(port));
+  peer << "GET / HTTP/1.1\r\nHost: " << in_url << ':' << port << "\r\n\r\n" << std::flush;
+  std::array<char, 13> begin{};
+  peer.read(begin.data(), begin.size());
+  return {begin.data(), static_cast<std::size_t>(peer.gcount())};
 }
 
 bool serves_page(const std::string& answer) { return answer.starts_with("HTTP/1.1 200 "); }
@@ -97,7 +77,9 @@ std::string installed_file() {
 std::string address_for(const std::string& written, std::ostream& err) {
   if (written.empty()) return installed_file();
   const rr::Url url = rr::Url::parse(written);
-  if (url.scheme != "rr+tcp" && url.scheme != "rr+ws" && url.scheme != "rr+wss") {
+  // `tcp` is the older way of writing rr+tcp.
+  constexpr std::array schemes{"rr+tcp", "tcp", "rr+ws", "rr+wss"};
+  if (std::ranges::find(schemes, url.scheme) == schemes.end()) {
     throw rr::Error(rr::ErrorCode::invalid_argument,
                     "a page cannot use " + url.scheme + "; give the node's URL of TCP");
   }
