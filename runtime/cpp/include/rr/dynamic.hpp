@@ -25,6 +25,8 @@
 #include "rr/visibility.hpp"
 #include "rr/wires.hpp"
 
+namespace RR_VISIBLE rr {
+
 /// A client that needs no generated code: members by name, with values of types that are known at
 /// run time only. Linked with robdef::dynamic.
 ///
@@ -37,7 +39,6 @@
 /// (docs/explanation/threads.md). Everything throws rr::Error: member_not_found and
 /// member_format_mismatch for a name that is no such member, data_type_mismatch for a value that
 /// does not fit, all naming the member and the type that is expected, before anything is sent.
-namespace RR_VISIBLE rr {
 namespace dynamic {
 
 class DynamicStub;

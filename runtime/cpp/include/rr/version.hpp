@@ -7,8 +7,11 @@
 
 /// The version of these headers; `tools/version` writes it.
 #define RR_VERSION "0.1.0"
+/// Of it the part that changes when programs must be written anew in places.
 #define RR_VERSION_MAJOR 0
+/// Of it the part that changes when something is new.
 #define RR_VERSION_MINOR 1
+/// Of it the part that changes when something is mended.
 #define RR_VERSION_PATCH 0
 
 namespace RR_VISIBLE rr {

@@ -10,8 +10,9 @@
 
 #include "rr/visibility.hpp"
 
-/// Loops of a fixed rate, on the machine's clock or on one that a test moves.
 namespace RR_VISIBLE rr {
+
+/// Loops of a fixed rate, on the machine's clock or on one that a test moves.
 namespace realtime {
 
 /// Times and spans of time.
