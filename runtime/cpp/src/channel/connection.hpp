@@ -160,6 +160,8 @@ class Connection {
   /// Waits until at most so many bytes wait to be sent. False when that was not so in time, or the
   /// connection is gone.
   virtual bool wait_sent(std::size_t bytes, Time deadline) = 0;
+  /// Whether no more than so many bytes wait to be sent.
+  [[nodiscard]] virtual bool has_sent(std::size_t bytes) const = 0;
   /// The same for an answer, from Receiver::handle(): it leaves together with other answers to what
   /// one receive has brought. Throws only when it is too large, or may not wait (see send()).
   virtual void reply(Writer& message, Priority priority) = 0;

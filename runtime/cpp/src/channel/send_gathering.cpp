@@ -38,7 +38,7 @@ SendQueue::Sent SendQueue::stream(Writer& message) {
   return send(message, {.now = coarse_now(), .refusal = ErrorCode::buffer_limit_violation});
 }
 
-bool SendQueue::gather_if_streaming(Writer& message, bool& is_first) {
+[[gnu::hot]] bool SendQueue::gather_if_streaming(Writer& message, bool& is_first) {
   const std::size_t size = message.size();
   const Time now = Clock::now();
   const Time last_here = std::exchange(last_streamed_here, now);
@@ -89,7 +89,7 @@ void SendQueue::uncork(const std::atomic<unsigned>& expected) {
 }
 
 // Under gathering_, when there is room.
-void SendQueue::gather(Writer& message) {
+[[gnu::hot]] void SendQueue::gather(Writer& message) {
   if (gathered_size_ == 0) gathered_ = allocate(stream_chunk);
   for (const Piece& piece : message.pieces()) {
     std::memcpy(gathered_.bytes + gathered_size_, piece.data, piece.size);

@@ -62,7 +62,7 @@ std::deque<Frame>& Strand::queue() {
   return *queue_;
 }
 
-void Strand::push(Frame frame) {
+[[gnu::hot]] void Strand::push(Frame frame) {
   queued_bytes_ += frame.bytes.size();
   queue().push_back(keep(std::move(frame)));
   charge(queue_->back());
@@ -87,7 +87,7 @@ std::unique_ptr<std::deque<Frame>> Strand::take_queue() {
 }
 
 // What waits is its sender's, who is not read further when it is too much.
-void Strand::charge(Frame& frame) {
+[[gnu::hot]] void Strand::charge(Frame& frame) {
   if (account_ == nullptr || frame.charge.bytes() != 0) return;
   const std::size_t size = frame.bytes.size() + bytes_beside_frame;
   frame.charge = Charge(account_);

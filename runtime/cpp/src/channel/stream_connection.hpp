@@ -93,6 +93,7 @@ class StreamConnection final : public Connection,
   void send_newest(Writer& message, const Newest& newest, Time now) override;
   void stream(Writer& message) override;
   bool wait_sent(std::size_t bytes, Time deadline) override;
+  [[nodiscard]] bool has_sent(std::size_t bytes) const override;
   void reply(Writer& message, Priority priority) override;
   void claim(Waiter& waiter) override;
   void wait(Waiter& waiter, Time deadline, Time now) override;

@@ -165,7 +165,7 @@ void StreamConnection::watch_for_room() {
 
 // Streams
 
-void StreamConnection::stream(Writer& message) {
+[[gnu::hot]] void StreamConnection::stream(Writer& message) {
   check_size(message);
   if (message.version() == MessageVersion::v4 && has_strings()) {
     const std::vector<std::byte> coded = with_strings(message);
@@ -177,7 +177,7 @@ void StreamConnection::stream(Writer& message) {
   }
 }
 
-void StreamConnection::stream_or_queue(Writer& message) {
+[[gnu::hot]] void StreamConnection::stream_or_queue(Writer& message) {
   if (is_closed()) throw Error(ErrorCode::connection_error, "the connection is closed");
   sending_.check_room_for_packet(message.size());
   const std::size_t size = message.size();
@@ -191,12 +191,16 @@ void StreamConnection::stream_or_queue(Writer& message) {
   }
 }
 
+[[gnu::hot]] bool StreamConnection::has_sent(std::size_t bytes) const {
+  return sending_.waiting_bytes() <= bytes;
+}
+
 bool StreamConnection::wait_sent(std::size_t bytes, Time deadline) {
-  if (sending_.waiting_bytes() <= bytes) return true;
+  if (has_sent(bytes)) return true;
   Reactor::about_to_wait();
   while (!is_closing_) {
     flush();
-    if (sending_.waiting_bytes() <= bytes) return true;
+    if (has_sent(bytes)) return true;
     const Time now = Clock::now();
     if (now >= deadline) return false;
     const Time until = std::min(deadline, now + std::chrono::seconds(1));

@@ -209,7 +209,8 @@ bool Pipes::keep_early(const Entry& entry, const endpoint::PipePacket& packet, D
   return true;
 }
 
-void Pipes::take_packets(const Message& message, const Entry& entry, const MemoryRef& owner) {
+[[gnu::hot]] void Pipes::take_packets(const Message& message, const Entry& entry,
+                                      const MemoryRef& owner) {
   endpoint::PipeArrival arrival(message, entry, owner, *session_.types(), {});
   arrival.take(
       [&](const endpoint::PipePacket& packet, Decoder& decoder) -> endpoint::PipeArrival::Taken {
@@ -280,7 +281,8 @@ void Pipes::end() {
 
 channel::Connection& Pipes::connection() const { return session_.connection(); }
 
-void Pipes::stream(Writer& writer, const EntryHeader& header, std::string_view metadata) {
+[[gnu::hot]] void Pipes::stream(Writer& writer, const EntryHeader& header,
+                                std::string_view metadata) {
   session_.stream_packet(writer, header, metadata);
 }
 

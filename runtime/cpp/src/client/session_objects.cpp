@@ -215,7 +215,8 @@ void Session::foresee(const Message& message) {
   }
 }
 
-void Session::handle(const Message& message, const Entry& first, const MemoryRef& owner) {
+[[gnu::hot]] void Session::handle(const Message& message, const Entry& first,
+                                  const MemoryRef& owner) {
   const auto handle_one = [&](const Entry& entry) {
     endpoint::call_user_code(*core_, "a handler", [&] { handle_entry(message, entry, owner); });
   };
@@ -227,7 +228,8 @@ void Session::handle(const Message& message, const Entry& first, const MemoryRef
   for (Entry entry; entries.next(entry);) handle_one(entry);
 }
 
-void Session::handle_entry(const Message& message, const Entry& entry, const MemoryRef& owner) {
+[[gnu::hot]] void Session::handle_entry(const Message& message, const Entry& entry,
+                                        const MemoryRef& owner) {
   if (is_given_up_) return;
   if (static_cast<ErrorCode>(entry.error) == ErrorCode::invalid_endpoint) {
     close();

@@ -5,7 +5,7 @@
 
 namespace rr {
 
-std::optional<std::int32_t> Element::index() const {
+[[gnu::hot]] std::optional<std::int32_t> Element::index() const {
   if (has_name) {
     std::string_view digits = name;
     // from_chars knows only the minus.

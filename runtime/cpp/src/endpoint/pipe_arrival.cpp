@@ -32,7 +32,7 @@ class PacketMemory final : public ContainerBudget {
 }  // namespace
 
 // False when the packet is not to be acknowledged.
-bool PipeArrival::hand_to(const End& end, const PipePacket& packet) {
+[[gnu::hot]] bool PipeArrival::hand_to(End end, const PipePacket& packet) {
   const PipeEnd::State::Identity& what = end->identity;
   is_unreliable_ = what.is_unreliable;
   if (!end->may_receive()) return true;
@@ -50,7 +50,7 @@ bool PipeArrival::hand_to(const End& end, const PipePacket& packet) {
   }
   if (last_ != end) {
     if (last_) others_.push_back(std::move(last_));
-    last_ = end;
+    last_ = std::move(end);
   }
   return true;
 }
@@ -62,7 +62,7 @@ std::uint32_t PipeArrival::write_acknowledgements(Writer& writer) const {
   return static_cast<std::uint32_t>(acknowledged_.size());
 }
 
-void PipeArrival::deliver() {
+[[gnu::hot]] void PipeArrival::deliver() {
   for (const End& end : others_) end->deliver();
   if (last_) last_->deliver();
   for (const End& end : full_) {

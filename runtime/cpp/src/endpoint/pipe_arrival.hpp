@@ -48,8 +48,9 @@ class PipeArrival {
   void take(const Find& find) {
     PipePacketReader packets(decoder_, entry_);
     for (PipePacket packet; packets.next(packet);) {
-      const Taken taken = find(packet, decoder_);
-      if (taken.is_taken && (!taken.end || hand_to(taken.end, packet))) acknowledge(packet);
+      Taken taken = find(packet, decoder_);
+      if (!taken.is_taken) continue;
+      if (!taken.end || hand_to(std::move(taken.end), packet)) acknowledge(packet);
     }
   }
 
@@ -64,7 +65,7 @@ class PipeArrival {
   void deliver();
 
  private:
-  bool hand_to(const End& end, const PipePacket& packet);
+  bool hand_to(End end, const PipePacket& packet);
   void acknowledge(const PipePacket& packet) {
     if (packet.asks_acknowledgement) acknowledged_.emplace_back(packet.index, packet.number);
   }

@@ -52,12 +52,12 @@ std::uint32_t PipeEnd::State::send_packet(const Write& write_value) {
   return next_number_++;
 }
 
-std::uint32_t PipeEnd::State::send(const void* value) {
+[[gnu::hot]] std::uint32_t PipeEnd::State::send(const void* value) {
   return send_packet(
       [&](Writer& writer) { identity.member->type->write(writer, "packet", value); });
 }
 
-std::uint32_t PipeEnd::State::send_written(Written& packet) {
+[[gnu::hot]] std::uint32_t PipeEnd::State::send_written(Written& packet) {
   return send_packet([&](Writer& writer) {
     const Written::Form& form = packet.in(writer.version());
     writer.prepend_array(form.bytes, form.owner);
@@ -89,7 +89,15 @@ void PipeEnd::State::on_acknowledged(Function<void(std::uint32_t)> function) {
 
 bool PipeEnd::State::wait_sent(std::chrono::milliseconds limit, std::size_t bytes) const {
   const auto open = side();
-  return open && open->connection().wait_sent(bytes, channel::after(channel::Clock::now(), limit));
+  if (!open) return false;
+  channel::Connection& connection = open->connection();
+  return connection.has_sent(bytes) ||
+         connection.wait_sent(bytes, channel::after(channel::Clock::now(), limit));
+}
+
+[[gnu::hot]] bool PipeEnd::State::has_sent(std::size_t bytes) const {
+  const auto open = side();
+  return open && open->connection().has_sent(bytes);
 }
 
 // The handles

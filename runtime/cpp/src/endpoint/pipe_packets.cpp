@@ -6,7 +6,7 @@
 namespace rr::endpoint {
 namespace {
 
-bool read_packet(Decoder& decoder, const Element& element, PipePacket& packet) {
+[[gnu::hot]] bool read_packet(Decoder& decoder, const Element& element, PipePacket& packet) {
   if (element.type != ElementType::dictionary) return false;
   ElementReader members(decoder, element);
   bool has_number = false;
@@ -35,7 +35,7 @@ void write_acknowledgement(Writer& writer, std::int32_t index, std::uint32_t num
   writer.element(ElementName(index), ElementType::uint32, {}, 1, end);
 }
 
-bool PipePacketReader::next(PipePacket& packet) {
+[[gnu::hot]] bool PipePacketReader::next(PipePacket& packet) {
   for (Element element; elements_.next(element);) {
     const auto index = element.index();
     if (!index) continue;
@@ -45,7 +45,7 @@ bool PipePacketReader::next(PipePacket& packet) {
   return false;
 }
 
-bool read_number(const Element& element, std::uint32_t& number) {
+[[gnu::hot]] bool read_number(const Element& element, std::uint32_t& number) {
   if (element.type != ElementType::uint32 || element.count != 1 ||
       element.payload.size() != sizeof number) {
     return false;

@@ -95,12 +95,12 @@ PipeEnd::State::State(std::shared_ptr<const endpoint::Core> core,
       limit_(queue_packets),
       byte_limit_(queue_bytes) {}
 
-bool PipeEnd::State::may_receive() const {
+[[gnu::hot]] bool PipeEnd::State::may_receive() const {
   return (identity.member->access & (identity.is_client ? writeonly : readonly)) == 0;
 }
 
-bool PipeEnd::State::accept(std::uint32_t number, std::shared_ptr<void> value, std::size_t size,
-                            std::size_t memory) {
+[[gnu::hot]] bool PipeEnd::State::accept(std::uint32_t number, std::shared_ptr<void> value,
+                                         std::size_t size, std::size_t memory) {
   bool has_room = true;
   bool is_awaited = false;
   {
@@ -142,7 +142,7 @@ bool PipeEnd::State::hold_back(std::uint32_t number, Packet packet) {
 }
 
 // Under mutex_.
-bool PipeEnd::State::push(Packet packet) {
+[[gnu::hot]] bool PipeEnd::State::push(Packet packet) {
   while (true) {
     const bool is_full =
         !queue_.empty() && (queue_.size() >= limit_ || queue_bytes_ + packet.size > byte_limit_);
@@ -158,7 +158,7 @@ bool PipeEnd::State::push(Packet packet) {
 }
 
 // Under mutex_.
-PipeEnd::State::Packet PipeEnd::State::pop() {
+[[gnu::hot]] PipeEnd::State::Packet PipeEnd::State::pop() {
   Packet packet = std::move(queue_.front());
   queue_.pop_front();
   queue_bytes_ -= packet.size;
@@ -167,7 +167,7 @@ PipeEnd::State::Packet PipeEnd::State::pop() {
 }
 
 // Under mutex_. False when the other side makes this one hold too much.
-bool PipeEnd::State::draw(std::size_t cost) {
+[[gnu::hot]] bool PipeEnd::State::draw(std::size_t cost) {
   if (cost_ + cost > charge_.bytes()) {
     const std::size_t more = cost_ + cost - charge_.bytes();
     if (!charge_.add(more + quantum) && !charge_.add(more)) return false;
@@ -177,12 +177,12 @@ bool PipeEnd::State::draw(std::size_t cost) {
 }
 
 // Under mutex_. A little stays drawn, for the packet that comes next.
-void PipeEnd::State::give_back(std::size_t cost) {
+[[gnu::hot]] void PipeEnd::State::give_back(std::size_t cost) {
   cost_ -= cost;
   if (charge_.bytes() > cost_ + 2 * quantum) charge_.reduce(charge_.bytes() - cost_ - quantum);
 }
 
-void PipeEnd::State::deliver() {
+[[gnu::hot]] void PipeEnd::State::deliver() {
   std::unique_lock lock(mutex_);
   if (std::exchange(is_delivering_, true)) return;
   while (deliver_one(lock)) {
@@ -191,7 +191,7 @@ void PipeEnd::State::deliver() {
 }
 
 // Under the lock, which is given up meanwhile. False when there is nothing to be done.
-bool PipeEnd::State::deliver_one(std::unique_lock<std::mutex>& lock) {
+[[gnu::hot]] bool PipeEnd::State::deliver_one(std::unique_lock<std::mutex>& lock) {
   if (receiver_ && !receiver_->is_connected()) {
     const auto ended = std::exchange(receiver_, nullptr);
     lock.unlock();
@@ -369,7 +369,7 @@ bool PipeEnd::State::finish() {
   return true;
 }
 
-std::shared_ptr<endpoint::PipeSide> PipeEnd::State::side() const {
+[[gnu::hot]] std::shared_ptr<endpoint::PipeSide> PipeEnd::State::side() const {
   const std::lock_guard lock(mutex_);
   return side_;
 }

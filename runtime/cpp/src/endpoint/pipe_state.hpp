@@ -75,6 +75,8 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   void take_acknowledgement(std::uint32_t number);
   [[nodiscard]] std::size_t unacknowledged() const;
   bool wait_sent(std::chrono::milliseconds limit, std::size_t bytes) const;
+  /// The same without waiting.
+  [[nodiscard]] bool has_sent(std::size_t bytes) const;
   void ask_for_acknowledgements(bool on) { asks_.store(on, std::memory_order_relaxed); }
   void on_acknowledged(Function<void(std::uint32_t)> function);
 

@@ -7,7 +7,8 @@
 
 namespace rr::endpoint {
 
-PipeTable::End PipeTable::find(std::string_view path, std::string_view member, std::int32_t index) {
+[[gnu::hot]] PipeTable::End PipeTable::find(std::string_view path, std::string_view member,
+                                            std::int32_t index) {
   if (last_ && last_->identity.index == index && last_->identity.member->name == member &&
       last_->identity.path == path) {
     return last_;

@@ -7,14 +7,14 @@
 
 namespace rr {
 
-bool Subscription::Handler::enter() {
+[[gnu::hot]] bool Subscription::Handler::enter() {
   runner_.store(std::this_thread::get_id(), std::memory_order_relaxed);  // before it is running
   if ((state_.fetch_or(running) & disconnected) == 0) return true;
   leave();
   return false;
 }
 
-void Subscription::Handler::leave() {
+[[gnu::hot]] void Subscription::Handler::leave() {
   if ((state_.fetch_and(~running) & disconnected) != 0 && leave_disconnected()) drop();
 }
 

@@ -232,7 +232,8 @@ void Pipes::end() {
 channel::Connection& Pipes::connection() const { return endpoint_.connection(); }
 
 // A change of what the session may do ends its ends in a moment.
-void Pipes::stream(Writer& writer, const EntryHeader& header, std::string_view metadata) {
+[[gnu::hot]] void Pipes::stream(Writer& writer, const EntryHeader& header,
+                                std::string_view metadata) {
   if (!endpoint_.access().may_send(header.type, header.service_path, header.member)) {
     throw Error(ErrorCode::invalid_operation, "the pipe endpoint is closed");
   }

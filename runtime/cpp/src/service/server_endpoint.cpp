@@ -73,8 +73,8 @@ ServerEndpoint::~ServerEndpoint() {
   writer.release();  // the thread may not write anything for long, and nobody is charged for it
 }
 
-void ServerEndpoint::stream_packet(Writer& writer, const EntryHeader& header,
-                                   std::string_view metadata) {
+[[gnu::hot]] void ServerEndpoint::stream_packet(Writer& writer, const EntryHeader& header,
+                                                std::string_view metadata) {
   writer.entry(header, 1, 0);
   send_answer(writer, 1, header.type, Way::stream, metadata);
 }

@@ -62,7 +62,8 @@ void* add_item(Decoder& decoder, const Element& map, const Element& element,
 
 }  // namespace
 
-void NullableType::write(Writer& writer, const ElementName& name, const void* value) const {
+[[gnu::hot]] void NullableType::write(Writer& writer, const ElementName& name,
+                                      const void* value) const {
   if (const void* inner = operations_->get(value)) {
     value_->write(writer, name, inner);
   } else {
@@ -70,7 +71,7 @@ void NullableType::write(Writer& writer, const ElementName& name, const void* va
   }
 }
 
-bool NullableType::read(Decoder& decoder, const Element& element, void* value) const {
+[[gnu::hot]] bool NullableType::read(Decoder& decoder, const Element& element, void* value) const {
   if (element.type != ElementType::void_) {
     return value_->read(decoder, element, operations_->engage(value));
   }

@@ -248,7 +248,8 @@ bool RecordType::read(Decoder& decoder, const Element& element, void* value) con
   return value::read_items(decoder, received, item, value);
 }
 
-bool RecordType::read_struct(Decoder& decoder, const Element& element, void* value) const {
+[[gnu::hot]] bool RecordType::read_struct(Decoder& decoder, const Element& element,
+                                          void* value) const {
   if (element.type != ElementType::structure) return value::fail_type(decoder, element);
   if (element.type_name != name_) [[unlikely]]
     return fail_struct(decoder, element, *this);
@@ -256,7 +257,7 @@ bool RecordType::read_struct(Decoder& decoder, const Element& element, void* val
   return descent && read_fields(decoder, element, value);
 }
 
-void RecordType::write_fields(Writer& writer, const void* value) const {
+[[gnu::hot]] void RecordType::write_fields(Writer& writer, const void* value) const {
   const bool quick = writer.version() == MessageVersion::v4;
   const bool flat = kind_ == RecordKind::pod;
   for (auto field = fields_.rbegin(); field != fields_.rend(); ++field) {
@@ -270,7 +271,8 @@ void RecordType::write_fields(Writer& writer, const void* value) const {
   }
 }
 
-bool RecordType::read_fields(Decoder& decoder, const Element& element, void* value) const {
+[[gnu::hot]] bool RecordType::read_fields(Decoder& decoder, const Element& element,
+                                          void* value) const {
   const bool quick = decoder.version() == MessageVersion::v4;
   const bool flat = kind_ == RecordKind::pod;
   // All elements before the reader's place have been taken by other fields, so the first one of a
