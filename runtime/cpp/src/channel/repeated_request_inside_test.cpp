@@ -42,10 +42,10 @@ const std::string request = "RRAC, with RR and R in it";
 // The body looks as if the request were repeated, in the midst of a record.
 const std::string hello = record("hello " + request);
 const std::string finished = record("finished");
-constexpr std::size_t never = 1'000'000;
+constexpr std::size_t endless = 1'000'000;
 
 // What TLS gets of a stream that comes in two pieces, cut at each place, and byte by byte.
-std::string left_of(const std::string& stream, std::size_t handshake = never,
+std::string left_of(const std::string& stream, std::size_t handshake = endless,
                     const std::string& asked = request) {
   std::string result;
   for (std::size_t cut = 0; cut <= stream.size(); ++cut) {
@@ -111,7 +111,7 @@ TEST(RepeatedRequest, OfARequestThatIsTooLargeIsForTls) {
   EXPECT_EQ(RepeatedRequest::kept(bytes_of(request)), bytes_of(request));
   const std::string large(RepeatedRequest::largest + 1, 'R');
   EXPECT_TRUE(RepeatedRequest::kept(bytes_of(large)).empty());
-  EXPECT_EQ(left_of(hello + request + finished, never, {}), hello + request + finished);
+  EXPECT_EQ(left_of(hello + request + finished, endless, {}), hello + request + finished);
 }
 
 }  // namespace
