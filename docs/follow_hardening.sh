@@ -4,7 +4,7 @@
 # runs every command and check of the page in it, in order. Then another machine, which is a network namespace, tries
 # firewall and address filter. Needs root, and the programs below.
 # Usage: follow_hardening.sh [FOLDER]: the system is made in FOLDER, which must not exist, and stays; else in a folder that
-# goes. ROBDEF_CCACHE=FOLDER: a cache of ccache that the build in the system uses, with CXXFLAGS; nothing else changes.
+# goes. ROBDEF_CACHE=FOLDER: a cache of ccache that the build in the system uses, with CXXFLAGS; nothing else changes.
 # Exit status 77 where it cannot be done.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -83,7 +83,7 @@ fi
 mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Identifier: Packages' | grep -v security | sort -u | head -n 1)
 echo 'an empty system'
 include=systemd,systemd-sysv,dbus
-[ -z "${ROBDEF_CCACHE:-}" ] || include+=,ccache
+[ -z "${ROBDEF_CACHE:-}" ] || include+=,ccache
 # Its mounts go with the namespace.
 supervise setpriv --pdeathsig TERM unshare --mount --pid --fork --kill-child --mount-proc \
   debootstrap --variant=minbase --include=$include bookworm "$root" "$mirror" >"$work/debootstrap.log" 2>&1 ||
@@ -100,10 +100,9 @@ environment="HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/
 
 echo 'what the page installs, with the network of this machine'
 cache=()
-if [ -n "${ROBDEF_CCACHE:-}" ]; then
-  cache=("--bind=$ROBDEF_CCACHE:/var/cache/ccache")
-  environment+=" CCACHE_DIR=/var/cache/ccache CCACHE_BASEDIR=/root CCACHE_NOHASHDIR=1 CMAKE_CXX_COMPILER_LAUNCHER=ccache"
-  environment+=" CMAKE_C_COMPILER_LAUNCHER=ccache CXXFLAGS=${CXXFLAGS:-}"
+if [ -n "${ROBDEF_CACHE:-}" ]; then
+  cache=("--bind=$ROBDEF_CACHE:/var/cache/ccache")
+  environment+=" CCACHE_DIR=/var/cache/ccache CXXFLAGS=${CXXFLAGS:-}"
 fi
 run --only Install --shell "setpriv --pdeathsig TERM systemd-nspawn ${options[*]} ${cache[*]} --resolv-conf=replace-host \
   --console=pipe --as-pid2 env -i $environment bash -c 'cd /root/robdef && exec bash --noprofile --norc'"
