@@ -28,7 +28,7 @@ else
 fi
 root=$work/root
 group=robdef-hardening.$$
-job='' booted='' peer=''
+job='' booted='' leader='' peer=''
 
 # What runs in the system, or makes it; this shell and its subshells have the folder in their command line, too.
 is_in_use() { pgrep -f -- "--directory=$root " >/dev/null; }
@@ -36,7 +36,9 @@ is_in_use() { pgrep -f -- "--directory=$root " >/dev/null; }
 finish() {
   trap '' INT TERM
   local pid
-  for pid in $job $booted $peer; do kill -TERM "$pid" 2>/dev/null || true; done
+  # With process 1 all of the system ends; nspawn clears up behind it.
+  [ -z "$leader" ] || kill -KILL "$leader" 2>/dev/null || true
+  for pid in $job ${leader:-$booted} $peer; do kill -TERM "$pid" 2>/dev/null || true; done
   for _ in $(seq 150); do
     is_in_use || break
     sleep 0.2
@@ -152,8 +154,8 @@ nsenter --target "$peer" --net bash -euo pipefail -c 'ip link set eth0 up
 run --skip Install --shell "nsenter --target $leader --all env -i $environment \
   bash -c 'cd /root/robdef && exec bash --noprofile --norc'"
 
-echo 'the service for another machine, as the page says'
-inside 'sed -i "s/ 127.0.0.1 52222/ 192.168.10.1 52222/" /etc/systemd/system/lamp.service
+echo 'the service for another machine, and without AF_NETLINK, as the page says'
+inside 'sed -i "s/ 127.0.0.1 52222/ 192.168.10.1 52222/; s/ AF_NETLINK//" /etc/systemd/system/lamp.service
   systemctl daemon-reload
   systemctl restart lamp.service
   cat /proc/sys/kernel/random/uuid >/var/lib/robdef-ca/other
