@@ -72,6 +72,13 @@ class Blocks(unittest.TestCase):
         self.assertEqual(self.run_page(text, "--only", "Two")[0], 1)
         self.assertIn("no block was run", self.run_page(text, "--only", "Three")[1])
 
+    def test_checks_that_readers_do_not_see_are_run(self):
+        text = "```console\n$ x=1\n```\n\nIt is one.\n\n<!-- check: [ $x = 1 ] -->\n\n<!-- check: [ $x = 2 ] -->\n"
+        status, output = self.run_page(text)
+        self.assertEqual(status, 1)
+        self.assertRegex(output, r"page.md:9: `\[ \$x = 2 \]` ended with status 1")
+        self.assertEqual(self.run_page(text.replace("$x = 2", "$x -lt 2"))[0], 0)
+
     def test_another_system_has_its_own_shell_and_files(self):
         with tempfile.TemporaryDirectory() as root:
             text = "`/etc/one`:\n\n```\n1\n```\n\n```console\n# cat etc/one\n1\n```\n"

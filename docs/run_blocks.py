@@ -17,6 +17,10 @@ Other comments before a block:
   <!-- instead: COMMAND -->   runs COMMAND in place of the block
   <!-- fails -->              the last command of the block fails
 
+A comment that stands for itself, and that readers do not see:
+
+  <!-- check: COMMAND -->     runs COMMAND there, which must succeed: what the text around it promises
+
 A block that is none of these is an error: no block of a page goes unseen.
 """
 import argparse
@@ -33,7 +37,7 @@ import threading
 import time
 
 CAPTION = re.compile(r"^`([^`]+)`:$")
-COMMENT = re.compile(r"^<!-- *(not run|needs|instead|fails)(?:: *(.*?))? *-->$")
+COMMENT = re.compile(r"^<!-- *(not run|needs|instead|fails|check)(?:: *(.*?))? *-->$")
 
 
 class Failure(Exception):
@@ -75,7 +79,12 @@ def read_blocks(text):
             block.section = section
         else:
             comment = COMMENT.match(line.strip())
-            if comment:
+            if comment and comment.group(1) == "check":
+                check = Block(number - 1, "console", heading)
+                check.section = section
+                check.lines = ["$ " + (comment.group(2) or "false")]
+                blocks.append(check)
+            elif comment:
                 notes[comment.group(1)] = comment.group(2) or ""
             elif line.strip():
                 before, notes = line.strip(), notes if CAPTION.match(line.strip()) else {}

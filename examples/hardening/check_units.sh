@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Whether the units of this folder are well-formed, and how well they protect. Usage: check_units.sh BIN,
-# the folder of robdef and encrypted_service. Exit status 77 where there is no systemd-analyze.
+# the folder of robdef and hardened_lamp. Exit status 77 where there is no systemd-analyze.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 bin=$(cd "$1" && pwd)
