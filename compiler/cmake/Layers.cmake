@@ -109,7 +109,7 @@ set(robdef_outside_headers
   "^boost/| cli/inspect_page.cpp runtime/cpp/include/rr/async runtime/cpp/fuzz/client_programs.cpp runtime/cpp/src/channel/web_socket.cpp runtime/cpp/src/channel/memory_stream.hpp"
   "^openssl/| runtime/cpp/src/channel runtime/cpp/src/service/password_hash.cpp conformance/harness/web_socket_recording.cpp"
   "^rr/async(\\.hpp$|/)| runtime/cpp/include/rr/async.hpp runtime/cpp/include/rr/async runtime/cpp/src runtime/cpp/fuzz runtime/cpp/stress examples conformance benchmarks compiler/backends"
-  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| compiler/plugin/program.cpp runtime/cpp/src/serial runtime/arduino/bench/tcp runtime/cpp/src/channel runtime/cpp/src/discovery runtime/cpp/src/endpoint runtime/cpp/src/realtime/udp_socket.cpp runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp conformance benchmarks"
+  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| compiler/plugin/program.cpp runtime/cpp/src/serial runtime/arduino/bench/tcp runtime/cpp/src/channel runtime/cpp/src/discovery runtime/cpp/src/endpoint runtime/cpp/src/realtime/udp_socket.cpp runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp examples/hardening/sandbox_probe.cpp conformance benchmarks"
   "^fmt/| cli compiler benchmarks"
   "^nlohmann/| compiler/lsp compiler/plugin/answer.cpp runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"
   "^toml\\+\\+/| compiler/project/toml_file.cpp"
