@@ -50,7 +50,8 @@ void PeerLayers::add(std::unique_ptr<Layer> layer, std::span<const std::byte> re
 
 void PeerLayers::begin_tls() {
   around_ |= started_tls;
-  layers().add(link_.tls->make_server(is_mutual_ || terms_.must_certify_clients));
+  auto tls = link_.tls->make_server(is_mutual_ || terms_.must_certify_clients);
+  layers().add(std::make_unique<RepeatedRequest>(std::move(tls), std::exchange(request_, {})));
 }
 
 bool PeerLayers::is_encrypted() const {

@@ -10,8 +10,10 @@
 #include "rr/node_id.hpp"
 #include "rr/options.hpp"
 #include "rr/reader.hpp"
+#include "runtime/cpp/src/channel/layer.hpp"
 #include "runtime/cpp/src/channel/layered_carrier.hpp"
 #include "runtime/cpp/src/channel/link_terms.hpp"
+#include "runtime/cpp/src/channel/repeated_request.hpp"
 
 namespace rr::channel {
 
@@ -40,10 +42,12 @@ class PeerLayers {
   /// Puts a layer around everything; `received` are bytes for it that have come already.
   void add(std::unique_ptr<Layer> layer, std::span<const std::byte> received = {});
 
-  // STARTTLS (04, section 6): answered in clear, and followed by TLS.
-  void ask_for_tls(bool is_mutual) {
+  // STARTTLS (04, section 6): answered in clear, and followed by TLS. `request` are the bytes of
+  // the message that asked for it.
+  void ask_for_tls(bool is_mutual, std::span<const std::byte> request) {
     begins_tls_ = true;
     is_mutual_ = is_mutual;
+    request_ = RepeatedRequest::kept(request);
   }
   [[nodiscard]] bool begins_tls() const { return begins_tls_; }
   /// Bytes have come behind the request, in clear: they must not be taken for what was said inside.
@@ -84,6 +88,7 @@ class PeerLayers {
   bool is_layered_ = false;  // carrier_ is a LayeredCarrier
   bool begins_tls_ = false;
   bool is_mutual_ = false;
+  Bytes request_;  // that asked for TLS, until that begins
   bool has_bytes_behind_ = false;
   std::atomic<unsigned> around_{0};
   NodeId certified_node_;  // once, before is_proven_ is set

@@ -141,7 +141,7 @@ class StreamConnection final : public Connection,
   bool take_packet(Scratch& scratch, const Frame& frame);
   void take_answers(const Message& message, const Entry& first, const MemoryRef& owner,
                     DeferredCallbacks& deferred);
-  void answer_own(const Message& message, const Entry& entry);
+  void answer_own(const Message& message, const Entry& entry, std::span<const std::byte> bytes);
   void send_test();
   void refuse_stream(const Scratch& scratch, std::size_t size);
   bool take_read_lease(bool until_end = false);

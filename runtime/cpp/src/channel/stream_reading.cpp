@@ -193,7 +193,8 @@ StreamConnection::Received StreamConnection::fail_reading(const Error& why) {
 }
 
 // What a message for the connection itself asks for.
-void StreamConnection::answer_own(const Message& message, const Entry& entry) {
+void StreamConnection::answer_own(const Message& message, const Entry& entry,
+                                  std::span<const std::byte> bytes) {
   const OwnSide side{*options_, terms_, layers_, remote_node_, version(), role_ == Role::server};
   Writer& writer = thread_writer();
   const OwnAnswer answer = OwnRequests(side, writer).answer(message, entry);
@@ -201,7 +202,7 @@ void StreamConnection::answer_own(const Message& message, const Entry& entry) {
     set_agreement(layers_.sender_of(message), std::string(message.sender_name), *answer.agreement);
   }
   if (answer.is_answer) send_own(writer);
-  if (answer.begins_tls) layers_.ask_for_tls(answer.is_mutual);
+  if (answer.begins_tls) layers_.ask_for_tls(answer.is_mutual, bytes);
 }
 
 void StreamConnection::send_test() {
@@ -242,7 +243,7 @@ void StreamConnection::refuse_stream(const Scratch& scratch, std::size_t size) {
   }
   if (!layers_.may_send(message)) return false;
   if (is_own(first.type)) {
-    answer_own(message, first);
+    answer_own(message, first, frame.bytes);
     return true;
   }
   if (terms_.is_tls_required && !layers_.is_encrypted()) return false;

@@ -9,11 +9,18 @@
 #include <future>
 #include <memory>
 #include <mutex>
+#include <span>
+#include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "rr/authority.hpp"
 #include "rr/message_tree.hpp"
+#include "rr/url.hpp"
+#include "runtime/cpp/src/channel/components.hpp"
+#include "runtime/cpp/src/channel/layer.hpp"
 #include "runtime/cpp/src/channel/openssl_tls.hpp"
+#include "runtime/cpp/src/channel/web_socket.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 #include "runtime/cpp/src/replay/stream.hpp"
 
@@ -188,6 +195,97 @@ TEST_F(TlsClientPeer, InOnePieceWithTheRequestForTlsIsNotServedEither) {
     EXPECT_EQ(message.entries.at(0).member, "STARTTLS");
   }
   EXPECT_FALSE(stream.is_open());
+}
+
+// The layer of a client that also sends bytes in clear: with its second flight of the handshake, or
+// with the first bytes after it.
+class SaysInClear final : public channel::Layer {
+ public:
+  enum class When { in_handshake, after_handshake };
+  SaysInClear(std::unique_ptr<Layer> tls, When when, channel::Bytes bytes)
+      : tls_(std::move(tls)), when_(when), bytes_(std::move(bytes)) {}
+
+  void receive(std::span<const std::byte> wire, channel::Bytes& plain,
+               channel::Bytes& reply) override {
+    channel::Bytes flight;
+    tls_->receive(wire, plain, flight);
+    if (when_ == When::in_handshake && !flight.empty()) {
+      channel::append(reply, std::exchange(bytes_, {}));
+    }
+    channel::append(reply, flight);
+  }
+  void send(std::span<const std::byte> plain, channel::Bytes& wire) override {
+    channel::append(wire, std::exchange(bytes_, {}));
+    tls_->send(plain, wire);
+  }
+  void begin(channel::Bytes& wire) override { tls_->begin(wire); }
+  [[nodiscard]] bool is_open() const override { return tls_->is_open(); }
+  [[nodiscard]] bool has_ended() const override { return tls_->has_ended(); }
+
+ private:
+  const std::unique_ptr<Layer> tls_;
+  const When when_;
+  channel::Bytes bytes_;
+};
+
+// A client that says something in clear besides TLS: what the service answers inside.
+class TlsClientPeerInClear : public TlsClientPeer {
+ protected:
+  using When = SaysInClear::When;
+  Arrival answer_of(When when, const replay::Bytes& in_clear, bool is_web = false) {
+    const auto web = channel::make_web_sockets({});
+    const channel::OpenSslTls tls(certificate_of(other), other);
+    Stream stream = Stream::connect("127.0.0.1", port);
+    if (is_web) {
+      const std::string url = "rr+ws://127.0.0.1:" + std::to_string(port) + "/?service=counter";
+      stream.put(web->make_client(Url::parse(url)), limit);
+    }
+    stream.send(request);
+    replay::Bytes bytes;
+    EXPECT_EQ(stream.receive(bytes, limit), Arrival::message);
+    try {
+      stream.put(std::make_unique<SaysInClear>(tls.make_client(wanted), when, in_clear), limit);
+    } catch (const std::runtime_error&) {
+      return Arrival::closed;
+    }
+    stream.send(write_tree(operation(EntryType::stream_op, "CreateConnection", other)));
+    const Arrival arrival = stream.receive(bytes, limit);
+    MessageTree message;
+    if (arrival == Arrival::message && read_tree(bytes, message)) {
+      EXPECT_EQ(message.entries.at(0).member, "CreateConnection");
+      EXPECT_EQ(message.entries.at(0).error, 0);
+    }
+    return arrival;
+  }
+
+  const replay::Bytes request = write_tree(operation(EntryType::stream_op, "STARTTLS", other));
+};
+
+TEST_F(TlsClientPeerInClear, MayRepeatItsRequestForTlsOnceWithinTheHandshake) {
+  EXPECT_EQ(answer_of(When::in_handshake, {}), Arrival::message);
+  EXPECT_EQ(answer_of(When::in_handshake, request), Arrival::message);
+  EXPECT_EQ(answer_of(When::in_handshake, request, true), Arrival::message);
+}
+
+TEST_F(TlsClientPeerInClear, MayNotRepeatItTwice) {
+  replay::Bytes twice = request;
+  channel::append(twice, request);
+  EXPECT_EQ(answer_of(When::in_handshake, twice), Arrival::closed);
+  EXPECT_TRUE(eventually([&] { return log().find("does not speak TLS") != std::string::npos; }));
+}
+
+TEST_F(TlsClientPeerInClear, MaySayNothingElseWithinTheHandshake) {
+  replay::Bytes other_request = request;
+  other_request.back() ^= std::byte{1};
+  EXPECT_EQ(answer_of(When::in_handshake, other_request), Arrival::closed);
+  EXPECT_EQ(answer_of(When::in_handshake,
+                      write_tree(operation(EntryType::stream_op, "CreateConnection", other))),
+            Arrival::closed);
+}
+
+TEST_F(TlsClientPeerInClear, MayNotRepeatItAfterTheHandshake) {
+  EXPECT_EQ(answer_of(When::after_handshake, request), Arrival::closed);
+  EXPECT_TRUE(is_served());
 }
 
 TEST_F(TlsClientPeer, ThatSaysItIsAnotherThanItsCertificateIsNotServed) {
