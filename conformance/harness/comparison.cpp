@@ -2,7 +2,6 @@
 #include "conformance/harness/comparison.hpp"
 
 #include <algorithm>
-#include <regex>
 
 #include "conformance/harness/decoded.hpp"
 #include "conformance/harness/explanation.hpp"
@@ -86,6 +85,16 @@ bool has_text(const Json& json, const std::string& text) {
          });
 }
 
+// The names of errors that an object, or a callback of a plan, is told to throw.
+void collect_names(const Json& json, std::set<std::string>& names) {
+  if (!json.is_structured()) return;
+  for (const auto& [key, item] : json.items()) {
+    const bool is_thrown = key == "end" || key.ends_with("throw");
+    if (is_thrown && item.is_object() && item.contains("name")) names.insert(item["name"]);
+    collect_names(item, names);
+  }
+}
+
 void collect_messages(const Json& json, std::set<std::string>& texts, bool& echoes) {
   if (!json.is_structured()) return;
   if (json.is_object()) {
@@ -104,11 +113,6 @@ void collect_messages(const Json& json, std::set<std::string>& texts, bool& echo
 
 }  // namespace
 
-bool is_host_specific(const std::string& error_name) {
-  static const std::regex mangled(R"((St|S[a-z]|N|NSt)?\d.*|std::.*|std\.exception)");
-  return std::regex_match(error_name, mangled);
-}
-
 Bytes addressed(const Frame& frame, const PlayedConnection& connection) {
   rr::MessageTree recorded;
   if (!rr::read_tree(frame.bytes, recorded)) return frame.bytes;
@@ -122,6 +126,14 @@ Bytes addressed(const Frame& frame, const PlayedConnection& connection) {
 
 Comparison::Comparison(const Captures& captures) {
   collect_messages(captures.service, scripted_texts_, echoes_texts_);
+  collect_names(captures.service, scripted_names_);
+  for (const Scenario& scenario : captures.scenarios) {
+    for (const Step& step : scenario.steps) collect_names(step.plan, scripted_names_);
+  }
+}
+
+bool Comparison::is_host_specific(const std::string& error_name) const {
+  return !error_name.starts_with("RobotRaconteur.") && !scripted_names_.contains(error_name);
 }
 
 bool Comparison::is_scripted(const std::string& text, const Json& request) const {

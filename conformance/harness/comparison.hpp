@@ -47,17 +47,18 @@ class Comparison {
 
   /// True when the text of an error was given by service.json, or by the caller.
   [[nodiscard]] bool is_scripted(const std::string& text, const Json& request) const;
+  /// True for a name that a host language gave to its own exception: it is neither of the protocol
+  /// nor given by service.json or a plan.
+  [[nodiscard]] bool is_host_specific(const std::string& error_name) const;
 
  private:
   void put_aside_error_texts(const rr::EntryTree& recorded, rr::EntryTree& live,
                              const Json& request) const;
 
   std::set<std::string> scripted_texts_;
+  std::set<std::string> scripted_names_;
   bool echoes_texts_ = false;
   bool has_other_urls_ = false;
 };
-
-/// True for a name that a host language gave to its own exception.
-bool is_host_specific(const std::string& error_name);
 
 }  // namespace rr::conformance

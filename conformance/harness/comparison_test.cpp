@@ -128,13 +128,16 @@ TEST_F(ComparisonTest, WhatIsNoMessageIsDifferent) {
   EXPECT_NE(comparison_.difference(answer, bytes_of_hex("00"), connection_, nullptr), std::nullopt);
 }
 
-TEST(HostSpecificNames, AreToldFromThoseOfTheProtocol) {
-  EXPECT_TRUE(is_host_specific("St13runtime_error"));
-  EXPECT_TRUE(is_host_specific("N5boost10wrapexceptISt12out_of_rangeEE"));
-  EXPECT_TRUE(is_host_specific("std::exception"));
-  EXPECT_TRUE(is_host_specific("std.exception"));  // what our own C++ runtime says
-  EXPECT_FALSE(is_host_specific("RobotRaconteur.OutOfRange"));
-  EXPECT_FALSE(is_host_specific("conformance.types.ProbeFault"));
+TEST_F(ComparisonTest, HostSpecificNamesAreThoseThatNobodyHasGiven) {
+  for (const char* host : {"St13runtime_error", "N5boost10wrapexceptISt12out_of_rangeEE",
+                           "std::exception", "std.exception", "System.InvalidOperationException",
+                           "java.lang.IllegalStateException", "ValueError"}) {
+    EXPECT_TRUE(comparison_.is_host_specific(host)) << host;
+  }
+  for (const char* given : {"RobotRaconteur.OutOfRange", "conformance.types.ProbeFault",
+                            "not.a.known.Error", "scripted.Name"}) {
+    EXPECT_FALSE(comparison_.is_host_specific(given)) << given;
+  }
 }
 
 TEST(RepeatedTypeAnswers, AreFoundByTheirRequest) {

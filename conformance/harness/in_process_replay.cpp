@@ -71,7 +71,7 @@ class InProcessReplay::Play {
     Run as_service = result_.run;
     as_service.role = Role::service;
     for_each_frame(step, [&](const Frame& frame) {
-      const std::string error = host_error_of(frame);
+      const std::string error = host_error_of(frame, replay_.comparison_);
       if (found != nullptr || error.empty()) return;
       found = replay_.deviations_.find(as_service, host_error_place(error));
     });

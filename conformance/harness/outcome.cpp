@@ -29,7 +29,7 @@ std::optional<std::string> fault_of_error(const Comparison& comparison, const St
   const std::string both = said(recorded) + " recorded, " + said(raised) + " raised";
   if (recorded.at("code") != raised.value("code", Json())) return both;
   const std::string name = recorded.at("name");
-  if (!is_host_specific(name) && name != raised.value("name", "")) return both;
+  if (!comparison.is_host_specific(name) && name != raised.value("name", "")) return both;
   const std::string message = recorded.at("message");
   const Json arguments = step.plan.value("args", Json::array());
   if (comparison.is_scripted(message, arguments) && message != raised.value("message", "")) {

@@ -37,14 +37,14 @@ Json withheld_capabilities(const Scenario& scenario) {
 
 }  // namespace
 
-std::string host_error_of(const Frame& frame) {
+std::string host_error_of(const Frame& frame, const Comparison& comparison) {
   if (frame.from_client || frame.entries().empty()) return {};
   const Json& entry = frame.entries().front();
   if (entry.at("error") != static_cast<int>(ErrorCode::remote_error)) return {};
   for (const Json& element : entry.at("elements")) {
     if (element.value("name", "") != "errorname") continue;
     const std::string name = element.at("value");
-    return is_host_specific(name) ? name : std::string();
+    return comparison.is_host_specific(name) ? name : std::string();
   }
   return {};
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "conformance/harness/captures.hpp"
+#include "conformance/harness/comparison.hpp"
 #include "conformance/harness/json.hpp"
 
 /// What a recording says of the service that was recorded.
@@ -17,6 +18,6 @@ Json serve_request(const Captures& captures, const Scenario& scenario, const Jso
 std::string service_of(const Scenario& scenario, int connection);
 
 /// The name that the host language of the recorded library gave to the exception in an answer.
-std::string host_error_of(const Frame& frame);
+std::string host_error_of(const Frame& frame, const Comparison& comparison);
 
 }  // namespace rr::conformance

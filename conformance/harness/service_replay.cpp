@@ -75,7 +75,7 @@ class ServiceReplay::Play {
     }
     for (int i = 0; i < step.frame_count; ++i) {
       const Frame& frame = scenario_.frames[static_cast<std::size_t>(step.first_frame + i)];
-      const std::string host_error = host_error_of(frame);
+      const std::string host_error = host_error_of(frame, replay_.comparison_);
       const ListEntry* entry = nullptr;
       if (frame.entries().empty()) {
         entry = listed(no_entries);

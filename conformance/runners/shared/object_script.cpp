@@ -52,29 +52,47 @@ Json ObjectScript::next_outcome(std::string_view function, const Json& parameter
 
 Json ObjectScript::outcome(std::string_view function, const Json& parameters,
                            std::string_view result_type) {
-  const auto action = actions_.find(function);
-  if (action != actions_.end()) return action->second(result_type);
-  if (function.ends_with(later)) {
-    const auto put_off = actions_.find(function.substr(0, function.size() - later.size()));
-    if (put_off != actions_.end()) {
-      const auto fired = actions_.find(
-          std::string("fire_answered_").append(put_off->first, put_off->first.find('_') + 1));
-      do_later(std::string(function),
-               [this, client = ServiceContext::current_client(), &act = put_off->second, fired] {
-                 put_off_client = client;
-                 (void)act({});
-                 if (fired != actions_.end()) (void)fired->second({});
-               });
-      return nullptr;
-    }
+  if (is_known_by_name(function)) {
+    if (auto done = act(function, parameters, result_type)) return *done;
   }
   const Json next = next_outcome(function, parameters);
-  if (next.is_null()) {
-    if (function == "release_child") release(parameters.at(0).get<std::string>());
-    return nullptr;
+  if (const Json other = part(next, "does"); other.is_string()) {
+    auto done = act(other.get_ref<const std::string&>(), parameters, result_type);
+    if (!done) throw std::runtime_error("nothing is called " + other.dump());
+    return *done;
   }
   if (next.contains("echo")) return parameters.at(next["echo"].get<std::size_t>());
   return part(next, "return");
+}
+
+// Not where an outcome says itself what the function does.
+bool ObjectScript::is_known_by_name(std::string_view function) {
+  const Json outcomes = told("functions", function);
+  return std::none_of(outcomes.begin(), outcomes.end(),
+                      [](const Json& outcome) { return outcome.contains("does"); });
+}
+
+// Does what a function of this name is for; nothing for a name that says nothing.
+std::optional<Json> ObjectScript::act(std::string_view name, const Json& parameters,
+                                      std::string_view result_type) {
+  if (name == "release_child") {
+    release(parameters.at(0).get<std::string>());
+    return Json();
+  }
+  const auto action = actions_.find(name);
+  if (action != actions_.end()) return action->second(result_type);
+  if (!name.ends_with(later)) return std::nullopt;
+  const auto put_off = actions_.find(name.substr(0, name.size() - later.size()));
+  if (put_off == actions_.end()) return std::nullopt;
+  const auto fired = actions_.find(
+      std::string("fire_answered_").append(put_off->first, put_off->first.find('_') + 1));
+  do_later(std::string(name),
+           [this, client = ServiceContext::current_client(), &act = put_off->second, fired] {
+             put_off_client = client;
+             (void)act({});
+             if (fired != actions_.end()) (void)fired->second({});
+           });
+  return Json();
 }
 
 void ObjectScript::do_later(std::string name, std::function<void()> what) {

@@ -27,6 +27,7 @@ namespace rr::conformance {
 /// `fire_<event>`, `send_<pipe>`, `close_<pipe>`, `received_count`, `send_<wire>`, `close_<wire>`,
 /// `last_<wire>`, `call_<callback>`, `release_child`; with `_later` behind it a function does so
 /// when it has been answered. Behind `call_X_later` comes the event `answered_X`, if there is one.
+/// An outcome with `does` says so for a function of any name; null: it does nothing of the kind.
 class ObjectScript {
  public:
   explicit ObjectScript(Json node) : node_(std::move(node)) {}
@@ -86,6 +87,9 @@ class ObjectScript {
 
  private:
   void release(const std::string& path);
+  [[nodiscard]] bool is_known_by_name(std::string_view function);
+  std::optional<Json> act(std::string_view name, const Json& parameters,
+                          std::string_view result_type);
 
   std::mutex mutex_;
   Json node_;

@@ -21,7 +21,8 @@ using ::testing::HasSubstr;
 // Does what a test gives it when `act_later` has been answered.
 class Acting final : public ObjectScript {
  public:
-  explicit Acting(std::function<void()> act) : ObjectScript(Json::object()) {
+  explicit Acting(std::function<void()> act, Json node = Json::object())
+      : ObjectScript(std::move(node)) {
     add_action("act", [act = std::move(act)](std::string_view) {
       act();
       return Json();
@@ -61,6 +62,30 @@ TEST(ObjectScript, SaysWhatFailsOfWhatIsPutOffAndGoesOn) {
   EXPECT_THAT(said_of([] { throw std::runtime_error("no such script"); }),
               HasSubstr("act_later: no such script"));
   EXPECT_THAT(said_of([] { throw 5; }), HasSubstr("act_later: "));
+}
+
+TEST(ObjectScript, DoesWhatAnOutcomeSaysWhateverTheFunctionIsCalled) {
+  int done = 0;
+  Acting script([&] { ++done; }, Json::parse(R"({"functions": {
+    "press": [{"return": 1}, {"does": "act"}],
+    "act": [{"does": null, "return": 5}],
+    "wish": [{"does": "nothing_known"}]}})"));
+  const Json none = Json::array();
+  EXPECT_EQ(script.outcome("press", none, "int32"), Json(1));
+  EXPECT_EQ(done, 0);
+  EXPECT_TRUE(script.outcome("press", none, "void").is_null());
+  EXPECT_EQ(done, 1);
+  EXPECT_EQ(script.outcome("act", none, "int32"), Json(5));
+  EXPECT_EQ(done, 1);
+  EXPECT_THROW(script.outcome("wish", none, "void"), std::runtime_error);
+}
+
+TEST(ObjectScript, KnowsFunctionsByTheirNamesOtherwise) {
+  int done = 0;
+  // The recorded value of what the function does says nothing new.
+  Acting script([&] { ++done; }, Json::parse(R"({"functions": {"act": [{"return": 5}]}})"));
+  EXPECT_TRUE(script.outcome("act", Json::array(), "int32").is_null());
+  EXPECT_EQ(done, 1);
 }
 
 }  // namespace

@@ -9,11 +9,6 @@
 namespace rr::channel {
 namespace {
 
-Bytes bytes_of(std::string_view text) {
-  const auto bytes = std::as_bytes(std::span(text));
-  return {bytes.begin(), bytes.end()};
-}
-
 // Keeps what it gets; is open once it has had so many bytes.
 class Kept final : public Layer {
  public:
@@ -33,64 +28,74 @@ class Kept final : public Layer {
   const std::size_t handshake_;
 };
 
-std::string record(std::string_view body) {
-  return std::string("\x16\x03\x01") + static_cast<char>(body.size() >> 8) +
-         static_cast<char>(body.size() & 0xFF) + std::string(body);
-}
+class RepeatedRequestTest : public ::testing::Test {
+ protected:
+  static constexpr std::size_t no_end = 1'000'000;  // of the handshake
 
-const std::string request = "RRAC, with RR and R in it";
-// The body looks as if the request were repeated, in the midst of a record.
-const std::string hello = record("hello " + request);
-const std::string finished = record("finished");
-constexpr std::size_t endless = 1'000'000;
-
-// What TLS gets of a stream that comes in two pieces, cut at each place, and byte by byte.
-std::string left_of(const std::string& stream, std::size_t handshake = endless,
-                    const std::string& asked = request) {
-  std::string result;
-  for (std::size_t cut = 0; cut <= stream.size(); ++cut) {
-    std::string got;
-    std::string bytewise;
-    RepeatedRequest layer(std::make_unique<Kept>(got, handshake), bytes_of(asked));
-    RepeatedRequest slow(std::make_unique<Kept>(bytewise, handshake), bytes_of(asked));
-    Bytes plain;
-    Bytes reply;
-    layer.receive(bytes_of(std::string_view(stream).substr(0, cut)), plain, reply);
-    layer.receive(bytes_of(std::string_view(stream).substr(cut)), plain, reply);
-    EXPECT_EQ(plain, bytes_of(got)) << cut;
-    for (const char each : stream) slow.receive(bytes_of({&each, 1}), plain, reply);
-    EXPECT_EQ(bytewise, got) << cut;
-    if (cut == 0) result = got;
-    EXPECT_EQ(got, result) << cut;
+  static Bytes bytes_of(std::string_view text) {
+    const auto bytes = std::as_bytes(std::span(text));
+    return {bytes.begin(), bytes.end()};
   }
-  return result;
-}
+  static std::string record(std::string_view body) {
+    return std::string("\x16\x03\x01") + static_cast<char>(body.size() >> 8) +
+           static_cast<char>(body.size() & 0xFF) + std::string(body);
+  }
+  // What TLS gets of a stream that comes in two pieces, cut at each place, and byte by byte.
+  std::string left_of(const std::string& stream, std::size_t handshake = no_end) const {
+    return left_of(stream, handshake, request);
+  }
+  static std::string left_of(const std::string& stream, std::size_t handshake,
+                             const std::string& asked) {
+    std::string result;
+    for (std::size_t cut = 0; cut <= stream.size(); ++cut) {
+      std::string got;
+      std::string bytewise;
+      RepeatedRequest layer(std::make_unique<Kept>(got, handshake), bytes_of(asked));
+      RepeatedRequest slow(std::make_unique<Kept>(bytewise, handshake), bytes_of(asked));
+      Bytes plain;
+      Bytes reply;
+      layer.receive(bytes_of(std::string_view(stream).substr(0, cut)), plain, reply);
+      layer.receive(bytes_of(std::string_view(stream).substr(cut)), plain, reply);
+      EXPECT_EQ(plain, bytes_of(got)) << cut;
+      for (const char each : stream) slow.receive(bytes_of({&each, 1}), plain, reply);
+      EXPECT_EQ(bytewise, got) << cut;
+      if (cut == 0) result = got;
+      EXPECT_EQ(got, result) << cut;
+    }
+    return result;
+  }
 
-TEST(RepeatedRequest, IsDroppedBetweenRecords) {
+  const std::string request = "RRAC, with RR and R in it";
+  // The body looks as if the request were repeated in the midst of a record.
+  const std::string hello = record("hello " + request);
+  const std::string finished = record("finished");
+};
+
+TEST_F(RepeatedRequestTest, IsDroppedBetweenRecords) {
   EXPECT_EQ(left_of(hello + request + finished), hello + finished);
   EXPECT_EQ(left_of(request + hello + finished), hello + finished);
   EXPECT_EQ(left_of(hello + finished + request), hello + finished);
 }
 
-TEST(RepeatedRequest, NothingIsDroppedWithoutOne) {
+TEST_F(RepeatedRequestTest, NothingIsDroppedWithoutOne) {
   EXPECT_EQ(left_of(hello + finished), hello + finished);
   EXPECT_EQ(left_of(record("") + hello), record("") + hello);
   const std::string large = record(std::string(0x1234, 'R'));
   EXPECT_EQ(left_of(large.substr(0, 300)), large.substr(0, 300));
 }
 
-TEST(RepeatedRequest, IsDroppedOnce) {
+TEST_F(RepeatedRequestTest, IsDroppedOnce) {
   EXPECT_EQ(left_of(hello + request + request + finished), hello + request + finished);
   EXPECT_EQ(left_of(hello + request + finished + request), hello + finished + request);
 }
 
-TEST(RepeatedRequest, IsDroppedOnlyWhileTheHandshakeLasts) {
+TEST_F(RepeatedRequestTest, IsDroppedOnlyWhileTheHandshakeLasts) {
   const std::size_t handshake = hello.size() + finished.size();
   EXPECT_EQ(left_of(hello + finished + request, handshake), hello + finished + request);
   EXPECT_EQ(left_of(hello + request + finished, handshake), hello + finished);
 }
 
-TEST(RepeatedRequest, WhatOnlyBeginsLikeItIsForTls) {
+TEST_F(RepeatedRequestTest, WhatOnlyBeginsLikeItIsForTls) {
   for (std::size_t same = 1; same != request.size(); ++same) {
     std::string other = request;
     other[same] = '!';
@@ -102,16 +107,16 @@ TEST(RepeatedRequest, WhatOnlyBeginsLikeItIsForTls) {
   EXPECT_EQ(left_of(hello + half + request), hello + half + request);
 }
 
-TEST(RepeatedRequest, InTheMidstOfARecordIsForTls) {
+TEST_F(RepeatedRequestTest, InTheMidstOfARecordIsForTls) {
   EXPECT_EQ(left_of(finished.substr(0, 7) + request + finished),
             finished.substr(0, 7) + request + finished);
 }
 
-TEST(RepeatedRequest, OfARequestThatIsTooLargeIsForTls) {
+TEST_F(RepeatedRequestTest, OfARequestThatIsTooLargeIsForTls) {
   EXPECT_EQ(RepeatedRequest::kept(bytes_of(request)), bytes_of(request));
   const std::string large(RepeatedRequest::largest + 1, 'R');
   EXPECT_TRUE(RepeatedRequest::kept(bytes_of(large)).empty());
-  EXPECT_EQ(left_of(hello + request + finished, endless, {}), hello + request + finished);
+  EXPECT_EQ(left_of(hello + request + finished, no_end, {}), hello + request + finished);
 }
 
 }  // namespace
