@@ -14,8 +14,7 @@
 using rr::fuzz::promise;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const auto sockets =
-      rr::channel::make_web_sockets({.origins = {"https://*.example.org"}});
+  static const auto sockets = rr::channel::make_web_sockets({.origins = {"https://*.example.org"}});
   std::span<const std::byte> input = rr::fuzz::input_of(data, size);
   const std::uint8_t how = rr::fuzz::take_byte(input);
   const bool is_client = (how & 1U) != 0;

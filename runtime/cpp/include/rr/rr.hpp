@@ -2,8 +2,9 @@
 #pragma once
 
 /// All that programs with generated code use of the core: nodes, clients, services, their members,
-/// subscriptions, discovery and the command line of a node. Apart stay the headers of what is linked
-/// besides: rr/dynamic.hpp, rr/serial.hpp, rr/realtime/*.hpp, and rr/async.hpp, which needs Boost.
+/// subscriptions, discovery and the command line of a node. Apart stay the headers of what is
+/// linked besides: rr/dynamic.hpp, rr/serial.hpp, rr/realtime/*.hpp, and rr/async.hpp, which needs
+/// Boost.
 
 #include "rr/authority.hpp"
 #include "rr/callbacks.hpp"
