@@ -38,7 +38,9 @@ finish() {
   local pid
   # With process 1 all of the system ends; nspawn clears up behind it.
   [ -z "$leader" ] || kill -KILL "$leader" 2>/dev/null || true
-  for pid in $job ${leader:-$booted} $peer; do kill -TERM "$pid" 2>/dev/null || true; done
+  # unshare minds no other signal than this one, and run_blocks.py has nothing to clear up.
+  [ -z "$job" ] || kill -KILL "$job" 2>/dev/null || true
+  for pid in ${leader:-$booted} $peer; do kill -TERM "$pid" 2>/dev/null || true; done
   for _ in $(seq 150); do
     is_in_use || break
     sleep 0.2
@@ -98,13 +100,13 @@ mkdir -p "$root/root/robdef"
 git -C "$top" ls-files -z | tar -C "$top" --null --files-from=- --ignore-failed-read -c | tar -x -C "$root/root/robdef"
 
 run() { supervise python3 "$here/run_blocks.py" "$page" --keep "$root" --seconds 3000 --verbose "$@"; }
-environment="HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive"
+environment="LANG=C.UTF-8 HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive"
 
 echo 'what the page installs, with the network of this machine'
 cache=()
 if [ -n "${ROBDEF_CACHE:-}" ]; then
   cache=("--bind=$ROBDEF_CACHE:/var/cache/ccache")
-  environment+=" CCACHE_DIR=/var/cache/ccache CXXFLAGS=${CXXFLAGS:-}"
+  environment+=" CCACHE_DIR=/var/cache/ccache CCACHE_MAXSIZE=0 CXXFLAGS=${CXXFLAGS:-}"
 fi
 run --only Install --shell "setpriv --pdeathsig TERM systemd-nspawn ${options[*]} ${cache[*]} --resolv-conf=replace-host \
   --console=pipe --as-pid2 env -i $environment bash -c 'cd /root/robdef && exec bash --noprofile --norc'"
