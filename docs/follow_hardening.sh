@@ -109,7 +109,7 @@ if [ -n "${ROBDEF_CACHE:-}" ]; then
   environment+=" CCACHE_DIR=/var/cache/ccache CCACHE_MAXSIZE=0 CXXFLAGS=${CXXFLAGS:-}"
 fi
 run --only Install --shell "setpriv --pdeathsig TERM systemd-nspawn ${options[*]} ${cache[*]} --resolv-conf=replace-host \
-  --console=pipe --as-pid2 env -i $environment bash -c 'cd /root/robdef && exec bash --noprofile --norc'"
+  --console=pipe --as-pid2 env -i $environment bash -c 'cd ~/robdef && exec bash --noprofile --norc'"
 
 echo 'the rest, with systemd and a network of its own'
 # bpf: for the address filter of units.
@@ -154,7 +154,7 @@ nsenter --target "$peer" --net bash -euo pipefail -c 'ip link set eth0 up
   ip address add 192.168.11.7/24 dev eth0'
 
 run --skip Install --shell "nsenter --target $leader --all env -i $environment \
-  bash -c 'cd /root/robdef && exec bash --noprofile --norc'"
+  bash -c 'cd ~/robdef && exec bash --noprofile --norc'"
 
 echo 'the service for another machine, and without AF_NETLINK, as the page says'
 inside 'sed -i "s/ 127.0.0.1 52222/ 192.168.10.1 52222/; s/ AF_NETLINK//" /etc/systemd/system/lamp.service
@@ -163,7 +163,7 @@ inside 'sed -i "s/ 127.0.0.1 52222/ 192.168.10.1 52222/; s/ AF_NETLINK//" /etc/s
   cat /proc/sys/kernel/random/uuid >/var/lib/robdef-ca/other
   setpriv --reuid=robdef-ca --regid=robdef-ca --clear-groups robdef ca issue /var/lib/robdef-ca/other \
     --ca /var/lib/robdef-ca/ca --passphrase-file /dev/fd/3 3</etc/robdef-ca/passphrase
-  install -m 600 /var/lib/robdef-ca/ca/nodes/$(cat /var/lib/robdef-ca/other).pem /root/other.pem'
+  install -m 600 /var/lib/robdef-ca/ca/nodes/$(cat /var/lib/robdef-ca/other).pem ~/other.pem'
 # from ADDRESS COMMAND: runs in the system, with the network of the other machine.
 from() {
   nsenter --target "$peer" --net ip route replace 192.168.10.0/24 dev eth0 src "$1"
@@ -176,8 +176,8 @@ reaches() {
   echo "  from $1 to port $2: $status"
   [ $status = "$3" ] || { echo "expected: $3" >&2; exit 1; }
 }
-use='robdef get --require-tls --tls-authority /root/client/ca.pem --tls-revocation /root/client/revoked.pem \
-  --tls-certificate /root/other.pem --user bob --password-file /root/bob.password \
+use='robdef get --require-tls --tls-authority ~/client/ca.pem --tls-revocation ~/client/revoked.pem \
+  --tls-certificate ~/other.pem --user bob --password-file ~/bob.password \
   "rrs+tcp://192.168.10.1:52222/?nodeid=$(cat /etc/lamp/node-id)&service=lamp" brightness'
 from 192.168.10.7 "$use"
 reaches 192.168.10.7 52222 0

@@ -85,14 +85,21 @@ bool has_text(const Json& json, const std::string& text) {
          });
 }
 
-// The names of errors that an object, or a callback of a plan, is told to throw.
+// The names of errors that an object, or a callback of a plan, throws by its script: also `$n`.
 void collect_names(const Json& json, std::set<std::string>& names) {
   if (!json.is_structured()) return;
   for (const auto& [key, item] : json.items()) {
     const bool is_thrown = key == "end" || key.ends_with("throw");
-    if (is_thrown && item.is_object() && item.contains("name")) names.insert(item["name"]);
+    const Json name = is_thrown && item.is_object() ? item.value("name", Json()) : Json();
+    if (name.is_string()) names.insert(name.get<std::string>());
     collect_names(item, names);
   }
+}
+
+void collect_strings(const Json& json, std::set<std::string>& strings) {
+  if (json.is_string()) strings.insert(json.get<std::string>());
+  if (!json.is_structured()) return;
+  for (const auto& item : json) collect_strings(item, strings);
 }
 
 void collect_messages(const Json& json, std::set<std::string>& texts, bool& echoes) {
@@ -127,8 +134,14 @@ Bytes addressed(const Frame& frame, const PlayedConnection& connection) {
 Comparison::Comparison(const Captures& captures) {
   collect_messages(captures.service, scripted_texts_, echoes_texts_);
   collect_names(captures.service, scripted_names_);
+  const bool echoes_names = std::any_of(scripted_names_.begin(), scripted_names_.end(),
+                                        [](const auto& name) { return name.starts_with('$'); });
   for (const Scenario& scenario : captures.scenarios) {
-    for (const Step& step : scenario.steps) collect_names(step.plan, scripted_names_);
+    for (const Step& step : scenario.steps) {
+      collect_names(step.plan, scripted_names_);
+      // Then any argument of a call may be the name of an error.
+      if (echoes_names) collect_strings(step.plan, scripted_names_);
+    }
   }
 }
 

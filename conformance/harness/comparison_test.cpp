@@ -140,6 +140,20 @@ TEST_F(ComparisonTest, HostSpecificNamesAreThoseThatNobodyHasGiven) {
   }
 }
 
+TEST(ScriptedNames, MayBeArgumentsOfACall) {
+  Captures foreign;
+  foreign.service =
+      Json::parse(R"({"functions": {"fail": {"throw": {"code": 100, "name": "$0"}}}})");
+  Step step;
+  step.plan = Json::parse(R"({"op": "call", "args": ["experimental.door.Stuck", "text"]})");
+  foreign.scenarios.emplace_back().steps = {Step(), step};
+  EXPECT_FALSE(Comparison(foreign).is_host_specific("experimental.door.Stuck"));
+  EXPECT_TRUE(Comparison(foreign).is_host_specific("ValueError"));
+  foreign.service["functions"]["fail"]["throw"]["name"] = "experimental.door.Locked";
+  EXPECT_TRUE(Comparison(foreign).is_host_specific("experimental.door.Stuck"));
+  EXPECT_FALSE(Comparison(foreign).is_host_specific("experimental.door.Locked"));
+}
+
 TEST(RepeatedTypeAnswers, AreFoundByTheirRequest) {
   const Captures captures = read_captures(CONFORMANCE_CAPTURES);
   const Scenario& scenario = *captures.find("objref_release", "v4");

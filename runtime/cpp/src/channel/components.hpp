@@ -44,7 +44,7 @@ std::string missing_component(std::string_view scheme);
 
 }  // namespace rr::channel
 
-// Weak: the core stands alone, and a linker that is told of the symbol (`-u`) takes the component.
+// Weak references: the core links without a component. `-u SYMBOL` makes the linker include it.
 extern "C" {
 [[gnu::weak, gnu::visibility("default")]] extern const rr::channel::TlsComponent rr_component_tls;
 [[gnu::weak, gnu::visibility("default")]] extern const rr::channel::WebComponent rr_component_web;

@@ -9,15 +9,10 @@
 #include <utility>
 
 #include "runtime/cpp/src/channel/issuing.hpp"
+#include "runtime/cpp/src/channel/texts.hpp"
 
 namespace rr::channel {
 namespace {
-
-std::string in_lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 std::string reason_of(X509_STORE_CTX& chain) {
   const X509* const at = X509_STORE_CTX_get_current_cert(&chain);

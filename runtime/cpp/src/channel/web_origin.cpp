@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <utility>
 
+#include "runtime/cpp/src/channel/texts.hpp"
 #include "runtime/cpp/src/channel/web_socket.hpp"
 
 namespace rr::channel {
 namespace {
-
-std::string in_lower_case(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
 
 // Without the port when it is the scheme's default.
 std::string plain(std::string_view origin) {

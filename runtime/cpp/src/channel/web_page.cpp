@@ -4,23 +4,15 @@
 #include <arpa/inet.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <fstream>
 #include <iterator>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/channel/texts.hpp"
 
 namespace rr::channel {
 namespace {
-
-std::string in_lower_case(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
 
 std::string content_of(const std::string& file) {
   std::ifstream input(file, std::ios::binary);

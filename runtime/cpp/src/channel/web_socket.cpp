@@ -3,6 +3,7 @@
 #include "runtime/cpp/src/channel/web_socket.hpp"
 
 #include <array>
+#include <atomic>
 #include <boost/asio/bind_executor.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/beast/http/empty_body.hpp>
@@ -29,6 +30,8 @@ constexpr const char* protocol_name = "robotraconteur.robotraconteur.com";
 // 04, section 2.2.
 constexpr std::uint32_t longest_header = 8192;
 constexpr std::size_t read_size = 16 * 1024;
+// Connections that hold a copy of the page at once: strangers who do not read it cost no more.
+constexpr unsigned most_open_pages = 8;
 
 // What a node lets pages do.
 struct WebRules {
@@ -41,6 +44,7 @@ struct Home {
   explicit Home(WebRules of_node) : rules(std::move(of_node)) {}
 
   const WebRules rules;
+  std::atomic<unsigned> open_pages{0};  // connections that were answered with the page
   asio::io_context context{};  // where timers of the library, which are never started, register
 };
 
@@ -178,10 +182,35 @@ class WebSocketClient final : public WebSocketLayer {
   websocket::response_type answer_;
 };
 
+// One connection's share in the pages that are open at once.
+class OpenPage {
+ public:
+  explicit OpenPage(std::atomic<unsigned>& all) : all_(all) {}
+  ~OpenPage() {
+    if (is_taken_) all_.fetch_sub(1);
+  }
+  OpenPage(const OpenPage&) = delete;
+  OpenPage& operator=(const OpenPage&) = delete;
+  /// False when there are too many.
+  bool take() {
+    is_taken_ = all_.fetch_add(1) < most_open_pages;
+    if (!is_taken_) all_.fetch_sub(1);
+    return is_taken_;
+  }
+  [[nodiscard]] bool is_taken() const { return is_taken_; }
+
+ private:
+  std::atomic<unsigned>& all_;
+  bool is_taken_ = false;
+};
+
 class WebSocketServer final : public WebSocketLayer {
  public:
   WebSocketServer(const std::shared_ptr<Home>& home, bool is_encrypted)
-      : WebSocketLayer(home), rules_(home->rules), is_encrypted_(is_encrypted) {
+      : WebSocketLayer(home),
+        rules_(home->rules),
+        is_encrypted_(is_encrypted),
+        page_(home->open_pages) {
     parser_.header_limit(longest_header);
   }
 
@@ -191,7 +220,7 @@ class WebSocketServer final : public WebSocketLayer {
       take_frames(wire, plain, reply);
       return;
     }
-    if (has_sent_page_) return;  // the browser closes once it has read the page
+    if (page_.is_taken()) return;  // the browser closes once it has read the page
     append(head_, wire);
     beast::error_code error;
     const std::size_t used = parser_.put(asio::const_buffer(head_.data(), head_.size()), error);
@@ -204,7 +233,7 @@ class WebSocketServer final : public WebSocketLayer {
     if (!parser_.is_header_done()) return;
     const http::status status = judge(parser_.get());
     if (status == http::status::ok) {
-      has_sent_page_ = true;
+      if (!page_.take()) refuse(http::status::service_unavailable, reply);
       append(reply, bytes_of(rules_.page->answer()));
       return;
     }
@@ -291,7 +320,7 @@ class WebSocketServer final : public WebSocketLayer {
 
   const WebRules& rules_;  // of the home
   const bool is_encrypted_;
-  bool has_sent_page_ = false;
+  OpenPage page_;
   http::request_parser<http::empty_body> parser_;
   Bytes head_;  // of the request, that the parser has not used
 };

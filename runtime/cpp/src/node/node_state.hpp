@@ -42,7 +42,8 @@ class Places {
     }
     return result;
   }
-  /// All of them say the newest nonce, whoever comes last. Returns what went wrong.
+  /// Announces the current nonce of the services at all places. Returns the text of an error;
+  /// empty: none. Under the lock, so that concurrent calls leave the newest nonce.
   template <class Announcer>
   std::string tell_nonce(const Announcer& announcer) {
     std::string failure;
@@ -64,8 +65,8 @@ class Places {
   std::vector<std::unique_ptr<channel::Listener>> listeners_;
 };
 
-/// What a node has when it is first used: services, subscriptions, discovery. Programs that use
-/// none of one are linked without it, so node.cpp names none of them.
+/// A part of a node that is created on first use: services, subscriptions, discovery. node.cpp does
+/// not refer to any of them, so programs that use none are linked without them.
 class NodePart {
  public:
   virtual ~NodePart() = default;

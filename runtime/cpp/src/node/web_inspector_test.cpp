@@ -7,7 +7,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "rr/setup.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
@@ -137,6 +139,27 @@ TEST_F(WebInspector, ALongPageArrivesWhole) {
   EXPECT_THAT(text.substr(0, 400), HasSubstr("\r\nContent-Encoding: gzip\r\n"));
   EXPECT_GT(text.size(), length);
   EXPECT_THAT(text.substr(text.size() - 20), EndsWith("</html>"));
+}
+
+// Each connection holds a copy of what has not been read.
+TEST_F(WebInspector, IsHeldByAFewConnectionsAtOnce) {
+  std::vector<std::unique_ptr<RawSocket>> held;
+  const auto ask = [&] {
+    auto peer = std::make_unique<RawSocket>(port);
+    peer->send(get(here));
+    std::string head = peer->receive_until("\r\n\r\n");
+    held.push_back(std::move(peer));
+    return head;
+  };
+  for (int i = 0; i < 8; ++i) EXPECT_THAT(ask(), StartsWith("HTTP/1.1 200 ")) << i;
+  EXPECT_THAT(ask(), StartsWith("HTTP/1.1 503 "));
+  EXPECT_TRUE(is_let_in(here, "http://" + here));  // those who have it may connect
+  held.clear();
+  EXPECT_TRUE(eventually([&] {
+    const bool is_served = ask().starts_with("HTTP/1.1 200 ");
+    held.clear();
+    return is_served;
+  }));
 }
 
 TEST_F(WebInspector, AFileThatIsMissingOrTooLargeIsAnError) {
