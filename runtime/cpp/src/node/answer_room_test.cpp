@@ -23,6 +23,7 @@ namespace rr::testing {
 namespace {
 
 using std::chrono_literals::operator""ms;
+using std::chrono_literals::operator""s;
 
 constexpr std::uint32_t size = 8 * 1024 * 1024;
 
@@ -56,7 +57,9 @@ class Camera : public Counter {
 
 // By TCP whatever the channel of the test run: what is in the process has no account.
 struct Studio {
-  explicit Studio(NodeOptions options = {}) : pair(std::move(options), {}, camera) {}
+  // Whoever has to be served in the end waits as long as a busy machine may need.
+  explicit Studio(NodeOptions options = {.budget = {.patience = 60s}})
+      : pair(std::move(options), {}, camera) {}
   Client<CounterStub> connect() {
     return pair.client.connect<CounterStub>("rr+tcp://127.0.0.1:" + std::to_string(pair.port) +
                                             "/?service=counter");
