@@ -82,7 +82,7 @@ std::shared_ptr<const PeerProof> PeerLayers::take_proof() {
 }
 
 [[gnu::hot]] bool PeerLayers::may_send(const Message& message) const {
-  return certified_node_.is_any() || !message.has_routing || message.sender_node.is_any() ||
+  return !message.has_routing || certified_node_.is_any() || message.sender_node.is_any() ||
          message.sender_node == certified_node_;
 }
 

@@ -5,6 +5,7 @@
 #include "runtime/cpp/src/channel/remote_address.hpp"
 #include "runtime/cpp/src/channel/strand_turn.hpp"
 #include "runtime/cpp/src/channel/stream_connection.hpp"
+#include "runtime/cpp/src/codec/parse.hpp"
 
 namespace rr::channel {
 namespace {
@@ -178,10 +179,8 @@ void StreamConnection::drain_posted() {
 [[gnu::hot]] void StreamConnection::handle_frame(Scratch& scratch, const Frame& frame,
                                                  bool is_parsed, StrandTurn* turn) {
   Message& message = scratch.message;
-  // It could be read once, so it can be read again.
-  const Limits any_size{.message_size = largest_size_, .depth = options_->limits.depth};
-  if (!is_parsed && !read_message(frame.bytes, any_size, has_standard_strings_, message,
-                                  scratch.first, &Reactor::yield)) {
+  if (!is_parsed &&
+      !codec::reread_message(frame.bytes, has_standard_strings_, message, scratch.first)) {
     return;
   }
   complete(message);

@@ -8,6 +8,7 @@
 
 #include "rr/message_tree.hpp"
 #include "rr/reader.hpp"
+#include "runtime/cpp/src/codec/parse.hpp"
 
 namespace rr {
 namespace {
@@ -121,6 +122,36 @@ TEST(Captures, EveryFrameThatWasServedIsAccepted) {
                 is_refused(frame.name))
         << frame.name;
   }
+}
+
+// What a thread that handles a message later needs of it.
+TEST(Captures, AcceptedFramesAreReadOnceMoreWithoutACheck) {
+  std::size_t accepted = 0;
+  for (const captures::Frame& frame : captures::frames()) {
+    SCOPED_TRACE(frame.name);
+    Message before;
+    Entry first_before;
+    if (!read_message(frame.bytes, Limits{}, frame.string_table, before, first_before)) continue;
+    ++accepted;
+    Message message;
+    Entry first;
+    ASSERT_TRUE(codec::reread_message(frame.bytes, frame.string_table, message, first));
+    EXPECT_EQ(message.version, before.version);
+    EXPECT_EQ(message.sender_node, before.sender_node);
+    EXPECT_EQ(message.sender_endpoint, before.sender_endpoint);
+    EXPECT_EQ(message.message_id, before.message_id);
+    EXPECT_EQ(message.entry_count, before.entry_count);
+    EXPECT_EQ(message.entries.data(), before.entries.data());
+    EXPECT_EQ(message.entries.size(), before.entries.size());
+    EXPECT_EQ(first.type, first_before.type);
+    EXPECT_EQ(first.service_path, first_before.service_path);
+    EXPECT_EQ(first.member, first_before.member);
+    EXPECT_EQ(first.request_id, first_before.request_id);
+    EXPECT_EQ(first.element_count, first_before.element_count);
+    EXPECT_EQ(first.elements.data(), first_before.elements.data());
+    EXPECT_EQ(first.elements.size(), first_before.elements.size());
+  }
+  EXPECT_EQ(accepted, 5538U);
 }
 
 void expect_values_written_back(MessageVersion version, std::size_t count) {

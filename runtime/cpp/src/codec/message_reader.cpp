@@ -138,6 +138,15 @@ const char* parse_header(std::span<const std::byte> bytes, const Limits& limits,
   return entries.left() == 0 ? nullptr : "bytes after the last entry";
 }
 
+[[gnu::hot]] bool reread_message(std::span<const std::byte> bytes, bool standard_strings,
+                                 Message& message, Entry& first) {
+  message.strings.reset(standard_strings);
+  if (parse_begun_header(bytes, bytes.size(), message) != nullptr) return false;
+  Cursor entries{message.entries.data(), message.entries.data() + message.entries.size()};
+  return parse_entry<UnknownCode::refuse>(message.version, entries, &message.strings, first) ==
+         nullptr;
+}
+
 }  // namespace codec
 
 [[gnu::hot]] std::size_t message_size(std::span<const std::byte> bytes, const Limits& limits) {

@@ -342,4 +342,9 @@ const char* check_message(std::span<const std::byte> bytes, const Limits& limits
                           UnknownCode unknown, Message& message, Entry& first,
                           void (*progress)() = nullptr);
 
+/// Reads the header and the first entry of a message that read_message() has accepted, where both
+/// were lost meanwhile. Its elements are not checked again. False when the bytes have changed.
+bool reread_message(std::span<const std::byte> bytes, bool standard_strings, Message& message,
+                    Entry& first);
+
 }  // namespace rr::codec

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/endpoint/pipe_arrival.hpp"
 
+#include <optional>
+
 #include "rr/type.hpp"
 
 namespace rr::endpoint {
@@ -41,11 +43,11 @@ class PacketMemory final : public ContainerBudget {
   const bool is_most = packet.size >= message_size_ / 2;
   Decoder decoder(decoder_.version(), decoder_.strings(), is_most ? decoder_.owner() : MemoryRef(),
                   decoder_.types());
-  PacketMemory memory(room_);
-  decoder.set_budget(memory);
+  std::optional<PacketMemory> memory;
+  if (room_.is_limited()) decoder.set_budget(memory.emplace(room_));
   if (!what.member->type->read(decoder, packet.value, value.get())) return false;
-  memory.clear();
-  if (!end->accept(packet.number, std::move(value), packet.size, memory.bytes())) {
+  if (memory) memory->clear();
+  if (!end->accept(packet.number, std::move(value), packet.size, memory ? memory->bytes() : 0)) {
     full_.push_back(end);
   }
   if (last_ != end) {

@@ -33,6 +33,11 @@ class PipeArrival {
   struct Room {
     std::shared_ptr<channel::Account> account{};  ///< what is drawn on while one is decoded
     std::size_t containers = Decoder::container_limit;
+
+    /// Whether it has to be counted: a decoder has the usual limit of itself.
+    [[nodiscard]] bool is_limited() const {
+      return account != nullptr || containers != Decoder::container_limit;
+    }
   };
 
   PipeArrival(const Message& message, const Entry& entry, const MemoryRef& owner,
