@@ -13,10 +13,17 @@ namespace Robdef.Conformance;
 /// <summary>
 /// What one object is told to do, a node of service.json, and its state. Used by any thread. Functions that drive
 /// other members are known by their names: `fire_EVENT`, `send_PIPE`, `close_PIPE`, `received_count`, `send_WIRE`,
-/// `close_WIRE`, `last_WIRE`, `call_CALLBACK`, `release_child`.
+/// `close_WIRE`, `last_WIRE`, `call_CALLBACK`, `release_child`; with `_later` behind it a function does so when it has been
+/// answered. An outcome with `does` gives such a name to any function.
 /// </summary>
 internal sealed class Script(Adapters adapters, JsonNode? node)
 {
+    private const string Later = "_later";
+    /// <summary>An answer is long gone then.</summary>
+    private static readonly TimeSpan Delay = TimeSpan.FromMilliseconds(50);
+    /// <summary>Whose call put off what is done now; 0 for nobody's.</summary>
+    private static readonly AsyncLocal<uint> PutOffFor = new();
+
     private readonly Lock _lock = new();
     private readonly JsonObject _node = (JsonObject)(node?.DeepClone() ?? new JsonObject());
     private readonly Dictionary<string, Func<Type, JsonNode?>> _actions = new(StringComparer.Ordinal);
@@ -105,7 +112,8 @@ internal sealed class Script(Adapters adapters, JsonNode? node)
         Type result = type == "void" ? typeof(void) : adapters.Of(type).Type;
         try
         {
-            return call(Skeleton.RrCurrentClient, new Arguments(adapters, Told("callbacks", name)));
+            uint client = PutOffFor.Value != 0 ? PutOffFor.Value : Skeleton.RrCurrentClient;
+            return call(client, new Arguments(adapters, Told("callbacks", name)));
         }
         catch (RobdefException error) when (wanted != result)
         {
@@ -211,20 +219,71 @@ internal sealed class Script(Adapters adapters, JsonNode? node)
 
     private JsonNode? Outcome(string function, JsonArray parameters, Type wanted)
     {
-        if (_actions.TryGetValue(function, out Func<Type, JsonNode?>? action))
+        if (!SaysWhatItDoes(function) && TryAct(function, parameters, wanted, out JsonNode? done))
         {
-            return action(wanted);
+            return done;
         }
         JsonNode? next = NextOutcome(function, parameters);
-        if (next is null)
+        if (Json.Part(next, "does") is { } other)
         {
-            if (function == "release_child")
-            {
-                _service!.ReleasePath($"{_service.Name}.{parameters[0]!.GetValue<string>()}");
-            }
-            return null;
+            return TryAct(other.GetValue<string>(), parameters, wanted, out done)
+                ? done
+                : throw new InvalidOperationException($"nothing is called {other.ToJsonString()}");
         }
         return Json.Part(next, "echo") is { } place ? parameters[place.GetValue<int>()] : Json.Part(next, "return");
+    }
+
+    /// <summary>Whether an outcome says what the function does, whatever its name says.</summary>
+    private bool SaysWhatItDoes(string function) => Told("functions", function) switch
+    {
+        JsonArray outcomes => outcomes.OfType<JsonObject>().Any(outcome => outcome.ContainsKey("does")),
+        JsonObject outcome => outcome.ContainsKey("does"),
+        _ => false,
+    };
+
+    /// <summary>Does what a function of this name is for; false for a name that says nothing.</summary>
+    private bool TryAct(string name, JsonArray parameters, Type wanted, out JsonNode? result)
+    {
+        result = null;
+        if (name == "release_child")
+        {
+            _service!.ReleasePath($"{_service.Name}.{parameters[0]!.GetValue<string>()}");
+            return true;
+        }
+        if (_actions.TryGetValue(name, out Func<Type, JsonNode?>? action))
+        {
+            result = action(wanted);
+            return true;
+        }
+        if (!name.EndsWith(Later, StringComparison.Ordinal) || !_actions.TryGetValue(name[..^Later.Length], out action))
+        {
+            return false;
+        }
+        string member = name[(name.IndexOf('_', StringComparison.Ordinal) + 1)..^Later.Length];
+        _ = DoLater(name, Skeleton.RrCurrentClient, () =>
+        {
+            action(typeof(void));
+            _actions.GetValueOrDefault("fire_answered_" + member)?.Invoke(typeof(void));
+        });
+        return true;
+    }
+
+    private static async Task DoLater(string name, uint client, Action what)
+    {
+        await Task.Delay(Delay).ConfigureAwait(false);
+        PutOffFor.Value = client;
+        try
+        {
+            what();
+        }
+        catch (RobdefException)
+        {
+            // Whom it was for has gone.
+        }
+        catch (Exception error) when (error is not OutOfMemoryException)
+        {
+            await Console.Error.WriteLineAsync($"{name}: {error}").ConfigureAwait(false);
+        }
     }
 
     private JsonNode? NextOutcome(string function, JsonArray parameters)

@@ -3,6 +3,7 @@ classdef ConformanceScript < handle
   %   RobotRaconteurServed takes them. Functions of the object that drive its other members are known by
   %   their names: fire_EVENT, send_PIPE, close_PIPE, received_count, send_WIRE, close_WIRE, last_WIRE,
   %   call_CALLBACK, release_child; with `_later` behind it a function does so when it has been answered.
+  %   An outcome with `does` gives such a name to any function.
   properties
     Node
     Home
@@ -99,26 +100,62 @@ classdef ConformanceScript < handle
     end
 
     function json = Outcome(obj, name, member, args)
+      is_done = false;
       json = [];
+      if ~obj.SaysWhatItDoes(name)
+        [is_done, json] = obj.Do(name, member, args);
+      end
+      if is_done
+        return
+      end
+      outcome = obj.Next(name, args);
+      if isfield(outcome, 'does') && ischar(outcome.does)
+        [is_done, json] = obj.Do(outcome.does, member, args);
+        if ~is_done
+          error('RobotRaconteur:InvalidArgument', 'nothing is called %s', outcome.does);
+        end
+      elseif isfield(outcome, 'echo')
+        json = args{outcome.echo + 1};
+      elseif isfield(outcome, 'return')
+        json = outcome.return;
+      end
+    end
+
+    function says = SaysWhatItDoes(obj, name)
+      %SAYSWHATITDOES Whether an outcome says what the function does, whatever its name says.
+      outcomes = obj.Told('functions', name);
+      if ~iscell(outcomes)
+        outcomes = {outcomes};
+      end
+      says = any(cellfun(@(outcome) isfield(outcome, 'does'), outcomes));
+    end
+
+    function [is_done, json] = Do(obj, name, member, args)
+      %DO Does what a function of this name is for; false for a name that says nothing.
+      is_done = true;
+      json = [];
+      if strcmp(name, 'release_child')
+        obj.Home.Release(args{1});
+        return
+      end
       [action, on] = obj.Action(name);
       if ~isempty(action)
         json = obj.Act(action, on, member.type);
         return
       end
       [action, on] = obj.Action(regexprep(name, '_later$', ''));
-      if ~isempty(action)
-        obj.Home.Player.DoLater(@() obj.Act(action, on, ''));
-        return
+      is_done = ~isempty(action);
+      if is_done
+        obj.Home.Player.DoLater(@() obj.ActBehind(action, on));
       end
-      outcome = obj.Next(name, args);
-      if isempty(outcome) && ~isstruct(outcome)
-        if strcmp(name, 'release_child')
-          obj.Home.Release(args{1});
-        end
-      elseif isfield(outcome, 'echo')
-        json = args{outcome.echo + 1};
-      elseif isfield(outcome, 'return')
-        json = outcome.return;
+    end
+
+    function ActBehind(obj, action, on)
+      %ACTBEHIND Acts when the call that asked for it has been answered, and tells of it where that is asked for.
+      obj.Act(action, on, '');
+      told = ['answered_', on];
+      if isfield(obj.Members, told) && strcmp(obj.Members.(told).kind, 'event')
+        obj.Act('fire', told, '');
       end
     end
 

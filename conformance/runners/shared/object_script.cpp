@@ -68,6 +68,7 @@ Json ObjectScript::outcome(std::string_view function, const Json& parameters,
 // Not where an outcome says itself what the function does.
 bool ObjectScript::is_known_by_name(std::string_view function) {
   const Json outcomes = told("functions", function);
+  if (outcomes.is_object()) return !outcomes.contains("does");
   return std::none_of(outcomes.begin(), outcomes.end(),
                       [](const Json& outcome) { return outcome.contains("does"); });
 }

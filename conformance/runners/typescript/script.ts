@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What one object is told to do, a node of service.json, and its state. Functions that drive other members are known
 // by their names: fire_<event>, send_<pipe>, close_<pipe>, received_count, send_<wire>, close_<wire>, last_<wire>,
-// call_<callback>, release_child; with _later behind it a function does so when it has been answered.
+// call_<callback>, release_child; with _later behind it a function does so when it has been answered. An outcome with
+// `does` gives such a name to any function.
 import {
   makeError,
   RRError,
@@ -84,20 +85,43 @@ export class Script implements ObjectHandlers {
   }
 
   private async outcome(name: string, parameters: Json[], type: ValueType, caller: Caller): Promise<Json> {
-    const action = this.actions.get(name);
-    if (action) return await action(type.text, caller);
-    const putOff = name.endsWith(later) ? this.actions.get(name.slice(0, -later.length)) : undefined;
-    if (putOff) {
-      this.doLater(name, () => putOff("", caller));
-      return null;
+    if (!this.saysWhatItDoes(name)) {
+      const done = await this.act(name, parameters, type, caller);
+      if (done !== undefined) return done;
     }
     const next = this.nextOutcome(name, parameters);
-    if (next === undefined) {
-      if (name === "release_child") this.service?.release(`${this.service.name}.${text(parameters[0])}`);
-      return null;
+    const other = part(next, "does");
+    if (typeof other === "string") {
+      const done = await this.act(other, parameters, type, caller);
+      if (done === undefined) throw new Error(`nothing is called ${other}`);
+      return done;
     }
     const echo = part(next, "echo");
     return (echo === undefined ? part(next, "return") : parameters[number(echo)]) ?? null;
+  }
+
+  /** Whether an outcome says what the function does, whatever its name says. */
+  private saysWhatItDoes(name: string): boolean {
+    const told = this.told("functions", name);
+    return (Array.isArray(told) ? told : [told]).some((outcome) => part(outcome, "does") !== undefined);
+  }
+
+  /** Does what a function of this name is for; undefined for a name that says nothing. */
+  private async act(name: string, parameters: Json[], type: ValueType, caller: Caller): Promise<Json | undefined> {
+    if (name === "release_child") {
+      this.service?.release(`${this.service.name}.${text(parameters[0])}`);
+      return null;
+    }
+    const action = this.actions.get(name);
+    if (action) return await action(type.text, caller);
+    const putOff = name.endsWith(later) ? this.actions.get(name.slice(0, -later.length)) : undefined;
+    if (!putOff) return undefined;
+    const fired = this.actions.get(`fire_answered_${name.slice(name.indexOf("_") + 1, -later.length)}`);
+    this.doLater(name, async () => {
+      await putOff("", caller);
+      await fired?.("", caller);
+    });
+    return null;
   }
 
   private nextOutcome(name: string, parameters: Json[]): Json | undefined {
