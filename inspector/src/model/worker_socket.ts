@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Web sockets in a worker. Thousands of messages a second are thousands of events, each of which costs the thread of
 // the page more than the message itself; the worker hands them over together, a few hundred times a second.
-import { ErrorCode, openWebSocket, RRError, type ByteStream, type OpenOptions, type ServiceUrl, type StreamEvents } from "@robdef/runtime";
+import {
+  ErrorCode,
+  openWebSocket,
+  PushedStream,
+  RRError,
+  webSocketAddress,
+  webSocketProtocol,
+  type ByteStream,
+  type OpenOptions,
+  type ServiceUrl,
+} from "@robdef/runtime";
 
 /** What is run in the worker; it stands on nothing but its own words. */
 function work(scope: { onmessage: ((event: MessageEvent) => void) | null; postMessage: (message: unknown, transfer?: Transferable[]) => void }): void {
@@ -79,8 +89,6 @@ function makeWorker(): Worker {
   return new Worker(workerUrl);
 }
 
-const protocol = "robotraconteur.robotraconteur.com";
-
 /** As openWebSocket, with the socket in a worker; without workers as that. */
 export function openWorkerSocket(url: ServiceUrl, options: OpenOptions): Promise<ByteStream> {
   let worker: Worker;
@@ -90,7 +98,6 @@ export function openWorkerSocket(url: ServiceUrl, options: OpenOptions): Promise
     return openWebSocket(url, options);
   }
   const { signal } = options;
-  const host = url.host.includes(":") ? `[${url.host}]` : url.host;
   return new Promise((resolve, reject) => {
     const fail = (reason: unknown): void => {
       signal.removeEventListener("abort", abort);
@@ -118,27 +125,24 @@ export function openWorkerSocket(url: ServiceUrl, options: OpenOptions): Promise
         fail(new RRError(ErrorCode.ConnectionError, `no web socket at ${url.host}:${url.port}`));
       }
     };
-    worker.postMessage({ url: `${url.scheme === "rr+wss" ? "wss" : "ws"}://${host}:${url.port}${url.path}${url.query}`, protocol });
+    worker.postMessage({ url: webSocketAddress(url), protocol: webSocketProtocol });
   });
 }
 
-class WorkerStream implements ByteStream {
-  private events: StreamEvents | undefined;
-  private early: Uint8Array[] = [];
-  private isClosed = false;
+class WorkerStream extends PushedStream {
   private unsent = 0;
 
   constructor(
     private readonly worker: Worker,
-    readonly remoteAddress: string,
+    remoteAddress: string,
   ) {
+    super(remoteAddress);
     worker.onmessage = ({ data }: MessageEvent<FromWorker>) => {
       if ("data" in data) {
-        if (this.events) this.events.data(data.data);
-        else this.early.push(data.data);
+        this.push(data.data);
       } else if ("waiting" in data) {
         this.unsent = data.waiting;
-        if (data.waiting === 0 && !this.isClosed) this.events?.drained();
+        if (data.waiting === 0) this.drained();
       } else if ("closed" in data) this.end(undefined);
     };
     worker.onerror = (event) => {
@@ -159,38 +163,11 @@ class WorkerStream implements ByteStream {
     this.worker.postMessage({ send: copies }, copies.map((copy) => copy.buffer));
   }
 
-  start(events: StreamEvents): void {
-    this.events = events;
-    for (const bytes of this.early) events.data(bytes);
-    this.early = [];
-    if (this.isClosed) events.closed(undefined);
-  }
-
-  /** A page cannot stop to read a web socket. */
-  pause(): void {
-    return;
-  }
-
-  resume(): void {
-    return;
-  }
-
-  close(): void {
-    this.end(undefined);
-  }
-
-  destroy(): void {
-    this.end(undefined);
-  }
-
-  private end(reason: Error | undefined): void {
-    if (this.isClosed) return;
-    this.isClosed = true;
+  protected release(): void {
     this.worker.postMessage({ close: true });
     // What was sent before is on its way; then the worker is no longer needed.
     setTimeout(() => {
       this.worker.terminate();
     }, 1000);
-    this.events?.closed(reason);
   }
 }

@@ -3,7 +3,8 @@
 import { join } from "../codec/byte_writer.js";
 import { ErrorCode, makeError } from "../errors.js";
 import type { ServiceUrl } from "../url.js";
-import type { ByteStream, OpenOptions, StreamEvents } from "./stream.js";
+import { PushedStream } from "./pushed_stream.js";
+import type { ByteStream, OpenOptions } from "./stream.js";
 
 /** The subprotocol of the handshake (04, section 2.2). */
 export const webSocketProtocol = "robotraconteur.robotraconteur.com";
@@ -49,24 +50,17 @@ export function openWebSocket(url: ServiceUrl, { signal }: OpenOptions, socketCl
   });
 }
 
-class WebSocketStream implements ByteStream {
-  private events: StreamEvents | undefined;
-  private early: Uint8Array[] = [];
-  private isClosed = false;
+class WebSocketStream extends PushedStream {
   private polling: ReturnType<typeof setInterval> | undefined;
 
   constructor(
     private readonly socket: WebSocket,
-    readonly remoteAddress: string,
+    remoteAddress: string,
   ) {
+    super(remoteAddress);
     socket.onmessage = ({ data }: MessageEvent<unknown>) => {
-      if (!(data instanceof ArrayBuffer)) {
-        this.end(new Error("a text came instead of bytes"));
-        return;
-      }
-      const bytes = new Uint8Array(data);
-      if (this.events) this.events.data(bytes);
-      else this.early.push(bytes);
+      if (data instanceof ArrayBuffer) this.push(new Uint8Array(data));
+      else this.end(new Error("a text came instead of bytes"));
     };
     socket.onclose = () => {
       this.end(undefined);
@@ -107,39 +101,12 @@ class WebSocketStream implements ByteStream {
     if (this.socket.bufferedAmount > 0 && !this.isClosed) return;
     clearInterval(this.polling);
     this.polling = undefined;
-    if (!this.isClosed) this.events?.drained();
+    this.drained();
   }
 
-  start(events: StreamEvents): void {
-    this.events = events;
-    for (const bytes of this.early) events.data(bytes);
-    this.early = [];
-    if (this.isClosed) events.closed(undefined);
-  }
-
-  /** A page cannot stop to read a web socket. */
-  pause(): void {
-    return;
-  }
-
-  resume(): void {
-    return;
-  }
-
-  close(): void {
-    this.end(undefined);
-  }
-
-  destroy(): void {
-    this.end(undefined);
-  }
-
-  private end(reason: Error | undefined): void {
-    if (this.isClosed) return;
-    this.isClosed = true;
+  protected release(): void {
     clearInterval(this.polling);
     this.socket.onmessage = this.socket.onclose = this.socket.onerror = null;
     this.socket.close();
-    this.events?.closed(reason);
   }
 }
