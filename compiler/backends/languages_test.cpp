@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -141,6 +142,43 @@ TEST_P(EveryLanguage, KnowsRenames) {
   }
   if (language != "cbus") {
     EXPECT_THAT(all, HasSubstr("property double speed")) << "the definition itself stays";
+  }
+}
+
+std::vector<std::string> lines_of(const Backend& backend, const std::string& definition) {
+  const model::Compiled compiled = model::compiled({definition});
+  EXPECT_THAT(compiled.errors(), IsEmpty());
+  Report report;
+  const FileSet files = backend.generate(compiled.model, {}, report);
+  EXPECT_FALSE(report.has_errors());
+  std::vector<std::string> lines;
+  for (const auto& [path, content] : files.files()) {
+    std::istringstream text(content);
+    for (std::string line; std::getline(text, line);) lines.push_back(path + ": " + line);
+  }
+  return lines;
+}
+
+// What was generated before is there still, in the same order: a version of a definition with one
+// function more is a change that somebody can read.
+TEST_P(EveryLanguage, ChangesNoOtherLineForAFunctionThatIsInserted) {
+  // The frames of a board have numbers; a bus has no functions.
+  const std::string_view language = GetParam()->name();
+  if (language == "arduino" || language == "cbus") return;
+  const std::string head = "service example.arm\nstdver 0.10\nobject Joint\nend\nobject Arm\n";
+  const std::string inserted = "  function double turn(double angle)\n";
+  const std::string rest =
+      "  property double speed\n  function void stop()\n  function double{generator} sweep()\n"
+      "  event fired(double angle)\n  objref Joint[] joint\n  pipe double trace\n"
+      "  callback double ask(double angle)\n  wire double place\n  memory double[] log\nend\n";
+  const std::vector<std::string> before = lines_of(*GetParam(), head + rest);
+  const std::vector<std::string> after = lines_of(*GetParam(), head + inserted + rest);
+  ASSERT_GT(after.size(), before.size());
+  auto next = after.begin();
+  for (const std::string& line : before) {
+    next = std::find(next, after.end(), line);
+    ASSERT_NE(next, after.end()) << "changed: " << line;
+    ++next;
   }
 }
 

@@ -57,4 +57,9 @@ std::string ArduinoBackend::view(const model::Model& model, Report& report) cons
   return view_json(make_view(model, report));
 }
 
+const Backend& backend() {
+  static const ArduinoBackend only;
+  return only;
+}
+
 }  // namespace robdef::arduino

@@ -52,4 +52,9 @@ std::string CBusBackend::view(const model::Model& model, Report& report) const {
   return view_json(make_view(model, report));
 }
 
+const Backend& backend() {
+  static const CBusBackend only;
+  return only;
+}
+
 }  // namespace robdef::cbus

@@ -20,4 +20,7 @@ class CBusBackend final : public Backend {
   [[nodiscard]] std::string view(const model::Model& model, Report& report) const override;
 };
 
+/// The one in the list of backends.
+const Backend& backend();
+
 }  // namespace robdef::cbus

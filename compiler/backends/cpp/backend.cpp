@@ -21,4 +21,9 @@ std::string CppBackend::view(const model::Model& model, Report& report) const {
   return view_json(make_view(model, report));
 }
 
+const Backend& backend() {
+  static const CppBackend only;
+  return only;
+}
+
 }  // namespace robdef::cpp

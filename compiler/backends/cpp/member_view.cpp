@@ -37,11 +37,13 @@ class MemberMaker {
 
   void make(ObjectView& object) {
     std::vector<MemberView>& views = object.members;
+    std::set<std::string> places;
     std::size_t served = 0;
     for (const Member& member : object_.members) {
       MemberView view = common(member);
       if (view.is_served) {
         view.number = std::to_string(served++);
+        view.place = context_.names.local(code_name(member), places);
       } else {
         report_unserved(member, "C++", context_.report);
       }

@@ -102,8 +102,6 @@ void make_counts(ObjectView& view) {
   view.has_objrefs = has([](const MemberView& member) { return member.is_objref; });
   view.uses_index = has([](const MemberView& member) { return member.has_index; });
   view.has_memories = has([](const MemberView& member) { return member.is_memory; });
-  view.member_count = std::to_string(std::ranges::count_if(
-      view.members, [](const MemberView& member) { return member.is_served; }));
 }
 
 }  // namespace

@@ -92,6 +92,7 @@ struct ParameterView : ParameterFacts {
 /// A member of an object. What does not apply to its kind is empty or false.
 struct MemberView : MemberFacts {
   std::string name;
+  std::string place;  ///< its name among the places in the table: its own, unless that is reserved
   std::vector<std::string> doc;
 
   std::string type;    ///< property, pipe, wire, memory: the value; function, callback: the result
@@ -171,7 +172,6 @@ struct ObjectView {
   bool uses_index = false;  ///< one of them has an index
   bool has_memories = false;
   bool has_stored = false;  ///< the Default class stores something
-  std::string member_count;
   std::string table;         ///< name of its ObjectType
   std::string member_table;  ///< of the array of its members
   std::string implements_table;

@@ -16,18 +16,18 @@ ROBDEF_VIEW_TYPE(FieldView, wire_name, name, doc, type, descriptor, robdef_type,
 ROBDEF_VIEW_TYPE(RecordView, name, class_name, qualified, doc, number_type, constants, fields,
                  table, field_table, table_definition, specialization);
 ROBDEF_VIEW_TYPE(ParameterView, type, passed, local, descriptor, is_by_value);
-ROBDEF_VIEW_TYPE(MemberView, name, doc, type, descriptor, local, item, handle, served, stored,
-                 parameters, arguments, yields, generator_parameter, stub, skeleton, qualified_stub,
-                 qualified_skeleton, called, taken, has_handle, described, access, has_no_table,
-                 is_by_value, passed, value, code, getter, setter, token_mark, type_mark,
-                 options_mark, answer_mark, client_mark, index_mark, value_mark);
+ROBDEF_VIEW_TYPE(MemberView, name, place, doc, type, descriptor, local, item, handle, served,
+                 stored, parameters, arguments, yields, generator_parameter, stub, skeleton,
+                 qualified_stub, qualified_skeleton, called, taken, has_handle, described, access,
+                 has_no_table, is_by_value, passed, value, code, getter, setter, token_mark,
+                 type_mark, options_mark, answer_mark, client_mark, index_mark, value_mark);
 ROBDEF_VIEW_TYPE(BaseView, wire_name, stub, skeleton);
 ROBDEF_VIEW_TYPE(ObjectView, wire_name, short_name, name, stub_doc, skeleton_doc, default_doc, stub,
                  stub_class, skeleton, default_class, qualified_stub, qualified_skeleton,
                  qualified_default, stub_head, skeleton_head, default_head, has_default, implements,
                  has_implements, constants, has_constants, members, has_members, has_parameters,
-                 has_calls, has_objrefs, uses_index, has_memories, has_stored, member_count, table,
-                 member_table, implements_table, parameter_tables);
+                 has_calls, has_objrefs, uses_index, has_memories, has_stored, table, member_table,
+                 implements_table, parameter_tables);
 ROBDEF_VIEW_TYPE(DeclarationView, constant, exception, enumeration, record, object, ends_group,
                  is_early);
 ROBDEF_VIEW_TYPE(ForwardView, declaration);

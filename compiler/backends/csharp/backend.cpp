@@ -23,4 +23,9 @@ std::string CSharpBackend::view(const model::Model& model, Report& report) const
   return view_json(make_view(model, report));
 }
 
+const Backend& backend() {
+  static const CSharpBackend only;
+  return only;
+}
+
 }  // namespace robdef::csharp

@@ -19,4 +19,7 @@ class CSharpBackend final : public Backend {
   [[nodiscard]] std::string view(const model::Model& model, Report& report) const override;
 };
 
+/// The one in the list of backends.
+const Backend& backend();
+
 }  // namespace robdef::csharp

@@ -37,17 +37,21 @@ class MemberMaker {
       taken_.add(object.constants[i].name, constant.span, "constant",
                  object_.qualified_name() + "." + constant.name);
     }
+    std::set<std::string> places;
     std::size_t served = 0;
     for (const Member& member : object_.members) {
       MemberView view = common(member);
       make_value(view, member);
       if (view.is_served) {
         view.number = std::to_string(served++);
+        view.place = pascal(code_name(member));
+        while (!places.insert(view.place).second) view.place += '_';
         make_served(view, member);
         add_names(view, member);
       } else {
         report_unserved(member, "C#", context_.report);
       }
+      object.has_members = object.has_members || view.is_served;
       object.members.push_back(std::move(view));
     }
   }

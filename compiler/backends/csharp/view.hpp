@@ -76,7 +76,8 @@ struct ParameterView : ParameterFacts {
 
 /// A member of an object. What does not apply to its kind is empty or false.
 struct MemberView : MemberFacts {
-  std::string name;  ///< `MoveTo`
+  std::string name;   ///< `MoveTo`
+  std::string place;  ///< its name among the places in the object's table
   std::vector<std::string> doc;
   bool is_hiding = false;  ///< two implemented interfaces have it: declared anew
   std::string row;         ///< of that table
@@ -131,6 +132,7 @@ struct ObjectView {
   bool has_default = false;
   std::vector<ConstantView> constants;
   std::vector<MemberView> members;
+  bool has_members = false;   ///< served ones
   bool has_requests = false;  ///< properties, functions or objrefs are served
   bool has_memories = false;
 };

@@ -16,14 +16,15 @@ ROBDEF_VIEW_TYPE(FieldView, wire_name, name, doc, type, initial, codec, robdef_t
 ROBDEF_VIEW_TYPE(RecordView, name, doc, number_type, number_codec, packed_size, constants, fields,
                  writes, has_rows, field_count, codec_class);
 ROBDEF_VIEW_TYPE(ParameterView, type, codec);
-ROBDEF_VIEW_TYPE(MemberView, name, doc, is_hiding, row, access, type, codec, initial, item,
+ROBDEF_VIEW_TYPE(MemberView, name, place, doc, is_hiding, row, access, type, codec, initial, item,
                  item_codec, parameters, writes, signature, signature_before, arguments,
                  arguments_before, cancel, client, urgent, handler, task, result, served,
                  served_before, served_cancel, invocation, verb, codecs, answer,
                  generator_parameter, interface, stub, index_parameter, index_argument, index_type,
                  index_read, handle, handle_served, first);
 ROBDEF_VIEW_TYPE(ObjectView, wire_name, short_name, doc, interface, bases, stub, skeleton,
-                 default_class, has_default, constants, members, has_requests, has_memories);
+                 default_class, has_default, constants, members, has_members, has_requests,
+                 has_memories);
 ROBDEF_VIEW_TYPE(DeclarationView, exception, enumeration, record, object);
 ROBDEF_VIEW_TYPE(LibraryView, task, value_task, token, async_enumerable, stub, stub_type,
                  object_handle, skeleton, call, request, served_type, served_member, served_memory,

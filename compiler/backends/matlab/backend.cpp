@@ -48,4 +48,9 @@ std::string MatlabBackend::view(const model::Model& model, Report& report) const
   return view_json(make_view(model, report));
 }
 
+const Backend& backend() {
+  static const MatlabBackend only;
+  return only;
+}
+
 }  // namespace robdef::matlab

@@ -23,4 +23,9 @@ std::string TypeScriptBackend::view(const model::Model& model, Report& report) c
   return view_json(make_view(model, report));
 }
 
+const Backend& backend() {
+  static const TypeScriptBackend only;
+  return only;
+}
+
 }  // namespace robdef::typescript

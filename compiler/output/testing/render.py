@@ -20,7 +20,6 @@ import tempfile
 
 import cpp_lines
 
-LANGUAGES = ["cpp", "csharp", "typescript", "matlab", "arduino", "cbus"]
 TAG = re.compile(r"\{\{(?!\{)([#^/>!]?)(.*?)\}\}", re.DOTALL)
 
 
@@ -238,7 +237,8 @@ def compare(robdef, tree, language, files):
 
 def share(robdef, tree, files):
     print("| language | bytes | from templates | from views | most of that |\n|---|---|---|---|---|")
-    for language in LANGUAGES:
+    for outputs in sorted(pathlib.Path(tree).glob("compiler/backends/*/templates/outputs.txt")):
+        language = outputs.parent.parent.name
         text = values = 0
         fields = collections.Counter()
         for file in files:

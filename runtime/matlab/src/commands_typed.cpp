@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects of generated classes: the same as all others, but members are known by their places. With
-// the classes' stubs compiled in, properties and functions go through these; arguments of another
-// form than the usual one, and everything else, go the way of the dynamic object, so that both
-// behave alike.
+// Objects of generated classes: the same as all others, but members are found in the class's list.
+// With the classes' stubs compiled in, properties and functions go through these; arguments of
+// another form than the usual one, and everything else, go the way of the dynamic object, so that
+// both behave alike.
 #include <memory>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -24,24 +25,24 @@ class TypedHandle final : public ObjectHandle {
   TypedHandle(const ObjectHandle& object, std::vector<std::string> names,
               std::shared_ptr<Stub> stub, std::span<const TypedMember> members)
       : ObjectHandle(object.connection(), object.object()),
-        names_(std::move(names)),
         stub_(std::move(stub)),
-        members_(members) {}
-
-  [[nodiscard]] const std::string& name(std::size_t index) const {
-    if (index < names_.size()) return names_[index];
-    throw Error(ErrorCode::member_not_found,
-                "the object has no member number " + std::to_string(index));
+        members_(members) {
+    for (std::size_t i = 0; i < names.size(); ++i) places_.emplace(std::move(names[i]), i);
   }
-  /// Null where there is no typed stub, or the member is used by its name.
-  [[nodiscard]] const TypedMember* typed(std::size_t index) const {
-    const bool has_one = stub_ && members_[index].run != nullptr;
-    return has_one ? &members_[index] : nullptr;
+
+  /// Null where there is no typed stub, or the member is used as that of a dynamic object.
+  [[nodiscard]] const TypedMember* typed(const std::string& name) const {
+    const auto place = places_.find(name);
+    if (place == places_.end()) {
+      throw Error(ErrorCode::member_not_found, "the object's class has no member `" + name + "`");
+    }
+    const bool has_one = stub_ && members_[place->second].run != nullptr;
+    return has_one ? &members_[place->second] : nullptr;
   }
   [[nodiscard]] Stub& stub() const { return *stub_; }
 
  private:
-  const std::vector<std::string> names_;
+  std::unordered_map<std::string, std::size_t> places_;
   const std::shared_ptr<Stub> stub_;
   const std::span<const TypedMember> members_;
 };
@@ -116,7 +117,7 @@ void check_names(const TypedObject& compiled, const std::vector<std::string>& na
                                                 std::string(compiled.name) + "`: build it again");
 }
 
-// typed(object, class, names): number of the same object, with members by their places
+// typed(object, class, names): number of the same object, with the members of the class
 void typed(Runtime& runtime, Call& call) {
   const auto object = object_of(runtime, call);
   const std::string name = call.text(1);
@@ -134,14 +135,13 @@ void typed(Runtime& runtime, Call& call) {
       runtime, std::make_shared<TypedHandle>(*object, std::move(names), std::move(stub), members)));
 }
 
-// member(object, place, arguments...): a property's value, a function's result; a property with an
+// member(object, name, arguments...): a property's value, a function's result; a property with an
 // argument is set
 void member(Runtime& runtime, Call& call) {
   const auto object = runtime.handles().get<TypedHandle>(call.handle(0));
   runtime.current = object->connection();
-  const std::size_t place = read_number<std::uint32_t>(call[1]);
-  const std::string& name = object->name(place);
-  const TypedMember* const typed = object->typed(place);
+  const std::string name = call.text(1);
+  const TypedMember* const typed = object->typed(name);
   if (typed != nullptr && runtime.may_block()) {
     RunningCall running(runtime);
     try {

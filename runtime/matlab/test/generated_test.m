@@ -23,7 +23,7 @@
 %!error id=RobotRaconteur:ServiceError experimental.bench.Tool(bench())
 %!error <not a `experimental.bench.Tool`> experimental.bench.Tool(bench())
 %!error id=RobotRaconteur:InvalidArgument experimental.bench.Bench()
-%!error id=RobotRaconteur:MemberNotFound rrmex('member', bench().rr_h, 1000)
+%!error id=RobotRaconteur:MemberNotFound rrmex('member', bench().rr_h, 'nothing')
 
 %!test % constants, enums and exceptions without a connection
 %! assert(experimental.bench.Constants.LIMIT, int32(42));

@@ -68,7 +68,7 @@ const ::rr::ObjectType& RobotDeviceSkeleton::rr_object_type() const {
 
 void RobotDeviceSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property Name
+    case rr_at::Name: {
       if (rr_request.is_set()) {
         ::std::string value{};
         rr_request.read_value(&value);
@@ -78,12 +78,12 @@ void RobotDeviceSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr
       const auto value = get_Name();
       return rr_request.answer(&value);
     }
-    case 1: {  // function GetProperty
+    case rr_at::GetProperty: {
       ::std::string name{};
       rr_request.read(name);
       return async_GetProperty(name, rr_request);
     }
-    case 2: {  // function SetProperty
+    case rr_at::SetProperty: {
       ::std::string name{};
       ::rr::Array<double> val{};
       rr_request.read(name, val);
@@ -127,7 +127,7 @@ const ::rr::ObjectType& RobotCameraSkeleton::rr_object_type() const {
 
 void RobotCameraSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property Name
+    case rr_at::Name: {
       if (rr_request.is_set()) {
         ::std::string value{};
         rr_request.read_value(&value);
@@ -137,18 +137,18 @@ void RobotCameraSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr
       const auto value = get_Name();
       return rr_request.answer(&value);
     }
-    case 1: {  // function GetProperty
+    case rr_at::GetProperty: {
       ::std::string name{};
       rr_request.read(name);
       return async_GetProperty(name, rr_request);
     }
-    case 2: {  // function SetProperty
+    case rr_at::SetProperty: {
       ::std::string name{};
       ::rr::Array<double> val{};
       rr_request.read(name, val);
       return async_SetProperty(name, val, rr_request);
     }
-    case 3: {  // function GetCurrentStreamFrameCameraBitmap
+    case rr_at::GetCurrentStreamFrameCameraBitmap: {
       return async_GetCurrentStreamFrameCameraBitmap(rr_request);
     }
     default:
@@ -179,19 +179,19 @@ const ::rr::ObjectType& CameraHostStub::rr_object_type() const { return rr_objec
 
 ::std::shared_ptr<RobotDeviceStub> CameraHostStub::get_robdevice(::std::int32_t index,
                                                                  const ::rr::CallOptions& options) {
-  return rr_find_as<RobotDeviceStub>(rr_members_CameraHost[0], options, index);
+  return rr_find_as<RobotDeviceStub>(rr_members_CameraHost[rr_at::robdevice], options, index);
 }
 
 ::std::shared_ptr<RobotCameraStub> CameraHostStub::get_robcamera(::std::int32_t index,
                                                                  const ::rr::CallOptions& options) {
-  return rr_find_as<RobotCameraStub>(rr_members_CameraHost[1], options, index);
+  return rr_find_as<RobotCameraStub>(rr_members_CameraHost[rr_at::robcamera], options, index);
 }
 
 const ::rr::ObjectType& CameraHostSkeleton::rr_object_type() const { return rr_object_CameraHost; }
 
 void CameraHostSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 2: {  // property RobotCameraCount
+    case rr_at::RobotCameraCount: {
       if (rr_request.is_set()) {
         ::std::int32_t value = 0;
         rr_request.read_value(&value);
@@ -201,7 +201,7 @@ void CameraHostSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_
       const auto value = get_RobotCameraCount();
       return rr_request.answer(&value);
     }
-    case 3: {  // property RobotDeviceCount
+    case rr_at::RobotDeviceCount: {
       if (rr_request.is_set()) {
         ::std::int32_t value = 0;
         rr_request.read_value(&value);
@@ -219,9 +219,9 @@ void CameraHostSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_
 ::std::shared_ptr<::rr::Skeleton> CameraHostSkeleton::rr_child(::std::size_t rr_member,
                                                                const ::rr::ObjectIndex& rr_index) {
   switch (rr_member) {
-    case 0:
+    case rr_at::robdevice:
       return get_robdevice(rr_index.number);
-    case 1:
+    case rr_at::robcamera:
       return get_robcamera(rr_index.number);
     default:
       return nullptr;

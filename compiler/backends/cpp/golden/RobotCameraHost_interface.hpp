@@ -25,18 +25,29 @@ struct CameraBitmap {
 };
 extern const ::rr::RecordType rr_type_CameraBitmap;
 
-extern const ::rr::Member rr_members_RobotDevice[3];
+/// Where each member is in the table.
+struct rr_at_RobotDevice {
+  enum : ::std::size_t {
+    Name,
+    GetProperty,
+    SetProperty,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_RobotDevice[rr_at_RobotDevice::rr_count];
 extern const ::rr::ObjectType rr_object_RobotDevice;
 
 /// A RobotDevice on another node.
 class RobotDeviceStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_RobotDevice;
+
  public:
   ::std::string get_Name(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::string>(rr_members_RobotDevice[0], options);
+    return rr_get<::std::string>(rr_members_RobotDevice[rr_at::Name], options);
   }
   template <class Token>
   auto async_get_Name(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::string>(rr_members_RobotDevice[0], options,
+    return rr_async_get<::std::string>(rr_members_RobotDevice[rr_at::Name], options,
                                        ::std::forward<Token>(token));
   }
   template <class Token>
@@ -44,11 +55,11 @@ class RobotDeviceStub : public virtual ::rr::Stub {
     return async_get_Name(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_Name(const ::std::string& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_RobotDevice[0], options, &value);
+    rr_set(rr_members_RobotDevice[rr_at::Name], options, &value);
   }
   template <class Token>
   auto async_set_Name(const ::std::string& value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<::std::string>(rr_members_RobotDevice[0], options,
+    return rr_async_set<::std::string>(rr_members_RobotDevice[rr_at::Name], options,
                                        ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -57,12 +68,12 @@ class RobotDeviceStub : public virtual ::rr::Stub {
   }
   ::rr::Array<double> GetProperty(const ::std::string& name,
                                   const ::rr::CallOptions& options = {}) {
-    return rr_call<::rr::Array<double>>(rr_members_RobotDevice[1], options, name);
+    return rr_call<::rr::Array<double>>(rr_members_RobotDevice[rr_at::GetProperty], options, name);
   }
   template <class Token>
   auto async_GetProperty(const ::std::string& name, const ::rr::CallOptions& options,
                          Token&& token) {
-    return rr_async_call<::rr::Array<double>>(rr_members_RobotDevice[1], options,
+    return rr_async_call<::rr::Array<double>>(rr_members_RobotDevice[rr_at::GetProperty], options,
                                               ::std::forward<Token>(token), name);
   }
   template <class Token>
@@ -71,12 +82,12 @@ class RobotDeviceStub : public virtual ::rr::Stub {
   }
   ::std::int32_t SetProperty(const ::std::string& name, const ::rr::Array<double>& val,
                              const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::int32_t>(rr_members_RobotDevice[2], options, name, val);
+    return rr_call<::std::int32_t>(rr_members_RobotDevice[rr_at::SetProperty], options, name, val);
   }
   template <class Token>
   auto async_SetProperty(const ::std::string& name, const ::rr::Array<double>& val,
                          const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_call<::std::int32_t>(rr_members_RobotDevice[2], options,
+    return rr_async_call<::std::int32_t>(rr_members_RobotDevice[rr_at::SetProperty], options,
                                          ::std::forward<Token>(token), name, val);
   }
   template <class Token>
@@ -88,6 +99,8 @@ class RobotDeviceStub : public virtual ::rr::Stub {
 
 /// Serves one RobotDevice: derive from it and implement its members.
 class RobotDeviceSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_RobotDevice;
+
  public:
   virtual ::std::string get_Name() = 0;
   virtual void set_Name(const ::std::string& value) = 0;
@@ -124,18 +137,30 @@ class RobotDeviceDefault : public RobotDeviceSkeleton {
   ::rr::Stored<::std::string> rr_value_Name;
 };
 
-extern const ::rr::Member rr_members_RobotCamera[4];
+/// Where each member is in the table.
+struct rr_at_RobotCamera {
+  enum : ::std::size_t {
+    Name,
+    GetProperty,
+    SetProperty,
+    GetCurrentStreamFrameCameraBitmap,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_RobotCamera[rr_at_RobotCamera::rr_count];
 extern const ::rr::ObjectType rr_object_RobotCamera;
 
 /// A RobotCamera on another node.
 class RobotCameraStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_RobotCamera;
+
  public:
   ::std::string get_Name(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::string>(rr_members_RobotCamera[0], options);
+    return rr_get<::std::string>(rr_members_RobotCamera[rr_at::Name], options);
   }
   template <class Token>
   auto async_get_Name(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::string>(rr_members_RobotCamera[0], options,
+    return rr_async_get<::std::string>(rr_members_RobotCamera[rr_at::Name], options,
                                        ::std::forward<Token>(token));
   }
   template <class Token>
@@ -143,11 +168,11 @@ class RobotCameraStub : public virtual ::rr::Stub {
     return async_get_Name(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_Name(const ::std::string& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_RobotCamera[0], options, &value);
+    rr_set(rr_members_RobotCamera[rr_at::Name], options, &value);
   }
   template <class Token>
   auto async_set_Name(const ::std::string& value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<::std::string>(rr_members_RobotCamera[0], options,
+    return rr_async_set<::std::string>(rr_members_RobotCamera[rr_at::Name], options,
                                        ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -156,12 +181,12 @@ class RobotCameraStub : public virtual ::rr::Stub {
   }
   ::rr::Array<double> GetProperty(const ::std::string& name,
                                   const ::rr::CallOptions& options = {}) {
-    return rr_call<::rr::Array<double>>(rr_members_RobotCamera[1], options, name);
+    return rr_call<::rr::Array<double>>(rr_members_RobotCamera[rr_at::GetProperty], options, name);
   }
   template <class Token>
   auto async_GetProperty(const ::std::string& name, const ::rr::CallOptions& options,
                          Token&& token) {
-    return rr_async_call<::rr::Array<double>>(rr_members_RobotCamera[1], options,
+    return rr_async_call<::rr::Array<double>>(rr_members_RobotCamera[rr_at::GetProperty], options,
                                               ::std::forward<Token>(token), name);
   }
   template <class Token>
@@ -170,12 +195,12 @@ class RobotCameraStub : public virtual ::rr::Stub {
   }
   ::std::int32_t SetProperty(const ::std::string& name, const ::rr::Array<double>& val,
                              const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::int32_t>(rr_members_RobotCamera[2], options, name, val);
+    return rr_call<::std::int32_t>(rr_members_RobotCamera[rr_at::SetProperty], options, name, val);
   }
   template <class Token>
   auto async_SetProperty(const ::std::string& name, const ::rr::Array<double>& val,
                          const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_call<::std::int32_t>(rr_members_RobotCamera[2], options,
+    return rr_async_call<::std::int32_t>(rr_members_RobotCamera[rr_at::SetProperty], options,
                                          ::std::forward<Token>(token), name, val);
   }
   template <class Token>
@@ -184,12 +209,14 @@ class RobotCameraStub : public virtual ::rr::Stub {
   }
   ::std::optional<CameraBitmap> GetCurrentStreamFrameCameraBitmap(
       const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<CameraBitmap>>(rr_members_RobotCamera[3], options);
+    return rr_call<::std::optional<CameraBitmap>>(
+        rr_members_RobotCamera[rr_at::GetCurrentStreamFrameCameraBitmap], options);
   }
   template <class Token>
   auto async_GetCurrentStreamFrameCameraBitmap(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_call<::std::optional<CameraBitmap>>(rr_members_RobotCamera[3], options,
-                                                        ::std::forward<Token>(token));
+    return rr_async_call<::std::optional<CameraBitmap>>(
+        rr_members_RobotCamera[rr_at::GetCurrentStreamFrameCameraBitmap], options,
+        ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_GetCurrentStreamFrameCameraBitmap(Token&& token) {
@@ -201,6 +228,8 @@ class RobotCameraStub : public virtual ::rr::Stub {
 
 /// Serves one RobotCamera: derive from it and implement its members.
 class RobotCameraSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_RobotCamera;
+
  public:
   virtual ::std::string get_Name() = 0;
   virtual void set_Name(const ::std::string& value) = 0;
@@ -245,17 +274,29 @@ class RobotCameraDefault : public RobotCameraSkeleton {
   ::rr::Stored<::std::string> rr_value_Name;
 };
 
-extern const ::rr::Member rr_members_CameraHost[4];
+/// Where each member is in the table.
+struct rr_at_CameraHost {
+  enum : ::std::size_t {
+    robdevice,
+    robcamera,
+    RobotCameraCount,
+    RobotDeviceCount,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_CameraHost[rr_at_CameraHost::rr_count];
 extern const ::rr::ObjectType rr_object_CameraHost;
 
 /// A CameraHost on another node.
 class CameraHostStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_CameraHost;
+
  public:
   ::std::shared_ptr<RobotDeviceStub> get_robdevice(::std::int32_t index,
                                                    const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_robdevice(::std::int32_t index, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<RobotDeviceStub>(rr_members_CameraHost[0], options,
+    return rr_async_find<RobotDeviceStub>(rr_members_CameraHost[rr_at::robdevice], options,
                                           ::std::forward<Token>(token), index);
   }
   template <class Token>
@@ -266,7 +307,7 @@ class CameraHostStub : public virtual ::rr::Stub {
                                                    const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_robcamera(::std::int32_t index, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<RobotCameraStub>(rr_members_CameraHost[1], options,
+    return rr_async_find<RobotCameraStub>(rr_members_CameraHost[rr_at::robcamera], options,
                                           ::std::forward<Token>(token), index);
   }
   template <class Token>
@@ -274,11 +315,11 @@ class CameraHostStub : public virtual ::rr::Stub {
     return async_get_robcamera(index, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::int32_t get_RobotCameraCount(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::int32_t>(rr_members_CameraHost[2], options);
+    return rr_get<::std::int32_t>(rr_members_CameraHost[rr_at::RobotCameraCount], options);
   }
   template <class Token>
   auto async_get_RobotCameraCount(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::int32_t>(rr_members_CameraHost[2], options,
+    return rr_async_get<::std::int32_t>(rr_members_CameraHost[rr_at::RobotCameraCount], options,
                                         ::std::forward<Token>(token));
   }
   template <class Token>
@@ -286,12 +327,12 @@ class CameraHostStub : public virtual ::rr::Stub {
     return async_get_RobotCameraCount(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_RobotCameraCount(::std::int32_t value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_CameraHost[2], options, &value);
+    rr_set(rr_members_CameraHost[rr_at::RobotCameraCount], options, &value);
   }
   template <class Token>
   auto async_set_RobotCameraCount(::std::int32_t value, const ::rr::CallOptions& options,
                                   Token&& token) {
-    return rr_async_set<::std::int32_t>(rr_members_CameraHost[2], options,
+    return rr_async_set<::std::int32_t>(rr_members_CameraHost[rr_at::RobotCameraCount], options,
                                         ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -299,11 +340,11 @@ class CameraHostStub : public virtual ::rr::Stub {
     return async_set_RobotCameraCount(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::int32_t get_RobotDeviceCount(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::int32_t>(rr_members_CameraHost[3], options);
+    return rr_get<::std::int32_t>(rr_members_CameraHost[rr_at::RobotDeviceCount], options);
   }
   template <class Token>
   auto async_get_RobotDeviceCount(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::int32_t>(rr_members_CameraHost[3], options,
+    return rr_async_get<::std::int32_t>(rr_members_CameraHost[rr_at::RobotDeviceCount], options,
                                         ::std::forward<Token>(token));
   }
   template <class Token>
@@ -311,12 +352,12 @@ class CameraHostStub : public virtual ::rr::Stub {
     return async_get_RobotDeviceCount(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_RobotDeviceCount(::std::int32_t value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_CameraHost[3], options, &value);
+    rr_set(rr_members_CameraHost[rr_at::RobotDeviceCount], options, &value);
   }
   template <class Token>
   auto async_set_RobotDeviceCount(::std::int32_t value, const ::rr::CallOptions& options,
                                   Token&& token) {
-    return rr_async_set<::std::int32_t>(rr_members_CameraHost[3], options,
+    return rr_async_set<::std::int32_t>(rr_members_CameraHost[rr_at::RobotDeviceCount], options,
                                         ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -328,6 +369,8 @@ class CameraHostStub : public virtual ::rr::Stub {
 
 /// Serves one CameraHost: derive from it and implement its members.
 class CameraHostSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_CameraHost;
+
  public:
   virtual ::std::shared_ptr<RobotDeviceSkeleton> get_robdevice(::std::int32_t index) = 0;
   virtual ::std::shared_ptr<RobotCameraSkeleton> get_robcamera(::std::int32_t index) = 0;

@@ -83,6 +83,14 @@ public class RobotDeviceStub(ObjectHandle rrHandle) : Stub(rrHandle), IRobotDevi
 /// <summary>Serves one RobotDevice: derive from it and implement its members.</summary>
 public abstract class RobotDeviceSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Name,
+        GetProperty,
+        SetProperty,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "RobotDevice",
     [
         new("Name", MemberKind.Property, MemberAccess.None),
@@ -102,19 +110,19 @@ public abstract class RobotDeviceSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Name when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetNameAsync(rrRequest.Cancelled), ValueCodec.String);
-            case 0 when rrRequest.IsSet:
+            case RrPlace.Name when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetNameAsync(rrRequest.Argument(ValueCodec.String), rrRequest.Cancelled));
-            case 1:
+            case RrPlace.GetProperty:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     string name = rrArguments.Read(ValueCodec.String, "name"u8);
                     return rrRequest.AnswerAsync(GetPropertyAsync(name, rrRequest.Cancelled), ValueCodec.Double.Array);
                 }
-            case 2:
+            case RrPlace.SetProperty:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     string name = rrArguments.Read(ValueCodec.String, "name"u8);
@@ -221,6 +229,15 @@ public class RobotCameraStub(ObjectHandle rrHandle) : Stub(rrHandle), IRobotCame
 /// <summary>Serves one RobotCamera: derive from it and implement its members.</summary>
 public abstract class RobotCameraSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Name,
+        GetProperty,
+        SetProperty,
+        GetCurrentStreamFrameCameraBitmap,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "RobotCamera",
     [
         new("Name", MemberKind.Property, MemberAccess.None),
@@ -243,26 +260,26 @@ public abstract class RobotCameraSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Name when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetNameAsync(rrRequest.Cancelled), ValueCodec.String);
-            case 0 when rrRequest.IsSet:
+            case RrPlace.Name when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetNameAsync(rrRequest.Argument(ValueCodec.String), rrRequest.Cancelled));
-            case 1:
+            case RrPlace.GetProperty:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     string name = rrArguments.Read(ValueCodec.String, "name"u8);
                     return rrRequest.AnswerAsync(GetPropertyAsync(name, rrRequest.Cancelled), ValueCodec.Double.Array);
                 }
-            case 2:
+            case RrPlace.SetProperty:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     string name = rrArguments.Read(ValueCodec.String, "name"u8);
                     double[] val = rrArguments.Read(ValueCodec.Double.Array, "val"u8);
                     return rrRequest.AnswerAsync(SetPropertyAsync(name, val, rrRequest.Cancelled), ValueCodec.Int32);
                 }
-            case 3:
+            case RrPlace.GetCurrentStreamFrameCameraBitmap:
                 {
                     return rrRequest.AnswerAsync(GetCurrentStreamFrameCameraBitmapAsync(rrRequest.Cancelled), CameraBitmap.RrCodec);
                 }
@@ -373,6 +390,15 @@ public class CameraHostStub(ObjectHandle rrHandle) : Stub(rrHandle), ICameraHost
 /// <summary>Serves one CameraHost: derive from it and implement its members.</summary>
 public abstract class CameraHostSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Robdevice,
+        Robcamera,
+        RobotCameraCount,
+        RobotDeviceCount,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "CameraHost",
     [
         new("robdevice", MemberKind.ObjRef, MemberAccess.None) { Index = IndexForm.Int32, ObjectType = "RobotCameraHost_interface.RobotDevice" },
@@ -397,19 +423,19 @@ public abstract class CameraHostSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0:
+            case RrPlace.Robdevice:
                 return rrRequest.AnswerObjectAsync(GetRobdeviceAsync(rrRequest.IndexNumber, rrRequest.Cancelled));
-            case 1:
+            case RrPlace.Robcamera:
                 return rrRequest.AnswerObjectAsync(GetRobcameraAsync(rrRequest.IndexNumber, rrRequest.Cancelled));
-            case 2 when rrRequest.IsGet:
+            case RrPlace.RobotCameraCount when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetRobotCameraCountAsync(rrRequest.Cancelled), ValueCodec.Int32);
-            case 2 when rrRequest.IsSet:
+            case RrPlace.RobotCameraCount when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetRobotCameraCountAsync(rrRequest.Argument(ValueCodec.Int32), rrRequest.Cancelled));
-            case 3 when rrRequest.IsGet:
+            case RrPlace.RobotDeviceCount when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetRobotDeviceCountAsync(rrRequest.Cancelled), ValueCodec.Int32);
-            case 3 when rrRequest.IsSet:
+            case RrPlace.RobotDeviceCount when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetRobotDeviceCountAsync(rrRequest.Argument(ValueCodec.Int32), rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);

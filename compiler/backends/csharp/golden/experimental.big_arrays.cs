@@ -110,6 +110,15 @@ public class StoreStub(ObjectHandle rrHandle) : Stub(rrHandle), IStore, IStub<St
 /// <summary>Serves one Store: derive from it and implement its members.</summary>
 public abstract class StoreSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Exact,
+        AtTheEdge,
+        BeyondIt,
+        Depth,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Store",
     [
         new("exact", MemberKind.Property, MemberAccess.None),
@@ -136,21 +145,21 @@ public abstract class StoreSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Exact when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetExactAsync(rrRequest.Cancelled), RrCodecs.Double100000);
-            case 0 when rrRequest.IsSet:
+            case RrPlace.Exact when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetExactAsync(rrRequest.Argument(RrCodecs.Double100000), rrRequest.Cancelled));
-            case 1 when rrRequest.IsGet:
+            case RrPlace.AtTheEdge when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetAtTheEdgeAsync(rrRequest.Cancelled), RrCodecs.Uint816384);
-            case 1 when rrRequest.IsSet:
+            case RrPlace.AtTheEdge when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetAtTheEdgeAsync(rrRequest.Argument(RrCodecs.Uint816384), rrRequest.Cancelled));
-            case 2 when rrRequest.IsGet:
+            case RrPlace.BeyondIt when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetBeyondItAsync(rrRequest.Cancelled), RrCodecs.Uint816385);
-            case 2 when rrRequest.IsSet:
+            case RrPlace.BeyondIt when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetBeyondItAsync(rrRequest.Argument(RrCodecs.Uint816385), rrRequest.Cancelled));
-            case 3:
+            case RrPlace.Depth:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     ushort[] raw = rrArguments.Read(RrCodecs.Uint1670000Max, "raw"u8);

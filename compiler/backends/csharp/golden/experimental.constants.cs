@@ -83,6 +83,12 @@ public class MachineStub(ObjectHandle rrHandle) : Stub(rrHandle), IMachine, IStu
 /// <summary>Serves one Machine: derive from it and implement its members.</summary>
 public abstract class MachineSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Setting,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Machine",
     [
         new("setting", MemberKind.Property, MemberAccess.None),
@@ -96,11 +102,11 @@ public abstract class MachineSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Setting when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetSettingAsync(rrRequest.Cancelled), global::Experimental.Constants.Setting.RrCodec);
-            case 0 when rrRequest.IsSet:
+            case RrPlace.Setting when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetSettingAsync(rrRequest.Argument(global::Experimental.Constants.Setting.RrCodec), rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);

@@ -684,6 +684,24 @@ public class WordParametersStub(ObjectHandle rrHandle) : Stub(rrHandle), IWordPa
 /// <summary>Serves one WordParameters: derive from it and implement its members.</summary>
 public abstract class WordParametersSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Words0,
+        Words1,
+        Words2,
+        Words3,
+        Words4,
+        Words5,
+        Words6,
+        Words7,
+        Words8,
+        Words9,
+        Words10,
+        Told,
+        Asked,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "WordParameters",
     [
         new("words_0", MemberKind.Function, MemberAccess.None) { ReturnsValue = true },
@@ -725,7 +743,7 @@ public abstract class WordParametersSkeleton : Skeleton
 
     public abstract ValueTask<int> Words10Async(int handler, global::System.Threading.CancellationToken cancellationToken = default);
 
-    public void FireTold(int @abstract, int @as, int @base, int @break, int @byte, int @case, int @catch, int @char, int @checked, int @class, int @const, int @continue) => RrEvent(11)
+    public void FireTold(int @abstract, int @as, int @base, int @break, int @byte, int @case, int @catch, int @char, int @checked, int @class, int @const, int @continue) => RrEvent((uint)RrPlace.Told)
         .With("continue"u8, ValueCodec.Int32, @continue)
         .With("const"u8, ValueCodec.Int32, @const)
         .With("class"u8, ValueCodec.Int32, @class)
@@ -741,20 +759,20 @@ public abstract class WordParametersSkeleton : Skeleton
         .Fire();
 
     public global::System.Threading.Tasks.Task<int> AskedAsync(uint client, int handler, global::System.Threading.CancellationToken cancel = default) =>
-        RrCallback(12)
+        RrCallback((uint)RrPlace.Asked)
             .With("handler"u8, ValueCodec.Int32, handler)
             .CallAsync(client, ValueCodec.Int32, cancel);
 
     public int Asked(uint client, int handler, global::System.Threading.CancellationToken cancel = default) =>
-        RrCallback(12)
+        RrCallback((uint)RrPlace.Asked)
             .With("handler"u8, ValueCodec.Int32, handler)
             .Call(client, ValueCodec.Int32, cancel);
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0:
+            case RrPlace.Words0:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int @abstract = rrArguments.Read(ValueCodec.Int32, "abstract"u8);
@@ -771,7 +789,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int @continue = rrArguments.Read(ValueCodec.Int32, "continue"u8);
                     return rrRequest.AnswerAsync(Words0Async(@abstract, @as, @base, @break, @byte, @case, @catch, @char, @checked, @class, @const, @continue, rrRequest.Cancelled), ValueCodec.Int32);
                 }
-            case 1:
+            case RrPlace.Words1:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int @decimal = rrArguments.Read(ValueCodec.Int32, "decimal"u8);
@@ -788,7 +806,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int @for = rrArguments.Read(ValueCodec.Int32, "for"u8);
                     return rrRequest.AnswerAsync(Words1Async(@decimal, @default, @delegate, @do, @else, @explicit, @extern, @false, @finally, @fixed, @float, @for, rrRequest.Cancelled), ValueCodec.Int32);
                 }
-            case 2:
+            case RrPlace.Words2:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int @foreach = rrArguments.Read(ValueCodec.Int32, "foreach"u8);
@@ -805,7 +823,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int @namespace = rrArguments.Read(ValueCodec.Int32, "namespace"u8);
                     return rrRequest.AnswerAsync(Words2Async(@foreach, @goto, @if, @implicit, @in, @int, @interface, @internal, @is, @lock, @long, @namespace, rrRequest.Cancelled), ValueCodec.Int32);
                 }
-            case 3:
+            case RrPlace.Words3:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int @new = rrArguments.Read(ValueCodec.Int32, "new"u8);
@@ -822,7 +840,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int @return = rrArguments.Read(ValueCodec.Int32, "return"u8);
                     return rrRequest.AnswerAsync(Words3Async(@new, @null, @operator, @out, @override, @params, @private, @protected, @public, @readonly, @ref, @return, rrRequest.Cancelled), ValueCodec.Int32);
                 }
-            case 4:
+            case RrPlace.Words4:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int @sbyte = rrArguments.Read(ValueCodec.Int32, "sbyte"u8);
@@ -839,7 +857,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int @uint = rrArguments.Read(ValueCodec.Int32, "uint"u8);
                     return rrRequest.AnswerAsync(Words4Async(@sbyte, @sealed, @short, @sizeof, @stackalloc, @static, @switch, @throw, @true, @try, @typeof, @uint, rrRequest.Cancelled), ValueCodec.Int32);
                 }
-            case 5:
+            case RrPlace.Words5:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int @ulong = rrArguments.Read(ValueCodec.Int32, "ulong"u8);
@@ -856,7 +874,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int args = rrArguments.Read(ValueCodec.Int32, "args"u8);
                     return rrRequest.AnswerAsync(Words5Async(@ulong, @unchecked, @unsafe, @ushort, @virtual, @volatile, @while, add, alias, allows, and, args, rrRequest.Cancelled), ValueCodec.Int32);
                 }
-            case 6:
+            case RrPlace.Words6:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int ascending = rrArguments.Read(ValueCodec.Int32, "ascending"u8);
@@ -873,7 +891,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int group = rrArguments.Read(ValueCodec.Int32, "group"u8);
                     return rrRequest.AnswerAsync(Words6Async(ascending, async, await, by, descending, dynamic, extension, file, from, get, global, group, rrRequest.Cancelled), ValueCodec.Int32);
                 }
-            case 7:
+            case RrPlace.Words7:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int init = rrArguments.Read(ValueCodec.Int32, "init"u8);
@@ -890,7 +908,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int or = rrArguments.Read(ValueCodec.Int32, "or"u8);
                     return rrRequest.AnswerAsync(Words7Async(init, into, join, let, managed, nameof, nint, not, notnull, nuint, on, or, rrRequest.Cancelled), ValueCodec.Int32);
                 }
-            case 8:
+            case RrPlace.Words8:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int orderby = rrArguments.Read(ValueCodec.Int32, "orderby"u8);
@@ -907,7 +925,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int when = rrArguments.Read(ValueCodec.Int32, "when"u8);
                     return rrRequest.AnswerAsync(Words8Async(orderby, partial, record, remove, required, scoped, select, set, unmanaged, value, var, when, rrRequest.Cancelled), ValueCodec.Int32);
                 }
-            case 9:
+            case RrPlace.Words9:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int where = rrArguments.Read(ValueCodec.Int32, "where"u8);
@@ -924,7 +942,7 @@ public abstract class WordParametersSkeleton : Skeleton
                     int writer = rrArguments.Read(ValueCodec.Int32, "writer"u8);
                     return rrRequest.AnswerAsync(Words9Async(where, with, yield, cancel, cancellationToken, arguments, request, member, result, task, codec, writer, rrRequest.Cancelled), ValueCodec.Int32);
                 }
-            case 10:
+            case RrPlace.Words10:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int handler = rrArguments.Read(ValueCodec.Int32, "handler"u8);
@@ -1105,6 +1123,27 @@ public class WordMembersStub(ObjectHandle rrHandle) : Stub(rrHandle), IWordMembe
 /// <summary>Serves one WordMembers: derive from it and implement its members.</summary>
 public abstract class WordMembersSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Abstract,
+        Class,
+        Record,
+        Task,
+        Namespace,
+        Lock,
+        Get,
+        Operator,
+        Params,
+        Add,
+        Cancel,
+        Request,
+        Remove,
+        Value,
+        Set,
+        Init,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "WordMembers",
     [
         new("abstract", MemberKind.Property, MemberAccess.None),
@@ -1133,25 +1172,25 @@ public abstract class WordMembersSkeleton : Skeleton
 
     public abstract ValueTask<int> ClassAsync(int value, global::System.Threading.CancellationToken cancellationToken = default);
 
-    public void FireRecord(int value) => RrEvent(2)
+    public void FireRecord(int value) => RrEvent((uint)RrPlace.Record)
         .With("value"u8, ValueCodec.Int32, value)
         .Fire();
 
-    public PipeServer<int> Task => _rrTask ??= new(this, 3, ValueCodec.Int32);
+    public PipeServer<int> Task => _rrTask ??= new(this, (uint)RrPlace.Task, ValueCodec.Int32);
 
     private PipeServer<int>? _rrTask;
 
     public global::System.Threading.Tasks.Task<int> NamespaceAsync(uint client, int value, global::System.Threading.CancellationToken cancel = default) =>
-        RrCallback(4)
+        RrCallback((uint)RrPlace.Namespace)
             .With("value"u8, ValueCodec.Int32, value)
             .CallAsync(client, ValueCodec.Int32, cancel);
 
     public int Namespace(uint client, int value, global::System.Threading.CancellationToken cancel = default) =>
-        RrCallback(4)
+        RrCallback((uint)RrPlace.Namespace)
             .With("value"u8, ValueCodec.Int32, value)
             .Call(client, ValueCodec.Int32, cancel);
 
-    public WireServer<int> Lock => _rrLock ??= new(this, 5, ValueCodec.Int32);
+    public WireServer<int> Lock => _rrLock ??= new(this, (uint)RrPlace.Lock, ValueCodec.Int32);
 
     private WireServer<int>? _rrLock;
 
@@ -1165,25 +1204,25 @@ public abstract class WordMembersSkeleton : Skeleton
 
     public abstract ValueTask<int> AddAsync(int value, global::System.Threading.CancellationToken cancellationToken = default);
 
-    public void FireCancel(int value) => RrEvent(10)
+    public void FireCancel(int value) => RrEvent((uint)RrPlace.Cancel)
         .With("value"u8, ValueCodec.Int32, value)
         .Fire();
 
-    public PipeServer<int> Request => _rrRequest ??= new(this, 11, ValueCodec.Int32);
+    public PipeServer<int> Request => _rrRequest ??= new(this, (uint)RrPlace.Request, ValueCodec.Int32);
 
     private PipeServer<int>? _rrRequest;
 
     public global::System.Threading.Tasks.Task<int> RemoveAsync(uint client, int value, global::System.Threading.CancellationToken cancel = default) =>
-        RrCallback(12)
+        RrCallback((uint)RrPlace.Remove)
             .With("value"u8, ValueCodec.Int32, value)
             .CallAsync(client, ValueCodec.Int32, cancel);
 
     public int Remove(uint client, int value, global::System.Threading.CancellationToken cancel = default) =>
-        RrCallback(12)
+        RrCallback((uint)RrPlace.Remove)
             .With("value"u8, ValueCodec.Int32, value)
             .Call(client, ValueCodec.Int32, cancel);
 
-    public WireServer<int> Value => _rrValue ??= new(this, 13, ValueCodec.Int32);
+    public WireServer<int> Value => _rrValue ??= new(this, (uint)RrPlace.Value, ValueCodec.Int32);
 
     private WireServer<int>? _rrValue;
 
@@ -1193,41 +1232,41 @@ public abstract class WordMembersSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Abstract when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetAbstractAsync(rrRequest.Cancelled), ValueCodec.Int32);
-            case 0 when rrRequest.IsSet:
+            case RrPlace.Abstract when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetAbstractAsync(rrRequest.Argument(ValueCodec.Int32), rrRequest.Cancelled));
-            case 1:
+            case RrPlace.Class:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int value = rrArguments.Read(ValueCodec.Int32, "value"u8);
                     return rrRequest.AnswerAsync(ClassAsync(value, rrRequest.Cancelled), ValueCodec.Int32);
                 }
-            case 7:
+            case RrPlace.Operator:
                 return rrRequest.AnswerObjectAsync(GetOperatorAsync(rrRequest.Cancelled));
-            case 8 when rrRequest.IsGet:
+            case RrPlace.Params when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetParamsAsync(rrRequest.Cancelled), ValueCodec.Int32);
-            case 8 when rrRequest.IsSet:
+            case RrPlace.Params when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetParamsAsync(rrRequest.Argument(ValueCodec.Int32), rrRequest.Cancelled));
-            case 9:
+            case RrPlace.Add:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int value = rrArguments.Read(ValueCodec.Int32, "value"u8);
                     return rrRequest.AnswerAsync(AddAsync(value, rrRequest.Cancelled), ValueCodec.Int32);
                 }
-            case 15:
+            case RrPlace.Init:
                 return rrRequest.AnswerObjectAsync(GetInitAsync(rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
         }
     }
 
-    protected override ServedMemory? RrMemory(uint rrMember) => rrMember switch
+    protected override ServedMemory? RrMemory(uint rrMember) => (RrPlace)rrMember switch
     {
-        6 => ServedMemory.Of(Get, ValueCodec.Int32),
-        14 => ServedMemory.Of(Set, ValueCodec.Int32),
+        RrPlace.Get => ServedMemory.Of(Get, ValueCodec.Int32),
+        RrPlace.Set => ServedMemory.Of(Set, ValueCodec.Int32),
         _ => null,
     };
 }

@@ -108,6 +108,15 @@ public class ShuttersStub(ObjectHandle rrHandle) : Stub(rrHandle), IShutters, IS
 /// <summary>Serves one Shutters: derive from it and implement its members.</summary>
 public abstract class ShuttersSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Count,
+        Move,
+        Moved,
+        Part,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Shutters",
     [
         new("count", MemberKind.Property, MemberAccess.ReadOnly),
@@ -125,7 +134,7 @@ public abstract class ShuttersSkeleton : Skeleton
     public abstract ValueTask<Place?> MoveAsync(int number, double position, CancellationToken cancellationToken = default);
 
     /// <summary>Somebody moved one by hand.</summary>
-    public void FireMoved(int number) => RrEvent(2)
+    public void FireMoved(int number) => RrEvent((uint)RrPlace.Moved)
         .With("number"u8, ValueCodec.Int32, number)
         .Fire();
 
@@ -134,18 +143,18 @@ public abstract class ShuttersSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Count when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetCountAsync(rrRequest.Cancelled), ValueCodec.Int32);
-            case 1:
+            case RrPlace.Move:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int number = rrArguments.Read(ValueCodec.Int32, "number"u8);
                     double position = rrArguments.Read(ValueCodec.Double, "position"u8);
                     return rrRequest.AnswerAsync(MoveAsync(number, position, rrRequest.Cancelled), Place.RrCodec);
                 }
-            case 3:
+            case RrPlace.Part:
                 return rrRequest.AnswerObjectAsync(GetPartAsync(rrRequest.IndexNumber, rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);

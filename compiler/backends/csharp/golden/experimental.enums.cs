@@ -118,6 +118,15 @@ public class MachineStub(ObjectHandle rrHandle) : Stub(rrHandle), IMachine, IStu
 /// <summary>Serves one Machine: derive from it and implement its members.</summary>
 public abstract class MachineSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        State,
+        History,
+        Parts,
+        Limit,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Machine",
     [
         new("state", MemberKind.Property, MemberAccess.None),
@@ -144,21 +153,21 @@ public abstract class MachineSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.State when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetStateAsync(rrRequest.Cancelled), ValueCodec.Enum<State>());
-            case 0 when rrRequest.IsSet:
+            case RrPlace.State when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetStateAsync(rrRequest.Argument(ValueCodec.Enum<State>()), rrRequest.Cancelled));
-            case 1 when rrRequest.IsGet:
+            case RrPlace.History when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetHistoryAsync(rrRequest.Cancelled), RrCodecs.ExperimentalEnumsStateList);
-            case 1 when rrRequest.IsSet:
+            case RrPlace.History when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetHistoryAsync(rrRequest.Argument(RrCodecs.ExperimentalEnumsStateList), rrRequest.Cancelled));
-            case 2 when rrRequest.IsGet:
+            case RrPlace.Parts when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetPartsAsync(rrRequest.Cancelled), RrCodecs.ExperimentalEnumsStateString);
-            case 2 when rrRequest.IsSet:
+            case RrPlace.Parts when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetPartsAsync(rrRequest.Argument(RrCodecs.ExperimentalEnumsStateString), rrRequest.Cancelled));
-            case 3:
+            case RrPlace.Limit:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     State state = rrArguments.Read(ValueCodec.Enum<State>(), "state"u8);

@@ -66,6 +66,14 @@ public class SirenStub(ObjectHandle rrHandle) : Stub(rrHandle), ISiren, IStub<Si
 /// <summary>Serves one Siren: derive from it and implement its members.</summary>
 public abstract class SirenSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Tick,
+        Raised,
+        Test,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Siren",
     [
         new("tick", MemberKind.Event, MemberAccess.None),
@@ -75,10 +83,10 @@ public abstract class SirenSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public void FireTick() => RrEvent(0)
+    public void FireTick() => RrEvent((uint)RrPlace.Tick)
         .Fire();
 
-    public void FireRaised(int level, Alarm? alarm, double[] readings, List<string>? places) => RrEvent(1)
+    public void FireRaised(int level, Alarm? alarm, double[] readings, List<string>? places) => RrEvent((uint)RrPlace.Raised)
         .With("places"u8, RrCodecs.StringList, places)
         .With("readings"u8, ValueCodec.Double.Array, readings)
         .With("alarm"u8, Alarm.RrCodec, alarm)
@@ -89,9 +97,9 @@ public abstract class SirenSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 2:
+            case RrPlace.Test:
                 {
                     return rrRequest.AnswerAsync(TestAsync(rrRequest.Cancelled));
                 }

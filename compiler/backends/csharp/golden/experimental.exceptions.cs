@@ -55,6 +55,12 @@ public class PressStub(ObjectHandle rrHandle) : Stub(rrHandle), IPress, IStub<Pr
 /// <summary>Serves one Press: derive from it and implement its members.</summary>
 public abstract class PressSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Close,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Press",
     [
         new("close", MemberKind.Function, MemberAccess.None),
@@ -66,9 +72,9 @@ public abstract class PressSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0:
+            case RrPlace.Close:
                 {
                     return rrRequest.AnswerAsync(CloseAsync(rrRequest.Cancelled));
                 }

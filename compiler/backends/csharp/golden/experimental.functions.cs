@@ -127,6 +127,18 @@ public class MachineStub(ObjectHandle rrHandle) : Stub(rrHandle), IMachine, IStu
 /// <summary>Serves one Machine: derive from it and implement its members.</summary>
 public abstract class MachineSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Stop,
+        Speed,
+        MoveTo,
+        Join,
+        Inspect,
+        Filter,
+        AFunctionWhoseNameIsRatherLong,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Machine",
     [
         new("stop", MemberKind.Function, MemberAccess.None),
@@ -156,24 +168,24 @@ public abstract class MachineSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0:
+            case RrPlace.Stop:
                 {
                     return rrRequest.AnswerAsync(StopAsync(rrRequest.Cancelled));
                 }
-            case 1:
+            case RrPlace.Speed:
                 {
                     return rrRequest.AnswerAsync(SpeedAsync(rrRequest.Cancelled), ValueCodec.Double);
                 }
-            case 2:
+            case RrPlace.MoveTo:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     double pan = rrArguments.Read(ValueCodec.Double, "pan"u8);
                     double tilt = rrArguments.Read(ValueCodec.Double, "tilt"u8);
                     return rrRequest.AnswerAsync(MoveToAsync(pan, tilt, rrRequest.Cancelled));
                 }
-            case 3:
+            case RrPlace.Join:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     string first = rrArguments.Read(ValueCodec.String, "first"u8);
@@ -181,14 +193,14 @@ public abstract class MachineSkeleton : Skeleton
                     List<string>? others = rrArguments.Read(RrCodecs.StringList, "others"u8);
                     return rrRequest.AnswerAsync(JoinAsync(first, second, others, rrRequest.Cancelled), ValueCodec.String);
                 }
-            case 4:
+            case RrPlace.Inspect:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Report? previous = rrArguments.Read(Report.RrCodec, "previous"u8);
                     byte[] picture = rrArguments.Read(ValueCodec.UInt8.Array, "picture"u8);
                     return rrRequest.AnswerAsync(InspectAsync(previous, picture, rrRequest.Cancelled), Report.RrCodec);
                 }
-            case 5:
+            case RrPlace.Filter:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     double[] samples = rrArguments.Read(ValueCodec.Double.Array, "samples"u8);
@@ -196,7 +208,7 @@ public abstract class MachineSkeleton : Skeleton
                     bool normalize = rrArguments.Read(ValueCodec.Bool, "normalize"u8);
                     return rrRequest.AnswerAsync(FilterAsync(samples, weights, normalize, rrRequest.Cancelled), ValueCodec.Double.Array);
                 }
-            case 6:
+            case RrPlace.AFunctionWhoseNameIsRatherLong:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     VarValue? aFirstParameterWithALongName = rrArguments.Read(ValueCodec.VarValue, "a_first_parameter_with_a_long_name"u8);

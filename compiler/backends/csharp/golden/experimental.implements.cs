@@ -48,6 +48,13 @@ public class NamedStub(ObjectHandle rrHandle) : Stub(rrHandle), INamed, IStub<Na
 /// <summary>Serves one Named: derive from it and implement its members.</summary>
 public abstract class NamedSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Name,
+        Renamed,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Named",
     [
         new("name", MemberKind.Property, MemberAccess.ReadOnly),
@@ -58,15 +65,15 @@ public abstract class NamedSkeleton : Skeleton
 
     public abstract ValueTask<string> GetNameAsync(CancellationToken cancellationToken = default);
 
-    public void FireRenamed(string name) => RrEvent(1)
+    public void FireRenamed(string name) => RrEvent((uint)RrPlace.Renamed)
         .With("name"u8, ValueCodec.String, name)
         .Fire();
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Name when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetNameAsync(rrRequest.Cancelled), ValueCodec.String);
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -126,6 +133,14 @@ public class DeviceStub(ObjectHandle rrHandle) : Stub(rrHandle), IDevice, IStub<
 /// <summary>Serves one Device: derive from it and implement its members.</summary>
 public abstract class DeviceSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Name,
+        Renamed,
+        Reset,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Device",
     [
         new("name", MemberKind.Property, MemberAccess.ReadOnly),
@@ -137,7 +152,7 @@ public abstract class DeviceSkeleton : Skeleton
 
     public abstract ValueTask<string> GetNameAsync(CancellationToken cancellationToken = default);
 
-    public void FireRenamed(string name) => RrEvent(1)
+    public void FireRenamed(string name) => RrEvent((uint)RrPlace.Renamed)
         .With("name"u8, ValueCodec.String, name)
         .Fire();
 
@@ -145,11 +160,11 @@ public abstract class DeviceSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Name when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetNameAsync(rrRequest.Cancelled), ValueCodec.String);
-            case 2:
+            case RrPlace.Reset:
                 {
                     return rrRequest.AnswerAsync(ResetAsync(rrRequest.Cancelled));
                 }
@@ -225,6 +240,14 @@ public class PoweredStub(ObjectHandle rrHandle) : Stub(rrHandle), IPowered, IStu
 /// <summary>Serves one Powered: derive from it and implement its members.</summary>
 public abstract class PoweredSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Name,
+        Renamed,
+        On,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Powered",
     [
         new("name", MemberKind.Property, MemberAccess.ReadOnly),
@@ -236,7 +259,7 @@ public abstract class PoweredSkeleton : Skeleton
 
     public abstract ValueTask<string> GetNameAsync(CancellationToken cancellationToken = default);
 
-    public void FireRenamed(string name) => RrEvent(1)
+    public void FireRenamed(string name) => RrEvent((uint)RrPlace.Renamed)
         .With("name"u8, ValueCodec.String, name)
         .Fire();
 
@@ -246,13 +269,13 @@ public abstract class PoweredSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Name when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetNameAsync(rrRequest.Cancelled), ValueCodec.String);
-            case 2 when rrRequest.IsGet:
+            case RrPlace.On when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetOnAsync(rrRequest.Cancelled), ValueCodec.Bool);
-            case 2 when rrRequest.IsSet:
+            case RrPlace.On when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetOnAsync(rrRequest.Argument(ValueCodec.Bool), rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -380,6 +403,18 @@ public class DriveStub(ObjectHandle rrHandle) : Stub(rrHandle), IDrive, IStub<Dr
 /// <summary>Serves one Drive: derive from it and implement its members.</summary>
 public abstract class DriveSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Name,
+        Renamed,
+        Reset,
+        On,
+        Angle,
+        Torque,
+        Part,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Drive",
     [
         new("name", MemberKind.Property, MemberAccess.ReadOnly),
@@ -395,7 +430,7 @@ public abstract class DriveSkeleton : Skeleton
 
     public abstract ValueTask<string> GetNameAsync(CancellationToken cancellationToken = default);
 
-    public void FireRenamed(string name) => RrEvent(1)
+    public void FireRenamed(string name) => RrEvent((uint)RrPlace.Renamed)
         .With("name"u8, ValueCodec.String, name)
         .Fire();
 
@@ -417,27 +452,27 @@ public abstract class DriveSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Name when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetNameAsync(rrRequest.Cancelled), ValueCodec.String);
-            case 2:
+            case RrPlace.Reset:
                 {
                     return rrRequest.AnswerAsync(ResetAsync(rrRequest.Cancelled));
                 }
-            case 3 when rrRequest.IsGet:
+            case RrPlace.On when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetOnAsync(rrRequest.Cancelled), ValueCodec.Bool);
-            case 3 when rrRequest.IsSet:
+            case RrPlace.On when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetOnAsync(rrRequest.Argument(ValueCodec.Bool), rrRequest.Cancelled));
-            case 4 when rrRequest.IsGet:
+            case RrPlace.Angle when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetAngleAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 4 when rrRequest.IsSet:
+            case RrPlace.Angle when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetAngleAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 5 when rrRequest.IsGet:
+            case RrPlace.Torque when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetTorqueAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 5 when rrRequest.IsSet:
+            case RrPlace.Torque when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetTorqueAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 6:
+            case RrPlace.Part:
                 return rrRequest.AnswerObjectAsync(GetPartAsync(rrRequest.IndexText, rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);

@@ -91,6 +91,14 @@ public class PlannerStub(ObjectHandle rrHandle) : Stub(rrHandle), IPlanner, IStu
 /// <summary>Serves one Planner: derive from it and implement its members.</summary>
 public abstract class PlannerSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Plan,
+        Picture,
+        Solve,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Planner",
     [
         new("plan", MemberKind.Property, MemberAccess.None),
@@ -112,17 +120,17 @@ public abstract class PlannerSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Plan when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetPlanAsync(rrRequest.Cancelled), global::Experimental.Imports.Plan.RrCodec);
-            case 0 when rrRequest.IsSet:
+            case RrPlace.Plan when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetPlanAsync(rrRequest.Argument(global::Experimental.Imports.Plan.RrCodec), rrRequest.Cancelled));
-            case 1 when rrRequest.IsGet:
+            case RrPlace.Picture when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetPictureAsync(rrRequest.Cancelled), global::Experimental.Namedarrays.Pixel.RrCodec.Array);
-            case 1 when rrRequest.IsSet:
+            case RrPlace.Picture when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetPictureAsync(rrRequest.Argument(global::Experimental.Namedarrays.Pixel.RrCodec.Array), rrRequest.Cancelled));
-            case 2:
+            case RrPlace.Solve:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     global::Experimental.Namedarrays.Pose start = rrArguments.Read(global::Experimental.Namedarrays.Pose.RrCodec, "start"u8);

@@ -80,6 +80,16 @@ public class SensorStub(ObjectHandle rrHandle) : Stub(rrHandle), ISensor, IStub<
 /// <summary>Serves one Sensor: derive from it and implement its members.</summary>
 public abstract class SensorSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Frames,
+        Ask,
+        Force,
+        Buffer,
+        Count,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Sensor",
     [
         new("frames", MemberKind.Pipe, MemberAccess.ReadOnly) { Check = ValueCheck.Of(global::Experimental.Members.Frame.RrCodec) },
@@ -92,21 +102,21 @@ public abstract class SensorSkeleton : Skeleton
     public override ServedType RrType => s_rrType;
 
     /// <summary>Each picture when it is taken.</summary>
-    public PipeServer<Frame?> Frames => _rrFrames ??= new(this, 0, global::Experimental.Members.Frame.RrCodec);
+    public PipeServer<Frame?> Frames => _rrFrames ??= new(this, (uint)RrPlace.Frames, global::Experimental.Members.Frame.RrCodec);
 
     private PipeServer<Frame?>? _rrFrames;
 
     public Task<int> AskAsync(uint client, int question, CancellationToken cancel = default) =>
-        RrCallback(1)
+        RrCallback((uint)RrPlace.Ask)
             .With("question"u8, ValueCodec.Int32, question)
             .CallAsync(client, ValueCodec.Int32, cancel);
 
     public int Ask(uint client, int question, CancellationToken cancel = default) =>
-        RrCallback(1)
+        RrCallback((uint)RrPlace.Ask)
             .With("question"u8, ValueCodec.Int32, question)
             .Call(client, ValueCodec.Int32, cancel);
 
-    public WireServer<double[]> Force => _rrForce ??= new(this, 2, RrCodecs.Double3);
+    public WireServer<double[]> Force => _rrForce ??= new(this, (uint)RrPlace.Force, RrCodecs.Double3);
 
     private WireServer<double[]>? _rrForce;
 
@@ -116,9 +126,9 @@ public abstract class SensorSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 4:
+            case RrPlace.Count:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     double limit = rrArguments.Read(ValueCodec.Double, "limit"u8);
@@ -129,9 +139,9 @@ public abstract class SensorSkeleton : Skeleton
         }
     }
 
-    protected override ServedMemory? RrMemory(uint rrMember) => rrMember switch
+    protected override ServedMemory? RrMemory(uint rrMember) => (RrPlace)rrMember switch
     {
-        3 => ServedMemory.Of(Buffer, ValueCodec.Double),
+        RrPlace.Buffer => ServedMemory.Of(Buffer, ValueCodec.Double),
         _ => null,
     };
 }
@@ -264,6 +274,19 @@ public class GeneratorsStub(ObjectHandle rrHandle) : Stub(rrHandle), IGenerators
 /// <summary>Serves one Generators: derive from it and implement its members.</summary>
 public abstract class GeneratorsSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Count,
+        AllFrames,
+        Collect,
+        Accept,
+        RunningSum,
+        Relabel,
+        TraceAPathBetweenPoints,
+        Token,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Generators",
     [
         new("count", MemberKind.Function, MemberAccess.None) { ReturnsValue = true, Generator = GeneratorForm.Returns },
@@ -296,40 +319,40 @@ public abstract class GeneratorsSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0:
+            case RrPlace.Count:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     double limit = rrArguments.Read(ValueCodec.Double, "limit"u8);
                     return rrRequest.AnswerSource(rrCancelled => CountAsync(limit, rrCancelled), ValueCodec.Double);
                 }
-            case 1:
+            case RrPlace.AllFrames:
                 {
                     return rrRequest.AnswerSource(rrCancelled => AllFramesAsync(rrCancelled), global::Experimental.Members.Frame.RrCodec);
                 }
-            case 2:
+            case RrPlace.Collect:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     string label = rrArguments.Read(ValueCodec.String, "label"u8);
                     return rrRequest.AnswerSink((rrItems, rrCancelled) => CollectAsync(label, rrItems, rrCancelled), global::Experimental.Members.Frame.RrCodec);
                 }
-            case 3:
+            case RrPlace.Accept:
                 {
                     return rrRequest.AnswerSink((rrItems, rrCancelled) => AcceptAsync(rrItems, rrCancelled), ValueCodec.UInt8.Array);
                 }
-            case 4:
+            case RrPlace.RunningSum:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     double start = rrArguments.Read(ValueCodec.Double, "start"u8);
                     string unit = rrArguments.Read(ValueCodec.String, "unit"u8);
                     return rrRequest.AnswerFilter((rrItems, rrCancelled) => RunningSumAsync(start, unit, rrItems, rrCancelled), ValueCodec.Double, ValueCodec.Double);
                 }
-            case 5:
+            case RrPlace.Relabel:
                 {
                     return rrRequest.AnswerFilter((rrItems, rrCancelled) => RelabelAsync(rrItems, rrCancelled), global::Experimental.Pods.Sample.RrCodec.Array, ValueCodec.String);
                 }
-            case 6:
+            case RrPlace.TraceAPathBetweenPoints:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     global::Experimental.Namedarrays.Vector3 aFirstPointWithALongName = rrArguments.Read(global::Experimental.Namedarrays.Vector3.RrCodec, "a_first_point_with_a_long_name"u8);
@@ -337,7 +360,7 @@ public abstract class GeneratorsSkeleton : Skeleton
                     List<Mode>? modes = rrArguments.Read(RrCodecs.ExperimentalMembersModeList, "modes"u8);
                     return rrRequest.AnswerSource(rrCancelled => TraceAPathBetweenPointsAsync(aFirstPointWithALongName, otherPoints, modes, rrCancelled), global::Experimental.Namedarrays.Vector3.RrCodec);
                 }
-            case 7:
+            case RrPlace.Token:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     VarValue? token = rrArguments.Read(ValueCodec.VarValue, "Token"u8);
@@ -433,6 +456,22 @@ public class PipesStub(ObjectHandle rrHandle) : Stub(rrHandle), IPipes, IStub<Pi
 /// <summary>Serves one Pipes: derive from it and implement its members.</summary>
 public abstract class PipesSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Numbers,
+        BytesOut,
+        TextIn,
+        Lossy,
+        Points,
+        Samples,
+        Mode,
+        Batches,
+        Anything,
+        LongOnes,
+        APipeWhoseNameIsSoLongThatItsLineHasToBeBrokenSomewhere,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Pipes",
     [
         new("numbers", MemberKind.Pipe, MemberAccess.None) { Check = ValueCheck.Of(ValueCodec.Double) },
@@ -450,47 +489,47 @@ public abstract class PipesSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public PipeServer<double> Numbers => _rrNumbers ??= new(this, 0, ValueCodec.Double);
+    public PipeServer<double> Numbers => _rrNumbers ??= new(this, (uint)RrPlace.Numbers, ValueCodec.Double);
 
     private PipeServer<double>? _rrNumbers;
 
-    public PipeServer<byte[]> BytesOut => _rrBytesOut ??= new(this, 1, ValueCodec.UInt8.Array);
+    public PipeServer<byte[]> BytesOut => _rrBytesOut ??= new(this, (uint)RrPlace.BytesOut, ValueCodec.UInt8.Array);
 
     private PipeServer<byte[]>? _rrBytesOut;
 
-    public PipeServer<string> TextIn => _rrTextIn ??= new(this, 2, ValueCodec.String);
+    public PipeServer<string> TextIn => _rrTextIn ??= new(this, (uint)RrPlace.TextIn, ValueCodec.String);
 
     private PipeServer<string>? _rrTextIn;
 
-    public PipeServer<int> Lossy => _rrLossy ??= new(this, 3, ValueCodec.Int32);
+    public PipeServer<int> Lossy => _rrLossy ??= new(this, (uint)RrPlace.Lossy, ValueCodec.Int32);
 
     private PipeServer<int>? _rrLossy;
 
-    public PipeServer<global::Experimental.Namedarrays.Vector3> Points => _rrPoints ??= new(this, 4, global::Experimental.Namedarrays.Vector3.RrCodec);
+    public PipeServer<global::Experimental.Namedarrays.Vector3> Points => _rrPoints ??= new(this, (uint)RrPlace.Points, global::Experimental.Namedarrays.Vector3.RrCodec);
 
     private PipeServer<global::Experimental.Namedarrays.Vector3>? _rrPoints;
 
-    public PipeServer<global::Experimental.Pods.Sample[]> Samples => _rrSamples ??= new(this, 5, global::Experimental.Pods.Sample.RrCodec.Array);
+    public PipeServer<global::Experimental.Pods.Sample[]> Samples => _rrSamples ??= new(this, (uint)RrPlace.Samples, global::Experimental.Pods.Sample.RrCodec.Array);
 
     private PipeServer<global::Experimental.Pods.Sample[]>? _rrSamples;
 
-    public PipeServer<Mode> Mode => _rrMode ??= new(this, 6, ValueCodec.Enum<Mode>());
+    public PipeServer<Mode> Mode => _rrMode ??= new(this, (uint)RrPlace.Mode, ValueCodec.Enum<Mode>());
 
     private PipeServer<Mode>? _rrMode;
 
-    public PipeServer<List<Frame?>?> Batches => _rrBatches ??= new(this, 7, RrCodecs.ExperimentalMembersFrameList);
+    public PipeServer<List<Frame?>?> Batches => _rrBatches ??= new(this, (uint)RrPlace.Batches, RrCodecs.ExperimentalMembersFrameList);
 
     private PipeServer<List<Frame?>?>? _rrBatches;
 
-    public PipeServer<Dictionary<string, VarValue?>?> Anything => _rrAnything ??= new(this, 8, RrCodecs.VarvalueString);
+    public PipeServer<Dictionary<string, VarValue?>?> Anything => _rrAnything ??= new(this, (uint)RrPlace.Anything, RrCodecs.VarvalueString);
 
     private PipeServer<Dictionary<string, VarValue?>?>? _rrAnything;
 
-    public PipeServer<double[]> LongOnes => _rrLongOnes ??= new(this, 9, RrCodecs.Double100000);
+    public PipeServer<double[]> LongOnes => _rrLongOnes ??= new(this, (uint)RrPlace.LongOnes, RrCodecs.Double100000);
 
     private PipeServer<double[]>? _rrLongOnes;
 
-    public PipeServer<Dictionary<string, MultiDimArray<global::Experimental.Pods.Sample>>?> APipeWhoseNameIsSoLongThatItsLineHasToBeBrokenSomewhere => _rrAPipeWhoseNameIsSoLongThatItsLineHasToBeBrokenSomewhere ??= new(this, 10, RrCodecs.ExperimentalPodsSampleMultiDimString);
+    public PipeServer<Dictionary<string, MultiDimArray<global::Experimental.Pods.Sample>>?> APipeWhoseNameIsSoLongThatItsLineHasToBeBrokenSomewhere => _rrAPipeWhoseNameIsSoLongThatItsLineHasToBeBrokenSomewhere ??= new(this, (uint)RrPlace.APipeWhoseNameIsSoLongThatItsLineHasToBeBrokenSomewhere, RrCodecs.ExperimentalPodsSampleMultiDimString);
 
     private PipeServer<Dictionary<string, MultiDimArray<global::Experimental.Pods.Sample>>?>? _rrAPipeWhoseNameIsSoLongThatItsLineHasToBeBrokenSomewhere;
 }
@@ -546,6 +585,16 @@ public class CallbacksStub(ObjectHandle rrHandle) : Stub(rrHandle), ICallbacks, 
 /// <summary>Serves one Callbacks: derive from it and implement its members.</summary>
 public abstract class CallbacksSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Ping,
+        Add,
+        Measure,
+        Hurry,
+        ACallbackWhoseNameIsRatherLong,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Callbacks",
     [
         new("ping", MemberKind.Callback, MemberAccess.None),
@@ -558,57 +607,57 @@ public abstract class CallbacksSkeleton : Skeleton
     public override ServedType RrType => s_rrType;
 
     public Task PingAsync(uint client, CancellationToken cancel = default) =>
-        RrCallback(0)
+        RrCallback((uint)RrPlace.Ping)
             .CallAsync(client, cancel);
 
     public void Ping(uint client, CancellationToken cancel = default) =>
-        RrCallback(0)
+        RrCallback((uint)RrPlace.Ping)
             .Call(client, cancel);
 
     public Task<int> AddAsync(uint client, int a, int b, CancellationToken cancel = default) =>
-        RrCallback(1)
+        RrCallback((uint)RrPlace.Add)
             .With("b"u8, ValueCodec.Int32, b)
             .With("a"u8, ValueCodec.Int32, a)
             .CallAsync(client, ValueCodec.Int32, cancel);
 
     public int Add(uint client, int a, int b, CancellationToken cancel = default) =>
-        RrCallback(1)
+        RrCallback((uint)RrPlace.Add)
             .With("b"u8, ValueCodec.Int32, b)
             .With("a"u8, ValueCodec.Int32, a)
             .Call(client, ValueCodec.Int32, cancel);
 
     public Task<Frame?> MeasureAsync(uint client, string label, global::Experimental.Namedarrays.Vector3 at, CancellationToken cancel = default) =>
-        RrCallback(2)
+        RrCallback((uint)RrPlace.Measure)
             .With("at"u8, global::Experimental.Namedarrays.Vector3.RrCodec, at)
             .With("label"u8, ValueCodec.String, label)
             .CallAsync(client, global::Experimental.Members.Frame.RrCodec, cancel);
 
     public Frame? Measure(uint client, string label, global::Experimental.Namedarrays.Vector3 at, CancellationToken cancel = default) =>
-        RrCallback(2)
+        RrCallback((uint)RrPlace.Measure)
             .With("at"u8, global::Experimental.Namedarrays.Vector3.RrCodec, at)
             .With("label"u8, ValueCodec.String, label)
             .Call(client, global::Experimental.Members.Frame.RrCodec, cancel);
 
     public Task<double> HurryAsync(uint client_, global::Experimental.Pods.Sample[] client, List<int>? token, CancellationToken cancel = default) =>
-        RrCallback(3, MemberAccess.Urgent)
+        RrCallback((uint)RrPlace.Hurry, MemberAccess.Urgent)
             .With("token"u8, RrCodecs.Int32List, token)
             .With("client"u8, global::Experimental.Pods.Sample.RrCodec.Array, client)
             .CallAsync(client_, ValueCodec.Double, cancel);
 
     public double Hurry(uint client_, global::Experimental.Pods.Sample[] client, List<int>? token, CancellationToken cancel = default) =>
-        RrCallback(3, MemberAccess.Urgent)
+        RrCallback((uint)RrPlace.Hurry, MemberAccess.Urgent)
             .With("token"u8, RrCodecs.Int32List, token)
             .With("client"u8, global::Experimental.Pods.Sample.RrCodec.Array, client)
             .Call(client_, ValueCodec.Double, cancel);
 
     public Task<Dictionary<string, VarValue?>?> ACallbackWhoseNameIsRatherLongAsync(uint client, VarValue? aFirstParameterWithALongName, List<VarValue?>? anotherParameterWithALongName, CancellationToken cancel = default) =>
-        RrCallback(4)
+        RrCallback((uint)RrPlace.ACallbackWhoseNameIsRatherLong)
             .With("another_parameter_with_a_long_name"u8, RrCodecs.VarvalueList, anotherParameterWithALongName)
             .With("a_first_parameter_with_a_long_name"u8, ValueCodec.VarValue, aFirstParameterWithALongName)
             .CallAsync(client, RrCodecs.VarvalueString, cancel);
 
     public Dictionary<string, VarValue?>? ACallbackWhoseNameIsRatherLong(uint client, VarValue? aFirstParameterWithALongName, List<VarValue?>? anotherParameterWithALongName, CancellationToken cancel = default) =>
-        RrCallback(4)
+        RrCallback((uint)RrPlace.ACallbackWhoseNameIsRatherLong)
             .With("another_parameter_with_a_long_name"u8, RrCodecs.VarvalueList, anotherParameterWithALongName)
             .With("a_first_parameter_with_a_long_name"u8, ValueCodec.VarValue, aFirstParameterWithALongName)
             .Call(client, RrCodecs.VarvalueString, cancel);
@@ -685,6 +734,20 @@ public class WiresStub(ObjectHandle rrHandle) : Stub(rrHandle), IWires, IStub<Wi
 /// <summary>Serves one Wires: derive from it and implement its members.</summary>
 public abstract class WiresSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Level,
+        Frame,
+        CountsOut,
+        TargetIn,
+        Point,
+        Sample,
+        Grid,
+        Anything,
+        Modes,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Wires",
     [
         new("level", MemberKind.Wire, MemberAccess.None) { Check = ValueCheck.Of(ValueCodec.Double) },
@@ -700,39 +763,39 @@ public abstract class WiresSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public WireServer<double> Level => _rrLevel ??= new(this, 0, ValueCodec.Double);
+    public WireServer<double> Level => _rrLevel ??= new(this, (uint)RrPlace.Level, ValueCodec.Double);
 
     private WireServer<double>? _rrLevel;
 
-    public WireServer<Frame?> Frame => _rrFrame ??= new(this, 1, global::Experimental.Members.Frame.RrCodec);
+    public WireServer<Frame?> Frame => _rrFrame ??= new(this, (uint)RrPlace.Frame, global::Experimental.Members.Frame.RrCodec);
 
     private WireServer<Frame?>? _rrFrame;
 
-    public WireServer<int[]> CountsOut => _rrCountsOut ??= new(this, 2, ValueCodec.Int32.Array);
+    public WireServer<int[]> CountsOut => _rrCountsOut ??= new(this, (uint)RrPlace.CountsOut, ValueCodec.Int32.Array);
 
     private WireServer<int[]>? _rrCountsOut;
 
-    public WireServer<double[]> TargetIn => _rrTargetIn ??= new(this, 3, RrCodecs.Double3);
+    public WireServer<double[]> TargetIn => _rrTargetIn ??= new(this, (uint)RrPlace.TargetIn, RrCodecs.Double3);
 
     private WireServer<double[]>? _rrTargetIn;
 
-    public WireServer<global::Experimental.Namedarrays.Vector3> Point => _rrPoint ??= new(this, 4, global::Experimental.Namedarrays.Vector3.RrCodec);
+    public WireServer<global::Experimental.Namedarrays.Vector3> Point => _rrPoint ??= new(this, (uint)RrPlace.Point, global::Experimental.Namedarrays.Vector3.RrCodec);
 
     private WireServer<global::Experimental.Namedarrays.Vector3>? _rrPoint;
 
-    public WireServer<global::Experimental.Pods.Sample> Sample => _rrSample ??= new(this, 5, global::Experimental.Pods.Sample.RrCodec);
+    public WireServer<global::Experimental.Pods.Sample> Sample => _rrSample ??= new(this, (uint)RrPlace.Sample, global::Experimental.Pods.Sample.RrCodec);
 
     private WireServer<global::Experimental.Pods.Sample>? _rrSample;
 
-    public WireServer<MultiDimArray<bool>> Grid => _rrGrid ??= new(this, 6, ValueCodec.Bool.MultiDim);
+    public WireServer<MultiDimArray<bool>> Grid => _rrGrid ??= new(this, (uint)RrPlace.Grid, ValueCodec.Bool.MultiDim);
 
     private WireServer<MultiDimArray<bool>>? _rrGrid;
 
-    public WireServer<VarValue?> Anything => _rrAnything ??= new(this, 7, ValueCodec.VarValue);
+    public WireServer<VarValue?> Anything => _rrAnything ??= new(this, (uint)RrPlace.Anything, ValueCodec.VarValue);
 
     private WireServer<VarValue?>? _rrAnything;
 
-    public WireServer<Dictionary<int, Mode>?> Modes => _rrModes ??= new(this, 8, RrCodecs.ExperimentalMembersModeInt32);
+    public WireServer<Dictionary<int, Mode>?> Modes => _rrModes ??= new(this, (uint)RrPlace.Modes, RrCodecs.ExperimentalMembersModeInt32);
 
     private WireServer<Dictionary<int, Mode>?>? _rrModes;
 }
@@ -816,6 +879,19 @@ public class MemoriesStub(ObjectHandle rrHandle) : Stub(rrHandle), IMemories, IS
 /// <summary>Serves one Memories: derive from it and implement its members.</summary>
 public abstract class MemoriesSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Label,
+        MDouble,
+        MBool,
+        MdCdouble,
+        Samples,
+        SampleGrid,
+        Points,
+        PointGrid,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Memories",
     [
         new("label", MemberKind.Property, MemberAccess.None),
@@ -850,26 +926,26 @@ public abstract class MemoriesSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Label when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetLabelAsync(rrRequest.Cancelled), ValueCodec.String);
-            case 0 when rrRequest.IsSet:
+            case RrPlace.Label when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetLabelAsync(rrRequest.Argument(ValueCodec.String), rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
         }
     }
 
-    protected override ServedMemory? RrMemory(uint rrMember) => rrMember switch
+    protected override ServedMemory? RrMemory(uint rrMember) => (RrPlace)rrMember switch
     {
-        1 => ServedMemory.Of(MDouble, ValueCodec.Double),
-        2 => ServedMemory.Of(MBool, ValueCodec.Bool),
-        3 => ServedMemory.Of(MdCdouble, ValueCodec.ComplexDouble),
-        4 => ServedMemory.Of(Samples, global::Experimental.Pods.Sample.RrCodec),
-        5 => ServedMemory.Of(SampleGrid, global::Experimental.Pods.Sample.RrCodec),
-        6 => ServedMemory.Of(Points, global::Experimental.Namedarrays.Vector3.RrCodec),
-        7 => ServedMemory.Of(PointGrid, global::Experimental.Namedarrays.Vector3.RrCodec),
+        RrPlace.MDouble => ServedMemory.Of(MDouble, ValueCodec.Double),
+        RrPlace.MBool => ServedMemory.Of(MBool, ValueCodec.Bool),
+        RrPlace.MdCdouble => ServedMemory.Of(MdCdouble, ValueCodec.ComplexDouble),
+        RrPlace.Samples => ServedMemory.Of(Samples, global::Experimental.Pods.Sample.RrCodec),
+        RrPlace.SampleGrid => ServedMemory.Of(SampleGrid, global::Experimental.Pods.Sample.RrCodec),
+        RrPlace.Points => ServedMemory.Of(Points, global::Experimental.Namedarrays.Vector3.RrCodec),
+        RrPlace.PointGrid => ServedMemory.Of(PointGrid, global::Experimental.Namedarrays.Vector3.RrCodec),
         _ => null,
     };
 }
@@ -1032,6 +1108,27 @@ public class StationStub(ObjectHandle rrHandle) : Stub(rrHandle), IStation, IStu
 /// <summary>Serves one Station: derive from it and implement its members.</summary>
 public abstract class StationSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Frames,
+        Ask,
+        Force,
+        Buffer,
+        Count,
+        Label,
+        MDouble,
+        MBool,
+        MdCdouble,
+        Samples,
+        SampleGrid,
+        Points,
+        PointGrid,
+        Mode,
+        Changed,
+        Generators,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Station",
     [
         new("frames", MemberKind.Pipe, MemberAccess.ReadOnly) { Check = ValueCheck.Of(global::Experimental.Members.Frame.RrCodec) },
@@ -1054,21 +1151,21 @@ public abstract class StationSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public PipeServer<Frame?> Frames => _rrFrames ??= new(this, 0, global::Experimental.Members.Frame.RrCodec);
+    public PipeServer<Frame?> Frames => _rrFrames ??= new(this, (uint)RrPlace.Frames, global::Experimental.Members.Frame.RrCodec);
 
     private PipeServer<Frame?>? _rrFrames;
 
     public Task<int> AskAsync(uint client, int question, CancellationToken cancel = default) =>
-        RrCallback(1)
+        RrCallback((uint)RrPlace.Ask)
             .With("question"u8, ValueCodec.Int32, question)
             .CallAsync(client, ValueCodec.Int32, cancel);
 
     public int Ask(uint client, int question, CancellationToken cancel = default) =>
-        RrCallback(1)
+        RrCallback((uint)RrPlace.Ask)
             .With("question"u8, ValueCodec.Int32, question)
             .Call(client, ValueCodec.Int32, cancel);
 
-    public WireServer<double[]> Force => _rrForce ??= new(this, 2, RrCodecs.Double3);
+    public WireServer<double[]> Force => _rrForce ??= new(this, (uint)RrPlace.Force, RrCodecs.Double3);
 
     private WireServer<double[]>? _rrForce;
 
@@ -1094,11 +1191,11 @@ public abstract class StationSkeleton : Skeleton
 
     public abstract MultiDimMemorySource<global::Experimental.Namedarrays.Vector3> PointGrid { get; }
 
-    public WireServer<Mode> Mode => _rrMode ??= new(this, 13, ValueCodec.Enum<Mode>());
+    public WireServer<Mode> Mode => _rrMode ??= new(this, (uint)RrPlace.Mode, ValueCodec.Enum<Mode>());
 
     private WireServer<Mode>? _rrMode;
 
-    public void FireChanged(Mode mode) => RrEvent(14)
+    public void FireChanged(Mode mode) => RrEvent((uint)RrPlace.Changed)
         .With("mode"u8, ValueCodec.Enum<Mode>(), mode)
         .Fire();
 
@@ -1106,35 +1203,35 @@ public abstract class StationSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 4:
+            case RrPlace.Count:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     double limit = rrArguments.Read(ValueCodec.Double, "limit"u8);
                     return rrRequest.AnswerSource(rrCancelled => CountAsync(limit, rrCancelled), ValueCodec.Double);
                 }
-            case 5 when rrRequest.IsGet:
+            case RrPlace.Label when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetLabelAsync(rrRequest.Cancelled), ValueCodec.String);
-            case 5 when rrRequest.IsSet:
+            case RrPlace.Label when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetLabelAsync(rrRequest.Argument(ValueCodec.String), rrRequest.Cancelled));
-            case 15:
+            case RrPlace.Generators:
                 return rrRequest.AnswerObjectAsync(GetGeneratorsAsync(rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
         }
     }
 
-    protected override ServedMemory? RrMemory(uint rrMember) => rrMember switch
+    protected override ServedMemory? RrMemory(uint rrMember) => (RrPlace)rrMember switch
     {
-        3 => ServedMemory.Of(Buffer, ValueCodec.Double),
-        6 => ServedMemory.Of(MDouble, ValueCodec.Double),
-        7 => ServedMemory.Of(MBool, ValueCodec.Bool),
-        8 => ServedMemory.Of(MdCdouble, ValueCodec.ComplexDouble),
-        9 => ServedMemory.Of(Samples, global::Experimental.Pods.Sample.RrCodec),
-        10 => ServedMemory.Of(SampleGrid, global::Experimental.Pods.Sample.RrCodec),
-        11 => ServedMemory.Of(Points, global::Experimental.Namedarrays.Vector3.RrCodec),
-        12 => ServedMemory.Of(PointGrid, global::Experimental.Namedarrays.Vector3.RrCodec),
+        RrPlace.Buffer => ServedMemory.Of(Buffer, ValueCodec.Double),
+        RrPlace.MDouble => ServedMemory.Of(MDouble, ValueCodec.Double),
+        RrPlace.MBool => ServedMemory.Of(MBool, ValueCodec.Bool),
+        RrPlace.MdCdouble => ServedMemory.Of(MdCdouble, ValueCodec.ComplexDouble),
+        RrPlace.Samples => ServedMemory.Of(Samples, global::Experimental.Pods.Sample.RrCodec),
+        RrPlace.SampleGrid => ServedMemory.Of(SampleGrid, global::Experimental.Pods.Sample.RrCodec),
+        RrPlace.Points => ServedMemory.Of(Points, global::Experimental.Namedarrays.Vector3.RrCodec),
+        RrPlace.PointGrid => ServedMemory.Of(PointGrid, global::Experimental.Namedarrays.Vector3.RrCodec),
         _ => null,
     };
 }
@@ -1237,6 +1334,16 @@ public class ReservedStub(ObjectHandle rrHandle) : Stub(rrHandle), IReserved, IS
 /// <summary>Serves one Reserved: derive from it and implement its members.</summary>
 public abstract class ReservedSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        New,
+        Delete,
+        Union,
+        Register,
+        For,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Reserved",
     [
         new("new", MemberKind.Pipe, MemberAccess.None) { Check = ValueCheck.Of(ValueCodec.Int32) },
@@ -1248,21 +1355,21 @@ public abstract class ReservedSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public PipeServer<int> New => _rrNew ??= new(this, 0, ValueCodec.Int32);
+    public PipeServer<int> New => _rrNew ??= new(this, (uint)RrPlace.New, ValueCodec.Int32);
 
     private PipeServer<int>? _rrNew;
 
     public Task<int> DeleteAsync(uint client, int @class, CancellationToken cancel = default) =>
-        RrCallback(1)
+        RrCallback((uint)RrPlace.Delete)
             .With("class"u8, ValueCodec.Int32, @class)
             .CallAsync(client, ValueCodec.Int32, cancel);
 
     public int Delete(uint client, int @class, CancellationToken cancel = default) =>
-        RrCallback(1)
+        RrCallback((uint)RrPlace.Delete)
             .With("class"u8, ValueCodec.Int32, @class)
             .Call(client, ValueCodec.Int32, cancel);
 
-    public WireServer<int> Union => _rrUnion ??= new(this, 2, ValueCodec.Int32);
+    public WireServer<int> Union => _rrUnion ??= new(this, (uint)RrPlace.Union, ValueCodec.Int32);
 
     private WireServer<int>? _rrUnion;
 
@@ -1272,9 +1379,9 @@ public abstract class ReservedSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 4:
+            case RrPlace.For:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     int thisOne = rrArguments.Read(ValueCodec.Int32, "this_one"u8);
@@ -1285,9 +1392,9 @@ public abstract class ReservedSkeleton : Skeleton
         }
     }
 
-    protected override ServedMemory? RrMemory(uint rrMember) => rrMember switch
+    protected override ServedMemory? RrMemory(uint rrMember) => (RrPlace)rrMember switch
     {
-        3 => ServedMemory.Of(Register, ValueCodec.Int32),
+        RrPlace.Register => ServedMemory.Of(Register, ValueCodec.Int32),
         _ => null,
     };
 }

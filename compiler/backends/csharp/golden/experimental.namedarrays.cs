@@ -221,6 +221,19 @@ public class ArmStub(ObjectHandle rrHandle) : Stub(rrHandle), IArm, IStub<ArmStu
 /// <summary>Serves one Arm: derive from it and implement its members.</summary>
 public abstract class ArmSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Pose,
+        Path,
+        Corners,
+        Contacts,
+        Picture,
+        Thumbnail,
+        Places,
+        Cross,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Arm",
     [
         new("pose", MemberKind.Property, MemberAccess.None),
@@ -267,37 +280,37 @@ public abstract class ArmSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Pose when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetPoseAsync(rrRequest.Cancelled), global::Experimental.Namedarrays.Pose.RrCodec);
-            case 0 when rrRequest.IsSet:
+            case RrPlace.Pose when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetPoseAsync(rrRequest.Argument(global::Experimental.Namedarrays.Pose.RrCodec), rrRequest.Cancelled));
-            case 1 when rrRequest.IsGet:
+            case RrPlace.Path when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetPathAsync(rrRequest.Cancelled), global::Experimental.Namedarrays.Pose.RrCodec.Array);
-            case 1 when rrRequest.IsSet:
+            case RrPlace.Path when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetPathAsync(rrRequest.Argument(global::Experimental.Namedarrays.Pose.RrCodec.Array), rrRequest.Cancelled));
-            case 2 when rrRequest.IsGet:
+            case RrPlace.Corners when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetCornersAsync(rrRequest.Cancelled), RrCodecs.ExperimentalNamedarraysVector32);
-            case 2 when rrRequest.IsSet:
+            case RrPlace.Corners when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetCornersAsync(rrRequest.Argument(RrCodecs.ExperimentalNamedarraysVector32), rrRequest.Cancelled));
-            case 3 when rrRequest.IsGet:
+            case RrPlace.Contacts when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetContactsAsync(rrRequest.Cancelled), RrCodecs.ExperimentalNamedarraysVector34Max);
-            case 3 when rrRequest.IsSet:
+            case RrPlace.Contacts when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetContactsAsync(rrRequest.Argument(RrCodecs.ExperimentalNamedarraysVector34Max), rrRequest.Cancelled));
-            case 4 when rrRequest.IsGet:
+            case RrPlace.Picture when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetPictureAsync(rrRequest.Cancelled), Pixel.RrCodec.MultiDim);
-            case 4 when rrRequest.IsSet:
+            case RrPlace.Picture when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetPictureAsync(rrRequest.Argument(Pixel.RrCodec.MultiDim), rrRequest.Cancelled));
-            case 5 when rrRequest.IsGet:
+            case RrPlace.Thumbnail when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetThumbnailAsync(rrRequest.Cancelled), RrCodecs.ExperimentalNamedarraysPixel2x2);
-            case 5 when rrRequest.IsSet:
+            case RrPlace.Thumbnail when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetThumbnailAsync(rrRequest.Argument(RrCodecs.ExperimentalNamedarraysPixel2x2), rrRequest.Cancelled));
-            case 6 when rrRequest.IsGet:
+            case RrPlace.Places when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetPlacesAsync(rrRequest.Cancelled), RrCodecs.ExperimentalNamedarraysPoseString);
-            case 6 when rrRequest.IsSet:
+            case RrPlace.Places when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetPlacesAsync(rrRequest.Argument(RrCodecs.ExperimentalNamedarraysPoseString), rrRequest.Cancelled));
-            case 7:
+            case RrPlace.Cross:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Vector3 a = rrArguments.Read(Vector3.RrCodec, "a"u8);

@@ -48,6 +48,12 @@ public class JointStub(ObjectHandle rrHandle) : Stub(rrHandle), IJoint, IStub<Jo
 /// <summary>Serves one Joint: derive from it and implement its members.</summary>
 public abstract class JointSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Angle,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Joint",
     [
         new("angle", MemberKind.Property, MemberAccess.None),
@@ -61,11 +67,11 @@ public abstract class JointSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Angle when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetAngleAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 0 when rrRequest.IsSet:
+            case RrPlace.Angle when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetAngleAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -162,6 +168,17 @@ public class RobotStub(ObjectHandle rrHandle) : Stub(rrHandle), IRobot, IStub<Ro
 /// <summary>Serves one Robot: derive from it and implement its members.</summary>
 public abstract class RobotSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Base,
+        Joint,
+        JointByNumber,
+        JointByName,
+        Tool,
+        Tools,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Robot",
     [
         new("base", MemberKind.ObjRef, MemberAccess.None) { ObjectType = "experimental.objrefs.Joint" },
@@ -188,19 +205,19 @@ public abstract class RobotSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0:
+            case RrPlace.Base:
                 return rrRequest.AnswerObjectAsync(GetBaseAsync(rrRequest.Cancelled));
-            case 1:
+            case RrPlace.Joint:
                 return rrRequest.AnswerObjectAsync(GetJointAsync(rrRequest.IndexNumber, rrRequest.Cancelled));
-            case 2:
+            case RrPlace.JointByNumber:
                 return rrRequest.AnswerObjectAsync(GetJointByNumberAsync(rrRequest.IndexNumber, rrRequest.Cancelled));
-            case 3:
+            case RrPlace.JointByName:
                 return rrRequest.AnswerObjectAsync(GetJointByNameAsync(rrRequest.IndexText, rrRequest.Cancelled));
-            case 4:
+            case RrPlace.Tool:
                 return rrRequest.AnswerObjectAsync(GetToolAsync(rrRequest.Cancelled));
-            case 5:
+            case RrPlace.Tools:
                 return rrRequest.AnswerObjectAsync(GetToolsAsync(rrRequest.IndexText, rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);

@@ -171,6 +171,17 @@ public class RecorderStub(ObjectHandle rrHandle) : Stub(rrHandle), IRecorder, IS
 /// <summary>Serves one Recorder: derive from it and implement its members.</summary>
 public abstract class RecorderSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Last,
+        History,
+        Bursts,
+        Matrix,
+        Marked,
+        Record,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Recorder",
     [
         new("last", MemberKind.Property, MemberAccess.None),
@@ -207,29 +218,29 @@ public abstract class RecorderSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Last when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetLastAsync(rrRequest.Cancelled), Sample.RrCodec);
-            case 0 when rrRequest.IsSet:
+            case RrPlace.Last when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetLastAsync(rrRequest.Argument(Sample.RrCodec), rrRequest.Cancelled));
-            case 1 when rrRequest.IsGet:
+            case RrPlace.History when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetHistoryAsync(rrRequest.Cancelled), Sample.RrCodec.Array);
-            case 1 when rrRequest.IsSet:
+            case RrPlace.History when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetHistoryAsync(rrRequest.Argument(Sample.RrCodec.Array), rrRequest.Cancelled));
-            case 2 when rrRequest.IsGet:
+            case RrPlace.Bursts when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetBurstsAsync(rrRequest.Cancelled), RrCodecs.ExperimentalPodsBurst2);
-            case 2 when rrRequest.IsSet:
+            case RrPlace.Bursts when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetBurstsAsync(rrRequest.Argument(RrCodecs.ExperimentalPodsBurst2), rrRequest.Cancelled));
-            case 3 when rrRequest.IsGet:
+            case RrPlace.Matrix when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetMatrixAsync(rrRequest.Cancelled), Sample.RrCodec.MultiDim);
-            case 3 when rrRequest.IsSet:
+            case RrPlace.Matrix when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetMatrixAsync(rrRequest.Argument(Sample.RrCodec.MultiDim), rrRequest.Cancelled));
-            case 4 when rrRequest.IsGet:
+            case RrPlace.Marked when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetMarkedAsync(rrRequest.Cancelled), RrCodecs.ExperimentalPodsSampleList);
-            case 4 when rrRequest.IsSet:
+            case RrPlace.Marked when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetMarkedAsync(rrRequest.Argument(RrCodecs.ExperimentalPodsSampleList), rrRequest.Cancelled));
-            case 5:
+            case RrPlace.Record:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Sample from = rrArguments.Read(Sample.RrCodec, "from"u8);

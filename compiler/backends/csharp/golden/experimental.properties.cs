@@ -425,6 +425,32 @@ public class BoardStub(ObjectHandle rrHandle) : Stub(rrHandle), IBoard, IStub<Bo
 /// <summary>Serves one Board: derive from it and implement its members.</summary>
 public abstract class BoardSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Gain,
+        Enabled,
+        Label,
+        Response,
+        Mode,
+        Samples,
+        Address,
+        Steps,
+        Image,
+        Rotation,
+        Names,
+        ByNumber,
+        ByName,
+        Anything,
+        Settings,
+        SerialNumber,
+        Password,
+        Shared,
+        Page,
+        Notes,
+        View,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Board",
     [
         new("gain", MemberKind.Property, MemberAccess.None),
@@ -532,85 +558,85 @@ public abstract class BoardSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Gain when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetGainAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 0 when rrRequest.IsSet:
+            case RrPlace.Gain when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetGainAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 1 when rrRequest.IsGet:
+            case RrPlace.Enabled when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetEnabledAsync(rrRequest.Cancelled), ValueCodec.Bool);
-            case 1 when rrRequest.IsSet:
+            case RrPlace.Enabled when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetEnabledAsync(rrRequest.Argument(ValueCodec.Bool), rrRequest.Cancelled));
-            case 2 when rrRequest.IsGet:
+            case RrPlace.Label when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetLabelAsync(rrRequest.Cancelled), ValueCodec.String);
-            case 2 when rrRequest.IsSet:
+            case RrPlace.Label when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetLabelAsync(rrRequest.Argument(ValueCodec.String), rrRequest.Cancelled));
-            case 3 when rrRequest.IsGet:
+            case RrPlace.Response when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetResponseAsync(rrRequest.Cancelled), ValueCodec.ComplexDouble);
-            case 3 when rrRequest.IsSet:
+            case RrPlace.Response when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetResponseAsync(rrRequest.Argument(ValueCodec.ComplexDouble), rrRequest.Cancelled));
-            case 4 when rrRequest.IsGet:
+            case RrPlace.Mode when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetModeAsync(rrRequest.Cancelled), ValueCodec.Enum<Mode>());
-            case 4 when rrRequest.IsSet:
+            case RrPlace.Mode when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetModeAsync(rrRequest.Argument(ValueCodec.Enum<Mode>()), rrRequest.Cancelled));
-            case 5 when rrRequest.IsGet:
+            case RrPlace.Samples when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetSamplesAsync(rrRequest.Cancelled), ValueCodec.Double.Array);
-            case 5 when rrRequest.IsSet:
+            case RrPlace.Samples when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetSamplesAsync(rrRequest.Argument(ValueCodec.Double.Array), rrRequest.Cancelled));
-            case 6 when rrRequest.IsGet:
+            case RrPlace.Address when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetAddressAsync(rrRequest.Cancelled), RrCodecs.Uint84);
-            case 6 when rrRequest.IsSet:
+            case RrPlace.Address when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetAddressAsync(rrRequest.Argument(RrCodecs.Uint84), rrRequest.Cancelled));
-            case 7 when rrRequest.IsGet:
+            case RrPlace.Steps when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetStepsAsync(rrRequest.Cancelled), RrCodecs.Int168Max);
-            case 7 when rrRequest.IsSet:
+            case RrPlace.Steps when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetStepsAsync(rrRequest.Argument(RrCodecs.Int168Max), rrRequest.Cancelled));
-            case 8 when rrRequest.IsGet:
+            case RrPlace.Image when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetImageAsync(rrRequest.Cancelled), ValueCodec.Single.MultiDim);
-            case 8 when rrRequest.IsSet:
+            case RrPlace.Image when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetImageAsync(rrRequest.Argument(ValueCodec.Single.MultiDim), rrRequest.Cancelled));
-            case 9 when rrRequest.IsGet:
+            case RrPlace.Rotation when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetRotationAsync(rrRequest.Cancelled), RrCodecs.Double3x3);
-            case 9 when rrRequest.IsSet:
+            case RrPlace.Rotation when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetRotationAsync(rrRequest.Argument(RrCodecs.Double3x3), rrRequest.Cancelled));
-            case 10 when rrRequest.IsGet:
+            case RrPlace.Names when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetNamesAsync(rrRequest.Cancelled), RrCodecs.StringList);
-            case 10 when rrRequest.IsSet:
+            case RrPlace.Names when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetNamesAsync(rrRequest.Argument(RrCodecs.StringList), rrRequest.Cancelled));
-            case 11 when rrRequest.IsGet:
+            case RrPlace.ByNumber when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetByNumberAsync(rrRequest.Cancelled), RrCodecs.DoubleInt32);
-            case 11 when rrRequest.IsSet:
+            case RrPlace.ByNumber when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetByNumberAsync(rrRequest.Argument(RrCodecs.DoubleInt32), rrRequest.Cancelled));
-            case 12 when rrRequest.IsGet:
+            case RrPlace.ByName when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetByNameAsync(rrRequest.Cancelled), RrCodecs.Int32ArrayString);
-            case 12 when rrRequest.IsSet:
+            case RrPlace.ByName when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetByNameAsync(rrRequest.Argument(RrCodecs.Int32ArrayString), rrRequest.Cancelled));
-            case 13 when rrRequest.IsGet:
+            case RrPlace.Anything when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetAnythingAsync(rrRequest.Cancelled), ValueCodec.VarValue);
-            case 13 when rrRequest.IsSet:
+            case RrPlace.Anything when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetAnythingAsync(rrRequest.Argument(ValueCodec.VarValue), rrRequest.Cancelled));
-            case 14 when rrRequest.IsGet:
+            case RrPlace.Settings when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetSettingsAsync(rrRequest.Cancelled), RrCodecs.VarvalueString);
-            case 14 when rrRequest.IsSet:
+            case RrPlace.Settings when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetSettingsAsync(rrRequest.Argument(RrCodecs.VarvalueString), rrRequest.Cancelled));
-            case 15 when rrRequest.IsGet:
+            case RrPlace.SerialNumber when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetSerialNumberAsync(rrRequest.Cancelled), ValueCodec.Int32);
-            case 16 when rrRequest.IsSet:
+            case RrPlace.Password when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetPasswordAsync(rrRequest.Argument(ValueCodec.String), rrRequest.Cancelled));
-            case 17 when rrRequest.IsGet:
+            case RrPlace.Shared when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetSharedAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 17 when rrRequest.IsSet:
+            case RrPlace.Shared when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetSharedAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 18 when rrRequest.IsGet:
+            case RrPlace.Page when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetPageAsync(rrRequest.Cancelled), ValueCodec.Int32);
-            case 18 when rrRequest.IsSet:
+            case RrPlace.Page when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetPageAsync(rrRequest.Argument(ValueCodec.Int32), rrRequest.Cancelled));
-            case 19 when rrRequest.IsGet:
+            case RrPlace.Notes when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetNotesAsync(rrRequest.Cancelled), RrCodecs.StringList);
-            case 19 when rrRequest.IsSet:
+            case RrPlace.Notes when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetNotesAsync(rrRequest.Argument(RrCodecs.StringList), rrRequest.Cancelled));
-            case 20 when rrRequest.IsGet:
+            case RrPlace.View when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetViewAsync(rrRequest.Cancelled), ValueCodec.Enum<Mode>());
             default:
                 return base.RrRequestAsync(rrRequest);

@@ -2409,6 +2409,112 @@ public class DeleteStub(ObjectHandle rrHandle) : Stub(rrHandle), IDelete, IStub<
 /// <summary>Serves one delete: derive from it and implement its members.</summary>
 public abstract class DeleteSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Alignas,
+        Alignof,
+        And,
+        AndEq,
+        Asm,
+        Auto,
+        Bitand,
+        Bitor,
+        Break,
+        Case,
+        Catch,
+        Char,
+        Char16T,
+        Char32T,
+        Char8T,
+        Class,
+        CoAwait,
+        CoReturn,
+        CoYield,
+        Compl,
+        Concept,
+        Const,
+        ConstCast,
+        Consteval,
+        Constexpr,
+        Constinit,
+        Continue,
+        Decltype,
+        Default,
+        Delete,
+        Do,
+        DynamicCast,
+        Else,
+        Explicit,
+        Export,
+        Extern,
+        False,
+        Float,
+        For,
+        Friend,
+        Goto,
+        If,
+        Inline,
+        Int,
+        Long,
+        Mutable,
+        Namespace,
+        New,
+        Noexcept,
+        Not,
+        NotEq,
+        Nullptr,
+        Operator,
+        Or,
+        OrEq,
+        Private,
+        Protected,
+        Public,
+        Register,
+        ReinterpretCast,
+        Requires,
+        Return,
+        Short,
+        Signed,
+        Sizeof,
+        Static,
+        StaticAssert,
+        StaticCast,
+        Switch,
+        Template,
+        ThreadLocal,
+        Throw,
+        True,
+        Try,
+        Typedef,
+        Typeid,
+        Typename,
+        Union,
+        Unsigned,
+        Virtual,
+        Volatile,
+        WcharT,
+        While,
+        Xor,
+        XorEq,
+        Assert,
+        Errno,
+        Linux,
+        Unix,
+        Major,
+        Minor,
+        Eof,
+        Null,
+        Infinity,
+        Nan,
+        RandMax,
+        Bufsiz,
+        Sigint,
+        Final,
+        Override,
+        Module,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "delete",
     [
         new("alignas", MemberKind.Property, MemberAccess.None),
@@ -2922,411 +3028,411 @@ public abstract class DeleteSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Alignas when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetAlignasAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 0 when rrRequest.IsSet:
+            case RrPlace.Alignas when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetAlignasAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 1 when rrRequest.IsGet:
+            case RrPlace.Alignof when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetAlignofAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 1 when rrRequest.IsSet:
+            case RrPlace.Alignof when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetAlignofAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 2 when rrRequest.IsGet:
+            case RrPlace.And when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetAndAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 2 when rrRequest.IsSet:
+            case RrPlace.And when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetAndAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 3 when rrRequest.IsGet:
+            case RrPlace.AndEq when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetAndEqAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 3 when rrRequest.IsSet:
+            case RrPlace.AndEq when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetAndEqAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 4 when rrRequest.IsGet:
+            case RrPlace.Asm when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetAsmAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 4 when rrRequest.IsSet:
+            case RrPlace.Asm when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetAsmAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 5 when rrRequest.IsGet:
+            case RrPlace.Auto when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetAutoAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 5 when rrRequest.IsSet:
+            case RrPlace.Auto when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetAutoAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 6 when rrRequest.IsGet:
+            case RrPlace.Bitand when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetBitandAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 6 when rrRequest.IsSet:
+            case RrPlace.Bitand when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetBitandAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 7 when rrRequest.IsGet:
+            case RrPlace.Bitor when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetBitorAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 7 when rrRequest.IsSet:
+            case RrPlace.Bitor when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetBitorAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 8 when rrRequest.IsGet:
+            case RrPlace.Break when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetBreakAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 8 when rrRequest.IsSet:
+            case RrPlace.Break when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetBreakAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 9 when rrRequest.IsGet:
+            case RrPlace.Case when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetCaseAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 9 when rrRequest.IsSet:
+            case RrPlace.Case when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetCaseAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 10 when rrRequest.IsGet:
+            case RrPlace.Catch when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetCatchAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 10 when rrRequest.IsSet:
+            case RrPlace.Catch when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetCatchAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 11 when rrRequest.IsGet:
+            case RrPlace.Char when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetCharAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 11 when rrRequest.IsSet:
+            case RrPlace.Char when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetCharAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 12 when rrRequest.IsGet:
+            case RrPlace.Char16T when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetChar16TAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 12 when rrRequest.IsSet:
+            case RrPlace.Char16T when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetChar16TAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 13 when rrRequest.IsGet:
+            case RrPlace.Char32T when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetChar32TAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 13 when rrRequest.IsSet:
+            case RrPlace.Char32T when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetChar32TAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 14 when rrRequest.IsGet:
+            case RrPlace.Char8T when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetChar8TAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 14 when rrRequest.IsSet:
+            case RrPlace.Char8T when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetChar8TAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 15 when rrRequest.IsGet:
+            case RrPlace.Class when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetClassAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 15 when rrRequest.IsSet:
+            case RrPlace.Class when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetClassAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 16 when rrRequest.IsGet:
+            case RrPlace.CoAwait when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetCoAwaitAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 16 when rrRequest.IsSet:
+            case RrPlace.CoAwait when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetCoAwaitAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 17 when rrRequest.IsGet:
+            case RrPlace.CoReturn when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetCoReturnAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 17 when rrRequest.IsSet:
+            case RrPlace.CoReturn when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetCoReturnAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 18 when rrRequest.IsGet:
+            case RrPlace.CoYield when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetCoYieldAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 18 when rrRequest.IsSet:
+            case RrPlace.CoYield when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetCoYieldAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 19 when rrRequest.IsGet:
+            case RrPlace.Compl when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetComplAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 19 when rrRequest.IsSet:
+            case RrPlace.Compl when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetComplAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 20 when rrRequest.IsGet:
+            case RrPlace.Concept when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetConceptAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 20 when rrRequest.IsSet:
+            case RrPlace.Concept when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetConceptAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 21 when rrRequest.IsGet:
+            case RrPlace.Const when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetConstAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 21 when rrRequest.IsSet:
+            case RrPlace.Const when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetConstAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 22 when rrRequest.IsGet:
+            case RrPlace.ConstCast when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetConstCastAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 22 when rrRequest.IsSet:
+            case RrPlace.ConstCast when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetConstCastAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 23 when rrRequest.IsGet:
+            case RrPlace.Consteval when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetConstevalAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 23 when rrRequest.IsSet:
+            case RrPlace.Consteval when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetConstevalAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 24 when rrRequest.IsGet:
+            case RrPlace.Constexpr when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetConstexprAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 24 when rrRequest.IsSet:
+            case RrPlace.Constexpr when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetConstexprAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 25 when rrRequest.IsGet:
+            case RrPlace.Constinit when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetConstinitAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 25 when rrRequest.IsSet:
+            case RrPlace.Constinit when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetConstinitAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 26 when rrRequest.IsGet:
+            case RrPlace.Continue when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetContinueAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 26 when rrRequest.IsSet:
+            case RrPlace.Continue when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetContinueAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 27 when rrRequest.IsGet:
+            case RrPlace.Decltype when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetDecltypeAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 27 when rrRequest.IsSet:
+            case RrPlace.Decltype when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetDecltypeAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 28 when rrRequest.IsGet:
+            case RrPlace.Default when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetDefaultAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 28 when rrRequest.IsSet:
+            case RrPlace.Default when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetDefaultAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 29 when rrRequest.IsGet:
+            case RrPlace.Delete when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetDeleteAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 29 when rrRequest.IsSet:
+            case RrPlace.Delete when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetDeleteAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 30 when rrRequest.IsGet:
+            case RrPlace.Do when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetDoAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 30 when rrRequest.IsSet:
+            case RrPlace.Do when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetDoAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 31 when rrRequest.IsGet:
+            case RrPlace.DynamicCast when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetDynamicCastAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 31 when rrRequest.IsSet:
+            case RrPlace.DynamicCast when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetDynamicCastAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 32 when rrRequest.IsGet:
+            case RrPlace.Else when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetElseAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 32 when rrRequest.IsSet:
+            case RrPlace.Else when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetElseAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 33 when rrRequest.IsGet:
+            case RrPlace.Explicit when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetExplicitAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 33 when rrRequest.IsSet:
+            case RrPlace.Explicit when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetExplicitAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 34 when rrRequest.IsGet:
+            case RrPlace.Export when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetExportAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 34 when rrRequest.IsSet:
+            case RrPlace.Export when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetExportAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 35 when rrRequest.IsGet:
+            case RrPlace.Extern when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetExternAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 35 when rrRequest.IsSet:
+            case RrPlace.Extern when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetExternAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 36 when rrRequest.IsGet:
+            case RrPlace.False when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetFalseAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 36 when rrRequest.IsSet:
+            case RrPlace.False when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetFalseAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 37 when rrRequest.IsGet:
+            case RrPlace.Float when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetFloatAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 37 when rrRequest.IsSet:
+            case RrPlace.Float when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetFloatAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 38 when rrRequest.IsGet:
+            case RrPlace.For when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetForAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 38 when rrRequest.IsSet:
+            case RrPlace.For when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetForAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 39 when rrRequest.IsGet:
+            case RrPlace.Friend when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetFriendAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 39 when rrRequest.IsSet:
+            case RrPlace.Friend when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetFriendAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 40 when rrRequest.IsGet:
+            case RrPlace.Goto when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetGotoAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 40 when rrRequest.IsSet:
+            case RrPlace.Goto when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetGotoAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 41 when rrRequest.IsGet:
+            case RrPlace.If when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetIfAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 41 when rrRequest.IsSet:
+            case RrPlace.If when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetIfAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 42 when rrRequest.IsGet:
+            case RrPlace.Inline when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetInlineAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 42 when rrRequest.IsSet:
+            case RrPlace.Inline when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetInlineAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 43 when rrRequest.IsGet:
+            case RrPlace.Int when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetIntAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 43 when rrRequest.IsSet:
+            case RrPlace.Int when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetIntAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 44 when rrRequest.IsGet:
+            case RrPlace.Long when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetLongAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 44 when rrRequest.IsSet:
+            case RrPlace.Long when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetLongAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 45 when rrRequest.IsGet:
+            case RrPlace.Mutable when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetMutableAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 45 when rrRequest.IsSet:
+            case RrPlace.Mutable when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetMutableAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 46 when rrRequest.IsGet:
+            case RrPlace.Namespace when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetNamespaceAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 46 when rrRequest.IsSet:
+            case RrPlace.Namespace when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetNamespaceAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 47 when rrRequest.IsGet:
+            case RrPlace.New when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetNewAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 47 when rrRequest.IsSet:
+            case RrPlace.New when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetNewAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 48 when rrRequest.IsGet:
+            case RrPlace.Noexcept when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetNoexceptAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 48 when rrRequest.IsSet:
+            case RrPlace.Noexcept when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetNoexceptAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 49 when rrRequest.IsGet:
+            case RrPlace.Not when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetNotAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 49 when rrRequest.IsSet:
+            case RrPlace.Not when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetNotAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 50 when rrRequest.IsGet:
+            case RrPlace.NotEq when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetNotEqAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 50 when rrRequest.IsSet:
+            case RrPlace.NotEq when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetNotEqAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 51 when rrRequest.IsGet:
+            case RrPlace.Nullptr when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetNullptrAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 51 when rrRequest.IsSet:
+            case RrPlace.Nullptr when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetNullptrAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 52 when rrRequest.IsGet:
+            case RrPlace.Operator when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetOperatorAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 52 when rrRequest.IsSet:
+            case RrPlace.Operator when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetOperatorAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 53 when rrRequest.IsGet:
+            case RrPlace.Or when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetOrAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 53 when rrRequest.IsSet:
+            case RrPlace.Or when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetOrAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 54 when rrRequest.IsGet:
+            case RrPlace.OrEq when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetOrEqAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 54 when rrRequest.IsSet:
+            case RrPlace.OrEq when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetOrEqAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 55 when rrRequest.IsGet:
+            case RrPlace.Private when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetPrivateAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 55 when rrRequest.IsSet:
+            case RrPlace.Private when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetPrivateAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 56 when rrRequest.IsGet:
+            case RrPlace.Protected when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetProtectedAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 56 when rrRequest.IsSet:
+            case RrPlace.Protected when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetProtectedAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 57 when rrRequest.IsGet:
+            case RrPlace.Public when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetPublicAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 57 when rrRequest.IsSet:
+            case RrPlace.Public when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetPublicAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 58 when rrRequest.IsGet:
+            case RrPlace.Register when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetRegisterAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 58 when rrRequest.IsSet:
+            case RrPlace.Register when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetRegisterAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 59 when rrRequest.IsGet:
+            case RrPlace.ReinterpretCast when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetReinterpretCastAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 59 when rrRequest.IsSet:
+            case RrPlace.ReinterpretCast when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetReinterpretCastAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 60 when rrRequest.IsGet:
+            case RrPlace.Requires when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetRequiresAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 60 when rrRequest.IsSet:
+            case RrPlace.Requires when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetRequiresAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 61 when rrRequest.IsGet:
+            case RrPlace.Return when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetReturnAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 61 when rrRequest.IsSet:
+            case RrPlace.Return when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetReturnAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 62 when rrRequest.IsGet:
+            case RrPlace.Short when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetShortAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 62 when rrRequest.IsSet:
+            case RrPlace.Short when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetShortAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 63 when rrRequest.IsGet:
+            case RrPlace.Signed when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetSignedAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 63 when rrRequest.IsSet:
+            case RrPlace.Signed when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetSignedAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 64 when rrRequest.IsGet:
+            case RrPlace.Sizeof when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetSizeofAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 64 when rrRequest.IsSet:
+            case RrPlace.Sizeof when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetSizeofAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 65 when rrRequest.IsGet:
+            case RrPlace.Static when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetStaticAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 65 when rrRequest.IsSet:
+            case RrPlace.Static when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetStaticAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 66 when rrRequest.IsGet:
+            case RrPlace.StaticAssert when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetStaticAssertAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 66 when rrRequest.IsSet:
+            case RrPlace.StaticAssert when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetStaticAssertAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 67 when rrRequest.IsGet:
+            case RrPlace.StaticCast when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetStaticCastAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 67 when rrRequest.IsSet:
+            case RrPlace.StaticCast when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetStaticCastAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 68 when rrRequest.IsGet:
+            case RrPlace.Switch when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetSwitchAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 68 when rrRequest.IsSet:
+            case RrPlace.Switch when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetSwitchAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 69 when rrRequest.IsGet:
+            case RrPlace.Template when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetTemplateAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 69 when rrRequest.IsSet:
+            case RrPlace.Template when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetTemplateAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 70 when rrRequest.IsGet:
+            case RrPlace.ThreadLocal when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetThreadLocalAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 70 when rrRequest.IsSet:
+            case RrPlace.ThreadLocal when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetThreadLocalAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 71 when rrRequest.IsGet:
+            case RrPlace.Throw when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetThrowAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 71 when rrRequest.IsSet:
+            case RrPlace.Throw when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetThrowAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 72 when rrRequest.IsGet:
+            case RrPlace.True when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetTrueAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 72 when rrRequest.IsSet:
+            case RrPlace.True when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetTrueAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 73 when rrRequest.IsGet:
+            case RrPlace.Try when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetTryAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 73 when rrRequest.IsSet:
+            case RrPlace.Try when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetTryAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 74 when rrRequest.IsGet:
+            case RrPlace.Typedef when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetTypedefAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 74 when rrRequest.IsSet:
+            case RrPlace.Typedef when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetTypedefAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 75 when rrRequest.IsGet:
+            case RrPlace.Typeid when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetTypeidAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 75 when rrRequest.IsSet:
+            case RrPlace.Typeid when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetTypeidAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 76 when rrRequest.IsGet:
+            case RrPlace.Typename when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetTypenameAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 76 when rrRequest.IsSet:
+            case RrPlace.Typename when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetTypenameAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 77 when rrRequest.IsGet:
+            case RrPlace.Union when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetUnionAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 77 when rrRequest.IsSet:
+            case RrPlace.Union when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetUnionAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 78 when rrRequest.IsGet:
+            case RrPlace.Unsigned when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetUnsignedAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 78 when rrRequest.IsSet:
+            case RrPlace.Unsigned when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetUnsignedAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 79 when rrRequest.IsGet:
+            case RrPlace.Virtual when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetVirtualAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 79 when rrRequest.IsSet:
+            case RrPlace.Virtual when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetVirtualAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 80 when rrRequest.IsGet:
+            case RrPlace.Volatile when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetVolatileAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 80 when rrRequest.IsSet:
+            case RrPlace.Volatile when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetVolatileAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 81 when rrRequest.IsGet:
+            case RrPlace.WcharT when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetWcharTAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 81 when rrRequest.IsSet:
+            case RrPlace.WcharT when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetWcharTAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 82 when rrRequest.IsGet:
+            case RrPlace.While when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetWhileAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 82 when rrRequest.IsSet:
+            case RrPlace.While when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetWhileAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 83 when rrRequest.IsGet:
+            case RrPlace.Xor when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetXorAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 83 when rrRequest.IsSet:
+            case RrPlace.Xor when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetXorAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 84 when rrRequest.IsGet:
+            case RrPlace.XorEq when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetXorEqAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 84 when rrRequest.IsSet:
+            case RrPlace.XorEq when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetXorEqAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 85 when rrRequest.IsGet:
+            case RrPlace.Assert when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetAssertAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 85 when rrRequest.IsSet:
+            case RrPlace.Assert when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetAssertAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 86 when rrRequest.IsGet:
+            case RrPlace.Errno when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetErrnoAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 86 when rrRequest.IsSet:
+            case RrPlace.Errno when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetErrnoAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 87 when rrRequest.IsGet:
+            case RrPlace.Linux when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetLinuxAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 87 when rrRequest.IsSet:
+            case RrPlace.Linux when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetLinuxAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 88 when rrRequest.IsGet:
+            case RrPlace.Unix when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetUnixAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 88 when rrRequest.IsSet:
+            case RrPlace.Unix when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetUnixAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 89 when rrRequest.IsGet:
+            case RrPlace.Major when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetMajorAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 89 when rrRequest.IsSet:
+            case RrPlace.Major when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetMajorAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 90 when rrRequest.IsGet:
+            case RrPlace.Minor when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetMinorAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 90 when rrRequest.IsSet:
+            case RrPlace.Minor when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetMinorAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 91 when rrRequest.IsGet:
+            case RrPlace.Eof when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetEofAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 91 when rrRequest.IsSet:
+            case RrPlace.Eof when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetEofAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 92 when rrRequest.IsGet:
+            case RrPlace.Null when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetNullAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 92 when rrRequest.IsSet:
+            case RrPlace.Null when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetNullAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 93 when rrRequest.IsGet:
+            case RrPlace.Infinity when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetInfinityAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 93 when rrRequest.IsSet:
+            case RrPlace.Infinity when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetInfinityAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 94 when rrRequest.IsGet:
+            case RrPlace.Nan when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetNanAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 94 when rrRequest.IsSet:
+            case RrPlace.Nan when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetNanAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 95 when rrRequest.IsGet:
+            case RrPlace.RandMax when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetRandMaxAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 95 when rrRequest.IsSet:
+            case RrPlace.RandMax when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetRandMaxAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 96 when rrRequest.IsGet:
+            case RrPlace.Bufsiz when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetBufsizAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 96 when rrRequest.IsSet:
+            case RrPlace.Bufsiz when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetBufsizAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 97 when rrRequest.IsGet:
+            case RrPlace.Sigint when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetSigintAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 97 when rrRequest.IsSet:
+            case RrPlace.Sigint when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetSigintAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 98 when rrRequest.IsGet:
+            case RrPlace.Final when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetFinalAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 98 when rrRequest.IsSet:
+            case RrPlace.Final when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetFinalAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 99 when rrRequest.IsGet:
+            case RrPlace.Override when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetOverrideAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 99 when rrRequest.IsSet:
+            case RrPlace.Override when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetOverrideAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
-            case 100 when rrRequest.IsGet:
+            case RrPlace.Module when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetModuleAsync(rrRequest.Cancelled), ValueCodec.Double);
-            case 100 when rrRequest.IsSet:
+            case RrPlace.Module when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetModuleAsync(rrRequest.Argument(ValueCodec.Double), rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);
@@ -5376,6 +5482,112 @@ public class NewStub(ObjectHandle rrHandle) : Stub(rrHandle), INew, IStub<NewStu
 /// <summary>Serves one new: derive from it and implement its members.</summary>
 public abstract class NewSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Alignas,
+        Alignof,
+        And,
+        AndEq,
+        Asm,
+        Auto,
+        Bitand,
+        Bitor,
+        Break,
+        Case,
+        Catch,
+        Char,
+        Char16T,
+        Char32T,
+        Char8T,
+        Class,
+        CoAwait,
+        CoReturn,
+        CoYield,
+        Compl,
+        Concept,
+        Const,
+        ConstCast,
+        Consteval,
+        Constexpr,
+        Constinit,
+        Continue,
+        Decltype,
+        Default,
+        Delete,
+        Do,
+        DynamicCast,
+        Else,
+        Explicit,
+        Export,
+        Extern,
+        False,
+        Float,
+        For,
+        Friend,
+        Goto,
+        If,
+        Inline,
+        Int,
+        Long,
+        Mutable,
+        Namespace,
+        New,
+        Noexcept,
+        Not,
+        NotEq,
+        Nullptr,
+        Operator,
+        Or,
+        OrEq,
+        Private,
+        Protected,
+        Public,
+        Register,
+        ReinterpretCast,
+        Requires,
+        Return,
+        Short,
+        Signed,
+        Sizeof,
+        Static,
+        StaticAssert,
+        StaticCast,
+        Switch,
+        Template,
+        ThreadLocal,
+        Throw,
+        True,
+        Try,
+        Typedef,
+        Typeid,
+        Typename,
+        Union,
+        Unsigned,
+        Virtual,
+        Volatile,
+        WcharT,
+        While,
+        Xor,
+        XorEq,
+        Assert,
+        Errno,
+        Linux,
+        Unix,
+        Major,
+        Minor,
+        Eof,
+        Null,
+        Infinity,
+        Nan,
+        RandMax,
+        Bufsiz,
+        Sigint,
+        Final,
+        Override,
+        Module,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "new",
     [
         new("alignas", MemberKind.Function, MemberAccess.None) { ReturnsValue = true },
@@ -5687,609 +5899,609 @@ public abstract class NewSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0:
+            case RrPlace.Alignas:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export bitor = rrArguments.Read(ValueCodec.Enum<Export>(), "bitor"u8);
                     return rrRequest.AnswerAsync(AlignasAsync(bitor, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 1:
+            case RrPlace.Alignof:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @break = rrArguments.Read(ValueCodec.Enum<Export>(), "break"u8);
                     return rrRequest.AnswerAsync(AlignofAsync(@break, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 2:
+            case RrPlace.And:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @case = rrArguments.Read(ValueCodec.Enum<Export>(), "case"u8);
                     return rrRequest.AnswerAsync(AndAsync(@case, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 3:
+            case RrPlace.AndEq:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @catch = rrArguments.Read(ValueCodec.Enum<Export>(), "catch"u8);
                     return rrRequest.AnswerAsync(AndEqAsync(@catch, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 4:
+            case RrPlace.Asm:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @char = rrArguments.Read(ValueCodec.Enum<Export>(), "char"u8);
                     return rrRequest.AnswerAsync(AsmAsync(@char, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 5:
+            case RrPlace.Auto:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export char16T = rrArguments.Read(ValueCodec.Enum<Export>(), "char16_t"u8);
                     return rrRequest.AnswerAsync(AutoAsync(char16T, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 6:
+            case RrPlace.Bitand:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export char32T = rrArguments.Read(ValueCodec.Enum<Export>(), "char32_t"u8);
                     return rrRequest.AnswerAsync(BitandAsync(char32T, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 7:
+            case RrPlace.Bitor:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export char8T = rrArguments.Read(ValueCodec.Enum<Export>(), "char8_t"u8);
                     return rrRequest.AnswerAsync(BitorAsync(char8T, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 8:
+            case RrPlace.Break:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @class = rrArguments.Read(ValueCodec.Enum<Export>(), "class"u8);
                     return rrRequest.AnswerAsync(BreakAsync(@class, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 9:
+            case RrPlace.Case:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export coAwait = rrArguments.Read(ValueCodec.Enum<Export>(), "co_await"u8);
                     return rrRequest.AnswerAsync(CaseAsync(coAwait, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 10:
+            case RrPlace.Catch:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export coReturn = rrArguments.Read(ValueCodec.Enum<Export>(), "co_return"u8);
                     return rrRequest.AnswerAsync(CatchAsync(coReturn, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 11:
+            case RrPlace.Char:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export coYield = rrArguments.Read(ValueCodec.Enum<Export>(), "co_yield"u8);
                     return rrRequest.AnswerAsync(CharAsync(coYield, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 12:
+            case RrPlace.Char16T:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export compl = rrArguments.Read(ValueCodec.Enum<Export>(), "compl"u8);
                     return rrRequest.AnswerAsync(Char16TAsync(compl, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 13:
+            case RrPlace.Char32T:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export concept = rrArguments.Read(ValueCodec.Enum<Export>(), "concept"u8);
                     return rrRequest.AnswerAsync(Char32TAsync(concept, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 14:
+            case RrPlace.Char8T:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @const = rrArguments.Read(ValueCodec.Enum<Export>(), "const"u8);
                     return rrRequest.AnswerAsync(Char8TAsync(@const, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 15:
+            case RrPlace.Class:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export constCast = rrArguments.Read(ValueCodec.Enum<Export>(), "const_cast"u8);
                     return rrRequest.AnswerAsync(ClassAsync(constCast, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 16:
+            case RrPlace.CoAwait:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export consteval = rrArguments.Read(ValueCodec.Enum<Export>(), "consteval"u8);
                     return rrRequest.AnswerAsync(CoAwaitAsync(consteval, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 17:
+            case RrPlace.CoReturn:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export constexpr = rrArguments.Read(ValueCodec.Enum<Export>(), "constexpr"u8);
                     return rrRequest.AnswerAsync(CoReturnAsync(constexpr, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 18:
+            case RrPlace.CoYield:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export constinit = rrArguments.Read(ValueCodec.Enum<Export>(), "constinit"u8);
                     return rrRequest.AnswerAsync(CoYieldAsync(constinit, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 19:
+            case RrPlace.Compl:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @continue = rrArguments.Read(ValueCodec.Enum<Export>(), "continue"u8);
                     return rrRequest.AnswerAsync(ComplAsync(@continue, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 20:
+            case RrPlace.Concept:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export decltype = rrArguments.Read(ValueCodec.Enum<Export>(), "decltype"u8);
                     return rrRequest.AnswerAsync(ConceptAsync(decltype, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 21:
+            case RrPlace.Const:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @default = rrArguments.Read(ValueCodec.Enum<Export>(), "default"u8);
                     return rrRequest.AnswerAsync(ConstAsync(@default, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 22:
+            case RrPlace.ConstCast:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export delete = rrArguments.Read(ValueCodec.Enum<Export>(), "delete"u8);
                     return rrRequest.AnswerAsync(ConstCastAsync(delete, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 23:
+            case RrPlace.Consteval:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @do = rrArguments.Read(ValueCodec.Enum<Export>(), "do"u8);
                     return rrRequest.AnswerAsync(ConstevalAsync(@do, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 24:
+            case RrPlace.Constexpr:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export dynamicCast = rrArguments.Read(ValueCodec.Enum<Export>(), "dynamic_cast"u8);
                     return rrRequest.AnswerAsync(ConstexprAsync(dynamicCast, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 25:
+            case RrPlace.Constinit:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @else = rrArguments.Read(ValueCodec.Enum<Export>(), "else"u8);
                     return rrRequest.AnswerAsync(ConstinitAsync(@else, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 26:
+            case RrPlace.Continue:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @explicit = rrArguments.Read(ValueCodec.Enum<Export>(), "explicit"u8);
                     return rrRequest.AnswerAsync(ContinueAsync(@explicit, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 27:
+            case RrPlace.Decltype:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export export = rrArguments.Read(ValueCodec.Enum<Export>(), "export"u8);
                     return rrRequest.AnswerAsync(DecltypeAsync(export, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 28:
+            case RrPlace.Default:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @extern = rrArguments.Read(ValueCodec.Enum<Export>(), "extern"u8);
                     return rrRequest.AnswerAsync(DefaultAsync(@extern, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 29:
+            case RrPlace.Delete:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @false = rrArguments.Read(ValueCodec.Enum<Export>(), "false"u8);
                     return rrRequest.AnswerAsync(DeleteAsync(@false, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 30:
+            case RrPlace.Do:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @float = rrArguments.Read(ValueCodec.Enum<Export>(), "float"u8);
                     return rrRequest.AnswerAsync(DoAsync(@float, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 31:
+            case RrPlace.DynamicCast:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @for = rrArguments.Read(ValueCodec.Enum<Export>(), "for"u8);
                     return rrRequest.AnswerAsync(DynamicCastAsync(@for, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 32:
+            case RrPlace.Else:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export friend = rrArguments.Read(ValueCodec.Enum<Export>(), "friend"u8);
                     return rrRequest.AnswerAsync(ElseAsync(friend, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 33:
+            case RrPlace.Explicit:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @goto = rrArguments.Read(ValueCodec.Enum<Export>(), "goto"u8);
                     return rrRequest.AnswerAsync(ExplicitAsync(@goto, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 34:
+            case RrPlace.Export:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @if = rrArguments.Read(ValueCodec.Enum<Export>(), "if"u8);
                     return rrRequest.AnswerAsync(ExportAsync(@if, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 35:
+            case RrPlace.Extern:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export inline = rrArguments.Read(ValueCodec.Enum<Export>(), "inline"u8);
                     return rrRequest.AnswerAsync(ExternAsync(inline, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 36:
+            case RrPlace.False:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @int = rrArguments.Read(ValueCodec.Enum<Export>(), "int"u8);
                     return rrRequest.AnswerAsync(FalseAsync(@int, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 37:
+            case RrPlace.Float:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @long = rrArguments.Read(ValueCodec.Enum<Export>(), "long"u8);
                     return rrRequest.AnswerAsync(FloatAsync(@long, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 38:
+            case RrPlace.For:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export mutable = rrArguments.Read(ValueCodec.Enum<Export>(), "mutable"u8);
                     return rrRequest.AnswerAsync(ForAsync(mutable, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 39:
+            case RrPlace.Friend:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @namespace = rrArguments.Read(ValueCodec.Enum<Export>(), "namespace"u8);
                     return rrRequest.AnswerAsync(FriendAsync(@namespace, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 40:
+            case RrPlace.Goto:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @new = rrArguments.Read(ValueCodec.Enum<Export>(), "new"u8);
                     return rrRequest.AnswerAsync(GotoAsync(@new, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 41:
+            case RrPlace.If:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export noexcept = rrArguments.Read(ValueCodec.Enum<Export>(), "noexcept"u8);
                     return rrRequest.AnswerAsync(IfAsync(noexcept, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 42:
+            case RrPlace.Inline:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export not = rrArguments.Read(ValueCodec.Enum<Export>(), "not"u8);
                     return rrRequest.AnswerAsync(InlineAsync(not, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 43:
+            case RrPlace.Int:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export notEq = rrArguments.Read(ValueCodec.Enum<Export>(), "not_eq"u8);
                     return rrRequest.AnswerAsync(IntAsync(notEq, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 44:
+            case RrPlace.Long:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export nullptr = rrArguments.Read(ValueCodec.Enum<Export>(), "nullptr"u8);
                     return rrRequest.AnswerAsync(LongAsync(nullptr, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 45:
+            case RrPlace.Mutable:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @operator = rrArguments.Read(ValueCodec.Enum<Export>(), "operator"u8);
                     return rrRequest.AnswerAsync(MutableAsync(@operator, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 46:
+            case RrPlace.Namespace:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export or = rrArguments.Read(ValueCodec.Enum<Export>(), "or"u8);
                     return rrRequest.AnswerAsync(NamespaceAsync(or, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 47:
+            case RrPlace.New:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export orEq = rrArguments.Read(ValueCodec.Enum<Export>(), "or_eq"u8);
                     return rrRequest.AnswerAsync(NewAsync(orEq, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 48:
+            case RrPlace.Noexcept:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @private = rrArguments.Read(ValueCodec.Enum<Export>(), "private"u8);
                     return rrRequest.AnswerAsync(NoexceptAsync(@private, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 49:
+            case RrPlace.Not:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @protected = rrArguments.Read(ValueCodec.Enum<Export>(), "protected"u8);
                     return rrRequest.AnswerAsync(NotAsync(@protected, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 50:
+            case RrPlace.NotEq:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @public = rrArguments.Read(ValueCodec.Enum<Export>(), "public"u8);
                     return rrRequest.AnswerAsync(NotEqAsync(@public, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 51:
+            case RrPlace.Nullptr:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export register = rrArguments.Read(ValueCodec.Enum<Export>(), "register"u8);
                     return rrRequest.AnswerAsync(NullptrAsync(register, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 52:
+            case RrPlace.Operator:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export reinterpretCast = rrArguments.Read(ValueCodec.Enum<Export>(), "reinterpret_cast"u8);
                     return rrRequest.AnswerAsync(OperatorAsync(reinterpretCast, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 53:
+            case RrPlace.Or:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export requires = rrArguments.Read(ValueCodec.Enum<Export>(), "requires"u8);
                     return rrRequest.AnswerAsync(OrAsync(requires, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 54:
+            case RrPlace.OrEq:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @return = rrArguments.Read(ValueCodec.Enum<Export>(), "return"u8);
                     return rrRequest.AnswerAsync(OrEqAsync(@return, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 55:
+            case RrPlace.Private:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @short = rrArguments.Read(ValueCodec.Enum<Export>(), "short"u8);
                     return rrRequest.AnswerAsync(PrivateAsync(@short, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 56:
+            case RrPlace.Protected:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export signed = rrArguments.Read(ValueCodec.Enum<Export>(), "signed"u8);
                     return rrRequest.AnswerAsync(ProtectedAsync(signed, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 57:
+            case RrPlace.Public:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @sizeof = rrArguments.Read(ValueCodec.Enum<Export>(), "sizeof"u8);
                     return rrRequest.AnswerAsync(PublicAsync(@sizeof, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 58:
+            case RrPlace.Register:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @static = rrArguments.Read(ValueCodec.Enum<Export>(), "static"u8);
                     return rrRequest.AnswerAsync(RegisterAsync(@static, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 59:
+            case RrPlace.ReinterpretCast:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export staticAssert = rrArguments.Read(ValueCodec.Enum<Export>(), "static_assert"u8);
                     return rrRequest.AnswerAsync(ReinterpretCastAsync(staticAssert, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 60:
+            case RrPlace.Requires:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export staticCast = rrArguments.Read(ValueCodec.Enum<Export>(), "static_cast"u8);
                     return rrRequest.AnswerAsync(RequiresAsync(staticCast, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 61:
+            case RrPlace.Return:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @switch = rrArguments.Read(ValueCodec.Enum<Export>(), "switch"u8);
                     return rrRequest.AnswerAsync(ReturnAsync(@switch, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 62:
+            case RrPlace.Short:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export template = rrArguments.Read(ValueCodec.Enum<Export>(), "template"u8);
                     return rrRequest.AnswerAsync(ShortAsync(template, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 63:
+            case RrPlace.Signed:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export threadLocal = rrArguments.Read(ValueCodec.Enum<Export>(), "thread_local"u8);
                     return rrRequest.AnswerAsync(SignedAsync(threadLocal, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 64:
+            case RrPlace.Sizeof:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @throw = rrArguments.Read(ValueCodec.Enum<Export>(), "throw"u8);
                     return rrRequest.AnswerAsync(SizeofAsync(@throw, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 65:
+            case RrPlace.Static:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @true = rrArguments.Read(ValueCodec.Enum<Export>(), "true"u8);
                     return rrRequest.AnswerAsync(StaticAsync(@true, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 66:
+            case RrPlace.StaticAssert:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @try = rrArguments.Read(ValueCodec.Enum<Export>(), "try"u8);
                     return rrRequest.AnswerAsync(StaticAssertAsync(@try, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 67:
+            case RrPlace.StaticCast:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export typedef = rrArguments.Read(ValueCodec.Enum<Export>(), "typedef"u8);
                     return rrRequest.AnswerAsync(StaticCastAsync(typedef, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 68:
+            case RrPlace.Switch:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export typeid = rrArguments.Read(ValueCodec.Enum<Export>(), "typeid"u8);
                     return rrRequest.AnswerAsync(SwitchAsync(typeid, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 69:
+            case RrPlace.Template:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export typename = rrArguments.Read(ValueCodec.Enum<Export>(), "typename"u8);
                     return rrRequest.AnswerAsync(TemplateAsync(typename, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 70:
+            case RrPlace.ThreadLocal:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export union = rrArguments.Read(ValueCodec.Enum<Export>(), "union"u8);
                     return rrRequest.AnswerAsync(ThreadLocalAsync(union, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 71:
+            case RrPlace.Throw:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export unsigned = rrArguments.Read(ValueCodec.Enum<Export>(), "unsigned"u8);
                     return rrRequest.AnswerAsync(ThrowAsync(unsigned, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 72:
+            case RrPlace.True:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @virtual = rrArguments.Read(ValueCodec.Enum<Export>(), "virtual"u8);
                     return rrRequest.AnswerAsync(TrueAsync(@virtual, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 73:
+            case RrPlace.Try:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @volatile = rrArguments.Read(ValueCodec.Enum<Export>(), "volatile"u8);
                     return rrRequest.AnswerAsync(TryAsync(@volatile, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 74:
+            case RrPlace.Typedef:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export wcharT = rrArguments.Read(ValueCodec.Enum<Export>(), "wchar_t"u8);
                     return rrRequest.AnswerAsync(TypedefAsync(wcharT, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 75:
+            case RrPlace.Typeid:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @while = rrArguments.Read(ValueCodec.Enum<Export>(), "while"u8);
                     return rrRequest.AnswerAsync(TypeidAsync(@while, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 76:
+            case RrPlace.Typename:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export xor = rrArguments.Read(ValueCodec.Enum<Export>(), "xor"u8);
                     return rrRequest.AnswerAsync(TypenameAsync(xor, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 77:
+            case RrPlace.Union:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export xorEq = rrArguments.Read(ValueCodec.Enum<Export>(), "xor_eq"u8);
                     return rrRequest.AnswerAsync(UnionAsync(xorEq, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 78:
+            case RrPlace.Unsigned:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export assert = rrArguments.Read(ValueCodec.Enum<Export>(), "assert"u8);
                     return rrRequest.AnswerAsync(UnsignedAsync(assert, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 79:
+            case RrPlace.Virtual:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export errno = rrArguments.Read(ValueCodec.Enum<Export>(), "errno"u8);
                     return rrRequest.AnswerAsync(VirtualAsync(errno, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 80:
+            case RrPlace.Volatile:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export linux = rrArguments.Read(ValueCodec.Enum<Export>(), "linux"u8);
                     return rrRequest.AnswerAsync(VolatileAsync(linux, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 81:
+            case RrPlace.WcharT:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export unix = rrArguments.Read(ValueCodec.Enum<Export>(), "unix"u8);
                     return rrRequest.AnswerAsync(WcharTAsync(unix, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 82:
+            case RrPlace.While:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export major = rrArguments.Read(ValueCodec.Enum<Export>(), "major"u8);
                     return rrRequest.AnswerAsync(WhileAsync(major, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 83:
+            case RrPlace.Xor:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export minor = rrArguments.Read(ValueCodec.Enum<Export>(), "minor"u8);
                     return rrRequest.AnswerAsync(XorAsync(minor, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 84:
+            case RrPlace.XorEq:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export eof = rrArguments.Read(ValueCodec.Enum<Export>(), "EOF"u8);
                     return rrRequest.AnswerAsync(XorEqAsync(eof, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 85:
+            case RrPlace.Assert:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @null = rrArguments.Read(ValueCodec.Enum<Export>(), "NULL"u8);
                     return rrRequest.AnswerAsync(AssertAsync(@null, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 86:
+            case RrPlace.Errno:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export infinity = rrArguments.Read(ValueCodec.Enum<Export>(), "INFINITY"u8);
                     return rrRequest.AnswerAsync(ErrnoAsync(infinity, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 87:
+            case RrPlace.Linux:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export nan = rrArguments.Read(ValueCodec.Enum<Export>(), "NAN"u8);
                     return rrRequest.AnswerAsync(LinuxAsync(nan, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 88:
+            case RrPlace.Unix:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export randMax = rrArguments.Read(ValueCodec.Enum<Export>(), "RAND_MAX"u8);
                     return rrRequest.AnswerAsync(UnixAsync(randMax, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 89:
+            case RrPlace.Major:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export bufsiz = rrArguments.Read(ValueCodec.Enum<Export>(), "BUFSIZ"u8);
                     return rrRequest.AnswerAsync(MajorAsync(bufsiz, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 90:
+            case RrPlace.Minor:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export sigint = rrArguments.Read(ValueCodec.Enum<Export>(), "SIGINT"u8);
                     return rrRequest.AnswerAsync(MinorAsync(sigint, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 91:
+            case RrPlace.Eof:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export final = rrArguments.Read(ValueCodec.Enum<Export>(), "final"u8);
                     return rrRequest.AnswerAsync(EofAsync(final, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 92:
+            case RrPlace.Null:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export @override = rrArguments.Read(ValueCodec.Enum<Export>(), "override"u8);
                     return rrRequest.AnswerAsync(NullAsync(@override, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 93:
+            case RrPlace.Infinity:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export module = rrArguments.Read(ValueCodec.Enum<Export>(), "module"u8);
                     return rrRequest.AnswerAsync(InfinityAsync(module, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 94:
+            case RrPlace.Nan:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export alignas = rrArguments.Read(ValueCodec.Enum<Export>(), "alignas"u8);
                     return rrRequest.AnswerAsync(NanAsync(alignas, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 95:
+            case RrPlace.RandMax:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export alignof = rrArguments.Read(ValueCodec.Enum<Export>(), "alignof"u8);
                     return rrRequest.AnswerAsync(RandMaxAsync(alignof, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 96:
+            case RrPlace.Bufsiz:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export and = rrArguments.Read(ValueCodec.Enum<Export>(), "and"u8);
                     return rrRequest.AnswerAsync(BufsizAsync(and, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 97:
+            case RrPlace.Sigint:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export andEq = rrArguments.Read(ValueCodec.Enum<Export>(), "and_eq"u8);
                     return rrRequest.AnswerAsync(SigintAsync(andEq, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 98:
+            case RrPlace.Final:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export asm = rrArguments.Read(ValueCodec.Enum<Export>(), "asm"u8);
                     return rrRequest.AnswerAsync(FinalAsync(asm, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 99:
+            case RrPlace.Override:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export auto = rrArguments.Read(ValueCodec.Enum<Export>(), "auto"u8);
                     return rrRequest.AnswerAsync(OverrideAsync(auto, rrRequest.Cancelled), global::Experimental.ReservedWords.Template.RrCodec);
                 }
-            case 100:
+            case RrPlace.Module:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Export bitand = rrArguments.Read(ValueCodec.Enum<Export>(), "bitand"u8);
@@ -7288,6 +7500,112 @@ public class ClassStub(ObjectHandle rrHandle) : Stub(rrHandle), IClass, IStub<Cl
 /// <summary>Serves one class: derive from it and implement its members.</summary>
 public abstract class ClassSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Alignas,
+        Alignof,
+        And,
+        AndEq,
+        Asm,
+        Auto,
+        Bitand,
+        Bitor,
+        Break,
+        Case,
+        Catch,
+        Char,
+        Char16T,
+        Char32T,
+        Char8T,
+        Class,
+        CoAwait,
+        CoReturn,
+        CoYield,
+        Compl,
+        Concept,
+        Const,
+        ConstCast,
+        Consteval,
+        Constexpr,
+        Constinit,
+        Continue,
+        Decltype,
+        Default,
+        Delete,
+        Do,
+        DynamicCast,
+        Else,
+        Explicit,
+        Export,
+        Extern,
+        False,
+        Float,
+        For,
+        Friend,
+        Goto,
+        If,
+        Inline,
+        Int,
+        Long,
+        Mutable,
+        Namespace,
+        New,
+        Noexcept,
+        Not,
+        NotEq,
+        Nullptr,
+        Operator,
+        Or,
+        OrEq,
+        Private,
+        Protected,
+        Public,
+        Register,
+        ReinterpretCast,
+        Requires,
+        Return,
+        Short,
+        Signed,
+        Sizeof,
+        Static,
+        StaticAssert,
+        StaticCast,
+        Switch,
+        Template,
+        ThreadLocal,
+        Throw,
+        True,
+        Try,
+        Typedef,
+        Typeid,
+        Typename,
+        Union,
+        Unsigned,
+        Virtual,
+        Volatile,
+        WcharT,
+        While,
+        Xor,
+        XorEq,
+        Assert,
+        Errno,
+        Linux,
+        Unix,
+        Major,
+        Minor,
+        Eof,
+        Null,
+        Infinity,
+        Nan,
+        RandMax,
+        Bufsiz,
+        Sigint,
+        Final,
+        Override,
+        Module,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "class",
     [
         new("alignas", MemberKind.Event, MemberAccess.None),
@@ -7395,163 +7713,163 @@ public abstract class ClassSkeleton : Skeleton
 
     public override ServedType RrType => s_rrType;
 
-    public void FireAlignas(double alignas) => RrEvent(0)
+    public void FireAlignas(double alignas) => RrEvent((uint)RrPlace.Alignas)
         .With("alignas"u8, ValueCodec.Double, alignas)
         .Fire();
 
-    public void FireAlignof(double alignof) => RrEvent(1)
+    public void FireAlignof(double alignof) => RrEvent((uint)RrPlace.Alignof)
         .With("alignof"u8, ValueCodec.Double, alignof)
         .Fire();
 
-    public void FireAnd(double and) => RrEvent(2)
+    public void FireAnd(double and) => RrEvent((uint)RrPlace.And)
         .With("and"u8, ValueCodec.Double, and)
         .Fire();
 
-    public void FireAndEq(double andEq) => RrEvent(3)
+    public void FireAndEq(double andEq) => RrEvent((uint)RrPlace.AndEq)
         .With("and_eq"u8, ValueCodec.Double, andEq)
         .Fire();
 
-    public void FireAsm(double asm) => RrEvent(4)
+    public void FireAsm(double asm) => RrEvent((uint)RrPlace.Asm)
         .With("asm"u8, ValueCodec.Double, asm)
         .Fire();
 
-    public void FireAuto(double auto) => RrEvent(5)
+    public void FireAuto(double auto) => RrEvent((uint)RrPlace.Auto)
         .With("auto"u8, ValueCodec.Double, auto)
         .Fire();
 
-    public void FireBitand(double bitand) => RrEvent(6)
+    public void FireBitand(double bitand) => RrEvent((uint)RrPlace.Bitand)
         .With("bitand"u8, ValueCodec.Double, bitand)
         .Fire();
 
-    public void FireBitor(double bitor) => RrEvent(7)
+    public void FireBitor(double bitor) => RrEvent((uint)RrPlace.Bitor)
         .With("bitor"u8, ValueCodec.Double, bitor)
         .Fire();
 
-    public void FireBreak(double @break) => RrEvent(8)
+    public void FireBreak(double @break) => RrEvent((uint)RrPlace.Break)
         .With("break"u8, ValueCodec.Double, @break)
         .Fire();
 
-    public void FireCase(double @case) => RrEvent(9)
+    public void FireCase(double @case) => RrEvent((uint)RrPlace.Case)
         .With("case"u8, ValueCodec.Double, @case)
         .Fire();
 
-    public void FireCatch(double @catch) => RrEvent(10)
+    public void FireCatch(double @catch) => RrEvent((uint)RrPlace.Catch)
         .With("catch"u8, ValueCodec.Double, @catch)
         .Fire();
 
-    public void FireChar(double @char) => RrEvent(11)
+    public void FireChar(double @char) => RrEvent((uint)RrPlace.Char)
         .With("char"u8, ValueCodec.Double, @char)
         .Fire();
 
-    public void FireChar16T(double char16T) => RrEvent(12)
+    public void FireChar16T(double char16T) => RrEvent((uint)RrPlace.Char16T)
         .With("char16_t"u8, ValueCodec.Double, char16T)
         .Fire();
 
-    public void FireChar32T(double char32T) => RrEvent(13)
+    public void FireChar32T(double char32T) => RrEvent((uint)RrPlace.Char32T)
         .With("char32_t"u8, ValueCodec.Double, char32T)
         .Fire();
 
-    public void FireChar8T(double char8T) => RrEvent(14)
+    public void FireChar8T(double char8T) => RrEvent((uint)RrPlace.Char8T)
         .With("char8_t"u8, ValueCodec.Double, char8T)
         .Fire();
 
-    public void FireClass(double @class) => RrEvent(15)
+    public void FireClass(double @class) => RrEvent((uint)RrPlace.Class)
         .With("class"u8, ValueCodec.Double, @class)
         .Fire();
 
-    public void FireCoAwait(double coAwait) => RrEvent(16)
+    public void FireCoAwait(double coAwait) => RrEvent((uint)RrPlace.CoAwait)
         .With("co_await"u8, ValueCodec.Double, coAwait)
         .Fire();
 
-    public void FireCoReturn(double coReturn) => RrEvent(17)
+    public void FireCoReturn(double coReturn) => RrEvent((uint)RrPlace.CoReturn)
         .With("co_return"u8, ValueCodec.Double, coReturn)
         .Fire();
 
-    public void FireCoYield(double coYield) => RrEvent(18)
+    public void FireCoYield(double coYield) => RrEvent((uint)RrPlace.CoYield)
         .With("co_yield"u8, ValueCodec.Double, coYield)
         .Fire();
 
-    public void FireCompl(double compl) => RrEvent(19)
+    public void FireCompl(double compl) => RrEvent((uint)RrPlace.Compl)
         .With("compl"u8, ValueCodec.Double, compl)
         .Fire();
 
-    public void FireConcept(double concept) => RrEvent(20)
+    public void FireConcept(double concept) => RrEvent((uint)RrPlace.Concept)
         .With("concept"u8, ValueCodec.Double, concept)
         .Fire();
 
-    public void FireConst(double @const) => RrEvent(21)
+    public void FireConst(double @const) => RrEvent((uint)RrPlace.Const)
         .With("const"u8, ValueCodec.Double, @const)
         .Fire();
 
-    public void FireConstCast(double constCast) => RrEvent(22)
+    public void FireConstCast(double constCast) => RrEvent((uint)RrPlace.ConstCast)
         .With("const_cast"u8, ValueCodec.Double, constCast)
         .Fire();
 
-    public void FireConsteval(double consteval) => RrEvent(23)
+    public void FireConsteval(double consteval) => RrEvent((uint)RrPlace.Consteval)
         .With("consteval"u8, ValueCodec.Double, consteval)
         .Fire();
 
-    public void FireConstexpr(double constexpr) => RrEvent(24)
+    public void FireConstexpr(double constexpr) => RrEvent((uint)RrPlace.Constexpr)
         .With("constexpr"u8, ValueCodec.Double, constexpr)
         .Fire();
 
-    public void FireConstinit(double constinit) => RrEvent(25)
+    public void FireConstinit(double constinit) => RrEvent((uint)RrPlace.Constinit)
         .With("constinit"u8, ValueCodec.Double, constinit)
         .Fire();
 
-    public void FireContinue(double @continue) => RrEvent(26)
+    public void FireContinue(double @continue) => RrEvent((uint)RrPlace.Continue)
         .With("continue"u8, ValueCodec.Double, @continue)
         .Fire();
 
-    public void FireDecltype(double decltype) => RrEvent(27)
+    public void FireDecltype(double decltype) => RrEvent((uint)RrPlace.Decltype)
         .With("decltype"u8, ValueCodec.Double, decltype)
         .Fire();
 
-    public void FireDefault(double @default) => RrEvent(28)
+    public void FireDefault(double @default) => RrEvent((uint)RrPlace.Default)
         .With("default"u8, ValueCodec.Double, @default)
         .Fire();
 
-    public void FireDelete(double delete) => RrEvent(29)
+    public void FireDelete(double delete) => RrEvent((uint)RrPlace.Delete)
         .With("delete"u8, ValueCodec.Double, delete)
         .Fire();
 
-    public void FireDo(double @do) => RrEvent(30)
+    public void FireDo(double @do) => RrEvent((uint)RrPlace.Do)
         .With("do"u8, ValueCodec.Double, @do)
         .Fire();
 
-    public void FireDynamicCast(double dynamicCast) => RrEvent(31)
+    public void FireDynamicCast(double dynamicCast) => RrEvent((uint)RrPlace.DynamicCast)
         .With("dynamic_cast"u8, ValueCodec.Double, dynamicCast)
         .Fire();
 
-    public void FireElse(double @else) => RrEvent(32)
+    public void FireElse(double @else) => RrEvent((uint)RrPlace.Else)
         .With("else"u8, ValueCodec.Double, @else)
         .Fire();
 
-    public void FireExplicit(double @explicit) => RrEvent(33)
+    public void FireExplicit(double @explicit) => RrEvent((uint)RrPlace.Explicit)
         .With("explicit"u8, ValueCodec.Double, @explicit)
         .Fire();
 
-    public void FireExport(double export) => RrEvent(34)
+    public void FireExport(double export) => RrEvent((uint)RrPlace.Export)
         .With("export"u8, ValueCodec.Double, export)
         .Fire();
 
-    public void FireExtern(double @extern) => RrEvent(35)
+    public void FireExtern(double @extern) => RrEvent((uint)RrPlace.Extern)
         .With("extern"u8, ValueCodec.Double, @extern)
         .Fire();
 
-    public void FireFalse(double @false) => RrEvent(36)
+    public void FireFalse(double @false) => RrEvent((uint)RrPlace.False)
         .With("false"u8, ValueCodec.Double, @false)
         .Fire();
 
-    public void FireFloat(double @float) => RrEvent(37)
+    public void FireFloat(double @float) => RrEvent((uint)RrPlace.Float)
         .With("float"u8, ValueCodec.Double, @float)
         .Fire();
 
-    public void FireFor(double @for) => RrEvent(38)
+    public void FireFor(double @for) => RrEvent((uint)RrPlace.For)
         .With("for"u8, ValueCodec.Double, @for)
         .Fire();
 
-    public void FireFriend(double friend) => RrEvent(39)
+    public void FireFriend(double friend) => RrEvent((uint)RrPlace.Friend)
         .With("friend"u8, ValueCodec.Double, friend)
         .Fire();
 
@@ -7679,129 +7997,129 @@ public abstract class ClassSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 40:
+            case RrPlace.Goto:
                 return rrRequest.AnswerObjectAsync(GetGotoAsync(rrRequest.Cancelled));
-            case 41:
+            case RrPlace.If:
                 return rrRequest.AnswerObjectAsync(GetIfAsync(rrRequest.Cancelled));
-            case 42:
+            case RrPlace.Inline:
                 return rrRequest.AnswerObjectAsync(GetInlineAsync(rrRequest.Cancelled));
-            case 43:
+            case RrPlace.Int:
                 return rrRequest.AnswerObjectAsync(GetIntAsync(rrRequest.Cancelled));
-            case 44:
+            case RrPlace.Long:
                 return rrRequest.AnswerObjectAsync(GetLongAsync(rrRequest.Cancelled));
-            case 45:
+            case RrPlace.Mutable:
                 return rrRequest.AnswerObjectAsync(GetMutableAsync(rrRequest.Cancelled));
-            case 46:
+            case RrPlace.Namespace:
                 return rrRequest.AnswerObjectAsync(GetNamespaceAsync(rrRequest.Cancelled));
-            case 47:
+            case RrPlace.New:
                 return rrRequest.AnswerObjectAsync(GetNewAsync(rrRequest.Cancelled));
-            case 48:
+            case RrPlace.Noexcept:
                 return rrRequest.AnswerObjectAsync(GetNoexceptAsync(rrRequest.Cancelled));
-            case 49:
+            case RrPlace.Not:
                 return rrRequest.AnswerObjectAsync(GetNotAsync(rrRequest.Cancelled));
-            case 50:
+            case RrPlace.NotEq:
                 return rrRequest.AnswerObjectAsync(GetNotEqAsync(rrRequest.Cancelled));
-            case 51:
+            case RrPlace.Nullptr:
                 return rrRequest.AnswerObjectAsync(GetNullptrAsync(rrRequest.Cancelled));
-            case 52:
+            case RrPlace.Operator:
                 return rrRequest.AnswerObjectAsync(GetOperatorAsync(rrRequest.Cancelled));
-            case 53:
+            case RrPlace.Or:
                 return rrRequest.AnswerObjectAsync(GetOrAsync(rrRequest.Cancelled));
-            case 54:
+            case RrPlace.OrEq:
                 return rrRequest.AnswerObjectAsync(GetOrEqAsync(rrRequest.Cancelled));
-            case 55:
+            case RrPlace.Private:
                 return rrRequest.AnswerObjectAsync(GetPrivateAsync(rrRequest.Cancelled));
-            case 56:
+            case RrPlace.Protected:
                 return rrRequest.AnswerObjectAsync(GetProtectedAsync(rrRequest.Cancelled));
-            case 57:
+            case RrPlace.Public:
                 return rrRequest.AnswerObjectAsync(GetPublicAsync(rrRequest.Cancelled));
-            case 58:
+            case RrPlace.Register:
                 return rrRequest.AnswerObjectAsync(GetRegisterAsync(rrRequest.Cancelled));
-            case 59:
+            case RrPlace.ReinterpretCast:
                 return rrRequest.AnswerObjectAsync(GetReinterpretCastAsync(rrRequest.Cancelled));
-            case 60:
+            case RrPlace.Requires:
                 return rrRequest.AnswerObjectAsync(GetRequiresAsync(rrRequest.Cancelled));
-            case 61:
+            case RrPlace.Return:
                 return rrRequest.AnswerObjectAsync(GetReturnAsync(rrRequest.Cancelled));
-            case 62:
+            case RrPlace.Short:
                 return rrRequest.AnswerObjectAsync(GetShortAsync(rrRequest.Cancelled));
-            case 63:
+            case RrPlace.Signed:
                 return rrRequest.AnswerObjectAsync(GetSignedAsync(rrRequest.Cancelled));
-            case 64:
+            case RrPlace.Sizeof:
                 return rrRequest.AnswerObjectAsync(GetSizeofAsync(rrRequest.Cancelled));
-            case 65:
+            case RrPlace.Static:
                 return rrRequest.AnswerObjectAsync(GetStaticAsync(rrRequest.Cancelled));
-            case 66:
+            case RrPlace.StaticAssert:
                 return rrRequest.AnswerObjectAsync(GetStaticAssertAsync(rrRequest.Cancelled));
-            case 67:
+            case RrPlace.StaticCast:
                 return rrRequest.AnswerObjectAsync(GetStaticCastAsync(rrRequest.Cancelled));
-            case 68:
+            case RrPlace.Switch:
                 return rrRequest.AnswerObjectAsync(GetSwitchAsync(rrRequest.Cancelled));
-            case 69:
+            case RrPlace.Template:
                 return rrRequest.AnswerObjectAsync(GetTemplateAsync(rrRequest.Cancelled));
-            case 70:
+            case RrPlace.ThreadLocal:
                 return rrRequest.AnswerObjectAsync(GetThreadLocalAsync(rrRequest.Cancelled));
-            case 71:
+            case RrPlace.Throw:
                 return rrRequest.AnswerObjectAsync(GetThrowAsync(rrRequest.Cancelled));
-            case 72:
+            case RrPlace.True:
                 return rrRequest.AnswerObjectAsync(GetTrueAsync(rrRequest.Cancelled));
-            case 73:
+            case RrPlace.Try:
                 return rrRequest.AnswerObjectAsync(GetTryAsync(rrRequest.Cancelled));
-            case 74:
+            case RrPlace.Typedef:
                 return rrRequest.AnswerObjectAsync(GetTypedefAsync(rrRequest.Cancelled));
-            case 75:
+            case RrPlace.Typeid:
                 return rrRequest.AnswerObjectAsync(GetTypeidAsync(rrRequest.Cancelled));
-            case 76:
+            case RrPlace.Typename:
                 return rrRequest.AnswerObjectAsync(GetTypenameAsync(rrRequest.Cancelled));
-            case 77:
+            case RrPlace.Union:
                 return rrRequest.AnswerObjectAsync(GetUnionAsync(rrRequest.Cancelled));
-            case 78:
+            case RrPlace.Unsigned:
                 return rrRequest.AnswerObjectAsync(GetUnsignedAsync(rrRequest.Cancelled));
-            case 79:
+            case RrPlace.Virtual:
                 return rrRequest.AnswerObjectAsync(GetVirtualAsync(rrRequest.Cancelled));
-            case 80:
+            case RrPlace.Volatile:
                 return rrRequest.AnswerObjectAsync(GetVolatileAsync(rrRequest.Cancelled));
-            case 81:
+            case RrPlace.WcharT:
                 return rrRequest.AnswerObjectAsync(GetWcharTAsync(rrRequest.Cancelled));
-            case 82:
+            case RrPlace.While:
                 return rrRequest.AnswerObjectAsync(GetWhileAsync(rrRequest.Cancelled));
-            case 83:
+            case RrPlace.Xor:
                 return rrRequest.AnswerObjectAsync(GetXorAsync(rrRequest.Cancelled));
-            case 84:
+            case RrPlace.XorEq:
                 return rrRequest.AnswerObjectAsync(GetXorEqAsync(rrRequest.Cancelled));
-            case 85:
+            case RrPlace.Assert:
                 return rrRequest.AnswerObjectAsync(GetAssertAsync(rrRequest.Cancelled));
-            case 86:
+            case RrPlace.Errno:
                 return rrRequest.AnswerObjectAsync(GetErrnoAsync(rrRequest.Cancelled));
-            case 87:
+            case RrPlace.Linux:
                 return rrRequest.AnswerObjectAsync(GetLinuxAsync(rrRequest.Cancelled));
-            case 88:
+            case RrPlace.Unix:
                 return rrRequest.AnswerObjectAsync(GetUnixAsync(rrRequest.Cancelled));
-            case 89:
+            case RrPlace.Major:
                 return rrRequest.AnswerObjectAsync(GetMajorAsync(rrRequest.Cancelled));
-            case 90:
+            case RrPlace.Minor:
                 return rrRequest.AnswerObjectAsync(GetMinorAsync(rrRequest.Cancelled));
-            case 91:
+            case RrPlace.Eof:
                 return rrRequest.AnswerObjectAsync(GetEofAsync(rrRequest.Cancelled));
-            case 92:
+            case RrPlace.Null:
                 return rrRequest.AnswerObjectAsync(GetNullAsync(rrRequest.Cancelled));
-            case 93:
+            case RrPlace.Infinity:
                 return rrRequest.AnswerObjectAsync(GetInfinityAsync(rrRequest.Cancelled));
-            case 94:
+            case RrPlace.Nan:
                 return rrRequest.AnswerObjectAsync(GetNanAsync(rrRequest.Cancelled));
-            case 95:
+            case RrPlace.RandMax:
                 return rrRequest.AnswerObjectAsync(GetRandMaxAsync(rrRequest.Cancelled));
-            case 96:
+            case RrPlace.Bufsiz:
                 return rrRequest.AnswerObjectAsync(GetBufsizAsync(rrRequest.Cancelled));
-            case 97:
+            case RrPlace.Sigint:
                 return rrRequest.AnswerObjectAsync(GetSigintAsync(rrRequest.Cancelled));
-            case 98:
+            case RrPlace.Final:
                 return rrRequest.AnswerObjectAsync(GetFinalAsync(rrRequest.Cancelled));
-            case 99:
+            case RrPlace.Override:
                 return rrRequest.AnswerObjectAsync(GetOverrideAsync(rrRequest.Cancelled));
-            case 100:
+            case RrPlace.Module:
                 return rrRequest.AnswerObjectAsync(GetModuleAsync(rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);

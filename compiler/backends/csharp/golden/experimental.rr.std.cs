@@ -122,6 +122,16 @@ public class NodeStub(ObjectHandle rrHandle) : Stub(rrHandle), INode, IStub<Node
 /// <summary>Serves one Node: derive from it and implement its members.</summary>
 public abstract class NodeSkeleton : Skeleton
 {
+    /// <summary>Where each member is in the table.</summary>
+    private enum RrPlace : uint
+    {
+        Error,
+        SharedPtr,
+        Move,
+        Swap,
+        Array,
+    }
+
     private static readonly ServedType s_rrType = new(RrDefinition.Value, "Node",
     [
         new("Error", MemberKind.Property, MemberAccess.None),
@@ -143,7 +153,7 @@ public abstract class NodeSkeleton : Skeleton
 
     public abstract ValueTask<int> MoveAsync(Optional? std, int sizeT, CancellationToken cancellationToken = default);
 
-    public void FireSwap(int std) => RrEvent(3)
+    public void FireSwap(int std) => RrEvent((uint)RrPlace.Swap)
         .With("std"u8, ValueCodec.Int32, std)
         .Fire();
 
@@ -151,24 +161,24 @@ public abstract class NodeSkeleton : Skeleton
 
     protected override ValueTask RrRequestAsync(ServedRequest rrRequest)
     {
-        switch (rrRequest.Member)
+        switch ((RrPlace)rrRequest.Member)
         {
-            case 0 when rrRequest.IsGet:
+            case RrPlace.Error when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetErrorAsync(rrRequest.Cancelled), Optional.RrCodec);
-            case 0 when rrRequest.IsSet:
+            case RrPlace.Error when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetErrorAsync(rrRequest.Argument(Optional.RrCodec), rrRequest.Cancelled));
-            case 1 when rrRequest.IsGet:
+            case RrPlace.SharedPtr when rrRequest.IsGet:
                 return rrRequest.AnswerAsync(GetSharedPtrAsync(rrRequest.Cancelled), RrCodecs.StringList);
-            case 1 when rrRequest.IsSet:
+            case RrPlace.SharedPtr when rrRequest.IsSet:
                 return rrRequest.AnswerAsync(SetSharedPtrAsync(rrRequest.Argument(RrCodecs.StringList), rrRequest.Cancelled));
-            case 2:
+            case RrPlace.Move:
                 {
                     FieldReader rrArguments = rrRequest.Arguments;
                     Optional? std = rrArguments.Read(Optional.RrCodec, "std"u8);
                     int sizeT = rrArguments.Read(ValueCodec.Int32, "size_t"u8);
                     return rrRequest.AnswerAsync(MoveAsync(std, sizeT, rrRequest.Cancelled), ValueCodec.Int32);
                 }
-            case 4:
+            case RrPlace.Array:
                 return rrRequest.AnswerObjectAsync(GetArrayAsync(rrRequest.IndexNumber, rrRequest.Cancelled));
             default:
                 return base.RrRequestAsync(rrRequest);

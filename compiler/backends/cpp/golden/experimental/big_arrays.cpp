@@ -60,7 +60,7 @@ const ::rr::ObjectType& StoreSkeleton::rr_object_type() const { return rr_object
 
 void StoreSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property exact
+    case rr_at::exact: {
       if (rr_request.is_set()) {
         ::rr::Array<double> value = ::rr::Array<double>(100000);
         rr_request.read_value(&value);
@@ -70,7 +70,7 @@ void StoreSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_exact();
       return rr_request.answer(&value);
     }
-    case 1: {  // property at_the_edge
+    case rr_at::at_the_edge: {
       if (rr_request.is_set()) {
         ::std::array<::std::uint8_t, 16384> value{};
         rr_request.read_value(&value);
@@ -80,7 +80,7 @@ void StoreSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_at_the_edge();
       return rr_request.answer(&value);
     }
-    case 2: {  // property beyond_it
+    case rr_at::beyond_it: {
       if (rr_request.is_set()) {
         ::rr::Array<::std::uint8_t> value = ::rr::Array<::std::uint8_t>(16385);
         rr_request.read_value(&value);
@@ -90,7 +90,7 @@ void StoreSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_beyond_it();
       return rr_request.answer(&value);
     }
-    case 3: {  // function depth
+    case rr_at::depth: {
       ::rr::Array<::std::uint16_t> raw{};
       rr_request.read(raw);
       return async_depth(raw, rr_request);

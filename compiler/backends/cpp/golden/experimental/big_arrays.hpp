@@ -26,18 +26,30 @@ struct Block {
 };
 extern const ::rr::RecordType rr_type_Block;
 
-extern const ::rr::Member rr_members_Store[4];
+/// Where each member is in the table.
+struct rr_at_Store {
+  enum : ::std::size_t {
+    exact,
+    at_the_edge,
+    beyond_it,
+    depth,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Store[rr_at_Store::rr_count];
 extern const ::rr::ObjectType rr_object_Store;
 
 /// A Store on another node.
 class StoreStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Store;
+
  public:
   ::rr::Array<double> get_exact(const ::rr::CallOptions& options = {}) {
-    return rr_get<::rr::Array<double>>(rr_members_Store[0], options);
+    return rr_get<::rr::Array<double>>(rr_members_Store[rr_at::exact], options);
   }
   template <class Token>
   auto async_get_exact(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::rr::Array<double>>(rr_members_Store[0], options,
+    return rr_async_get<::rr::Array<double>>(rr_members_Store[rr_at::exact], options,
                                              ::std::forward<Token>(token));
   }
   template <class Token>
@@ -45,12 +57,12 @@ class StoreStub : public virtual ::rr::Stub {
     return async_get_exact(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_exact(const ::rr::Array<double>& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Store[0], options, &value);
+    rr_set(rr_members_Store[rr_at::exact], options, &value);
   }
   template <class Token>
   auto async_set_exact(const ::rr::Array<double>& value, const ::rr::CallOptions& options,
                        Token&& token) {
-    return rr_async_set<::rr::Array<double>>(rr_members_Store[0], options,
+    return rr_async_set<::rr::Array<double>>(rr_members_Store[rr_at::exact], options,
                                              ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -58,12 +70,13 @@ class StoreStub : public virtual ::rr::Stub {
     return async_set_exact(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::array<::std::uint8_t, 16384> get_at_the_edge(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::array<::std::uint8_t, 16384>>(rr_members_Store[1], options);
+    return rr_get<::std::array<::std::uint8_t, 16384>>(rr_members_Store[rr_at::at_the_edge],
+                                                       options);
   }
   template <class Token>
   auto async_get_at_the_edge(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::array<::std::uint8_t, 16384>>(rr_members_Store[1], options,
-                                                             ::std::forward<Token>(token));
+    return rr_async_get<::std::array<::std::uint8_t, 16384>>(rr_members_Store[rr_at::at_the_edge],
+                                                             options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_at_the_edge(Token&& token) {
@@ -71,24 +84,24 @@ class StoreStub : public virtual ::rr::Stub {
   }
   void set_at_the_edge(const ::std::array<::std::uint8_t, 16384>& value,
                        const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Store[1], options, &value);
+    rr_set(rr_members_Store[rr_at::at_the_edge], options, &value);
   }
   template <class Token>
   auto async_set_at_the_edge(const ::std::array<::std::uint8_t, 16384>& value,
                              const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<::std::array<::std::uint8_t, 16384>>(rr_members_Store[1], options,
-                                                             ::std::forward<Token>(token), value);
+    return rr_async_set<::std::array<::std::uint8_t, 16384>>(
+        rr_members_Store[rr_at::at_the_edge], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_at_the_edge(const ::std::array<::std::uint8_t, 16384>& value, Token&& token) {
     return async_set_at_the_edge(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::Array<::std::uint8_t> get_beyond_it(const ::rr::CallOptions& options = {}) {
-    return rr_get<::rr::Array<::std::uint8_t>>(rr_members_Store[2], options);
+    return rr_get<::rr::Array<::std::uint8_t>>(rr_members_Store[rr_at::beyond_it], options);
   }
   template <class Token>
   auto async_get_beyond_it(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::rr::Array<::std::uint8_t>>(rr_members_Store[2], options,
+    return rr_async_get<::rr::Array<::std::uint8_t>>(rr_members_Store[rr_at::beyond_it], options,
                                                      ::std::forward<Token>(token));
   }
   template <class Token>
@@ -97,12 +110,12 @@ class StoreStub : public virtual ::rr::Stub {
   }
   void set_beyond_it(const ::rr::Array<::std::uint8_t>& value,
                      const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Store[2], options, &value);
+    rr_set(rr_members_Store[rr_at::beyond_it], options, &value);
   }
   template <class Token>
   auto async_set_beyond_it(const ::rr::Array<::std::uint8_t>& value,
                            const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<::rr::Array<::std::uint8_t>>(rr_members_Store[2], options,
+    return rr_async_set<::rr::Array<::std::uint8_t>>(rr_members_Store[rr_at::beyond_it], options,
                                                      ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -111,12 +124,12 @@ class StoreStub : public virtual ::rr::Stub {
   }
   ::rr::MultiArray<float> depth(const ::rr::Array<::std::uint16_t>& raw,
                                 const ::rr::CallOptions& options = {}) {
-    return rr_call<::rr::MultiArray<float>>(rr_members_Store[3], options, raw);
+    return rr_call<::rr::MultiArray<float>>(rr_members_Store[rr_at::depth], options, raw);
   }
   template <class Token>
   auto async_depth(const ::rr::Array<::std::uint16_t>& raw, const ::rr::CallOptions& options,
                    Token&& token) {
-    return rr_async_call<::rr::MultiArray<float>>(rr_members_Store[3], options,
+    return rr_async_call<::rr::MultiArray<float>>(rr_members_Store[rr_at::depth], options,
                                                   ::std::forward<Token>(token), raw);
   }
   template <class Token>
@@ -128,6 +141,8 @@ class StoreStub : public virtual ::rr::Stub {
 
 /// Serves one Store: derive from it and implement its members.
 class StoreSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Store;
+
  public:
   virtual ::rr::Array<double> get_exact() = 0;
   virtual void set_exact(const ::rr::Array<double>& value) = 0;

@@ -62,7 +62,7 @@ const ::rr::ObjectType& MachineSkeleton::rr_object_type() const { return rr_obje
 
 void MachineSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property setting
+    case rr_at::setting: {
       if (rr_request.is_set()) {
         ::std::optional<Setting> value{};
         rr_request.read_value(&value);

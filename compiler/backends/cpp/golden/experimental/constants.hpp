@@ -53,18 +53,27 @@ struct Machine {
   static constexpr ::std::string_view TITLE = "machine";
 };
 
-extern const ::rr::Member rr_members_Machine[1];
+/// Where each member is in the table.
+struct rr_at_Machine {
+  enum : ::std::size_t {
+    setting,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Machine[rr_at_Machine::rr_count];
 extern const ::rr::ObjectType rr_object_Machine;
 
 /// A Machine on another node.
 class MachineStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Machine;
+
  public:
   ::std::optional<Setting> get_setting(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::optional<Setting>>(rr_members_Machine[0], options);
+    return rr_get<::std::optional<Setting>>(rr_members_Machine[rr_at::setting], options);
   }
   template <class Token>
   auto async_get_setting(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::optional<Setting>>(rr_members_Machine[0], options,
+    return rr_async_get<::std::optional<Setting>>(rr_members_Machine[rr_at::setting], options,
                                                   ::std::forward<Token>(token));
   }
   template <class Token>
@@ -72,12 +81,12 @@ class MachineStub : public virtual ::rr::Stub {
     return async_get_setting(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_setting(const ::std::optional<Setting>& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Machine[0], options, &value);
+    rr_set(rr_members_Machine[rr_at::setting], options, &value);
   }
   template <class Token>
   auto async_set_setting(const ::std::optional<Setting>& value, const ::rr::CallOptions& options,
                          Token&& token) {
-    return rr_async_set<::std::optional<Setting>>(rr_members_Machine[0], options,
+    return rr_async_set<::std::optional<Setting>>(rr_members_Machine[rr_at::setting], options,
                                                   ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -89,6 +98,8 @@ class MachineStub : public virtual ::rr::Stub {
 
 /// Serves one Machine: derive from it and implement its members.
 class MachineSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Machine;
+
  public:
   virtual ::std::optional<Setting> get_setting() = 0;
   virtual void set_setting(const ::std::optional<Setting>& value) = 0;

@@ -72,18 +72,18 @@ const ::rr::ObjectType& ShuttersStub::rr_object_type() const { return rr_object_
 
 ::std::shared_ptr<ShuttersStub> ShuttersStub::get_part(::std::int32_t index,
                                                        const ::rr::CallOptions& options) {
-  return rr_find_as<ShuttersStub>(rr_members_Shutters[3], options, index);
+  return rr_find_as<ShuttersStub>(rr_members_Shutters[rr_at::part], options, index);
 }
 
 const ::rr::ObjectType& ShuttersSkeleton::rr_object_type() const { return rr_object_Shutters; }
 
 void ShuttersSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property count
+    case rr_at::count: {
       const auto value = get_count();
       return rr_request.answer(&value);
     }
-    case 1: {  // function move
+    case rr_at::move: {
       ::std::int32_t number = 0;
       double position = 0;
       rr_request.read(number, position);
@@ -97,7 +97,7 @@ void ShuttersSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_re
 ::std::shared_ptr<::rr::Skeleton> ShuttersSkeleton::rr_child(::std::size_t rr_member,
                                                              const ::rr::ObjectIndex& rr_index) {
   switch (rr_member) {
-    case 3:
+    case rr_at::part:
       return get_part(rr_index.number);
     default:
       return nullptr;

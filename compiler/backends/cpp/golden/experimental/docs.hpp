@@ -45,7 +45,17 @@ struct Place {
 };
 extern const ::rr::RecordType rr_type_Place;
 
-extern const ::rr::Member rr_members_Shutters[4];
+/// Where each member is in the table.
+struct rr_at_Shutters {
+  enum : ::std::size_t {
+    count,
+    move,
+    moved,
+    part,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Shutters[rr_at_Shutters::rr_count];
 extern const ::rr::ObjectType rr_object_Shutters;
 
 /// A Shutters on another node.
@@ -53,14 +63,16 @@ extern const ::rr::ObjectType rr_object_Shutters;
 /// All shutters.
 ///   Indented text stays so.
 class ShuttersStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Shutters;
+
  public:
   /// How many there are.
   ::std::int32_t get_count(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::int32_t>(rr_members_Shutters[0], options);
+    return rr_get<::std::int32_t>(rr_members_Shutters[rr_at::count], options);
   }
   template <class Token>
   auto async_get_count(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::int32_t>(rr_members_Shutters[0], options,
+    return rr_async_get<::std::int32_t>(rr_members_Shutters[rr_at::count], options,
                                         ::std::forward<Token>(token));
   }
   template <class Token>
@@ -70,12 +82,13 @@ class ShuttersStub : public virtual ::rr::Stub {
   /// Moves one shutter and answers when it is there. `*/` and /* are text.
   ::std::optional<Place> move(::std::int32_t number, double position,
                               const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<Place>>(rr_members_Shutters[1], options, number, position);
+    return rr_call<::std::optional<Place>>(rr_members_Shutters[rr_at::move], options, number,
+                                           position);
   }
   template <class Token>
   auto async_move(::std::int32_t number, double position, const ::rr::CallOptions& options,
                   Token&& token) {
-    return rr_async_call<::std::optional<Place>>(rr_members_Shutters[1], options,
+    return rr_async_call<::std::optional<Place>>(rr_members_Shutters[rr_at::move], options,
                                                  ::std::forward<Token>(token), number, position);
   }
   template <class Token>
@@ -83,13 +96,13 @@ class ShuttersStub : public virtual ::rr::Stub {
     return async_move(number, position, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   /// Somebody moved one by hand.
-  ::rr::Event<::std::int32_t> moved() { return {*this, rr_members_Shutters[2]}; }
+  ::rr::Event<::std::int32_t> moved() { return {*this, rr_members_Shutters[rr_at::moved]}; }
   /// One shutter.
   ::std::shared_ptr<ShuttersStub> get_part(::std::int32_t index,
                                            const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_part(::std::int32_t index, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<ShuttersStub>(rr_members_Shutters[3], options,
+    return rr_async_find<ShuttersStub>(rr_members_Shutters[rr_at::part], options,
                                        ::std::forward<Token>(token), index);
   }
   template <class Token>
@@ -104,6 +117,8 @@ class ShuttersStub : public virtual ::rr::Stub {
 /// All shutters.
 ///   Indented text stays so.
 class ShuttersSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Shutters;
+
  public:
   /// How many there are.
   virtual ::std::int32_t get_count() = 0;
@@ -114,7 +129,9 @@ class ShuttersSkeleton : public virtual ::rr::Skeleton {
     answer(move(number, position));
   }
   /// Somebody moved one by hand.
-  void moved(::std::int32_t number) const { rr_fire_event(rr_members_Shutters[2], number); }
+  void moved(::std::int32_t number) const {
+    rr_fire_event(rr_members_Shutters[rr_at::moved], number);
+  }
   /// One shutter.
   virtual ::std::shared_ptr<ShuttersSkeleton> get_part(::std::int32_t index) = 0;
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;

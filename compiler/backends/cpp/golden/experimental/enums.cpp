@@ -54,7 +54,7 @@ const ::rr::ObjectType& MachineSkeleton::rr_object_type() const { return rr_obje
 
 void MachineSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property state
+    case rr_at::state: {
       if (rr_request.is_set()) {
         State value{};
         rr_request.read_value(&value);
@@ -64,7 +64,7 @@ void MachineSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_req
       const auto value = get_state();
       return rr_request.answer(&value);
     }
-    case 1: {  // property history
+    case rr_at::history: {
       if (rr_request.is_set()) {
         ::std::optional<::std::vector<State>> value{};
         rr_request.read_value(&value);
@@ -74,7 +74,7 @@ void MachineSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_req
       const auto value = get_history();
       return rr_request.answer(&value);
     }
-    case 2: {  // property parts
+    case rr_at::parts: {
       if (rr_request.is_set()) {
         ::std::optional<::std::map<::std::string, State>> value{};
         rr_request.read_value(&value);
@@ -84,7 +84,7 @@ void MachineSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_req
       const auto value = get_parts();
       return rr_request.answer(&value);
     }
-    case 3: {  // function limit
+    case rr_at::limit: {
       State state{};
       rr_request.read(state);
       return async_limit(state, rr_request);

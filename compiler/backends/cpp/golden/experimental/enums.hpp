@@ -33,41 +33,56 @@ enum class Limits : ::std::int32_t {
   highest = 2147483647,
 };
 
-extern const ::rr::Member rr_members_Machine[4];
+/// Where each member is in the table.
+struct rr_at_Machine {
+  enum : ::std::size_t {
+    state,
+    history,
+    parts,
+    limit,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Machine[rr_at_Machine::rr_count];
 extern const ::rr::ObjectType rr_object_Machine;
 
 /// A Machine on another node.
 class MachineStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Machine;
+
  public:
   State get_state(const ::rr::CallOptions& options = {}) {
-    return rr_get<State>(rr_members_Machine[0], options);
+    return rr_get<State>(rr_members_Machine[rr_at::state], options);
   }
   template <class Token>
   auto async_get_state(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<State>(rr_members_Machine[0], options, ::std::forward<Token>(token));
+    return rr_async_get<State>(rr_members_Machine[rr_at::state], options,
+                               ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_state(Token&& token) {
     return async_get_state(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_state(State value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Machine[0], options, &value);
+    rr_set(rr_members_Machine[rr_at::state], options, &value);
   }
   template <class Token>
   auto async_set_state(State value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<State>(rr_members_Machine[0], options, ::std::forward<Token>(token), value);
+    return rr_async_set<State>(rr_members_Machine[rr_at::state], options,
+                               ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_state(State value, Token&& token) {
     return async_set_state(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::std::vector<State>> get_history(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::optional<::std::vector<State>>>(rr_members_Machine[1], options);
+    return rr_get<::std::optional<::std::vector<State>>>(rr_members_Machine[rr_at::history],
+                                                         options);
   }
   template <class Token>
   auto async_get_history(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::optional<::std::vector<State>>>(rr_members_Machine[1], options,
-                                                               ::std::forward<Token>(token));
+    return rr_async_get<::std::optional<::std::vector<State>>>(
+        rr_members_Machine[rr_at::history], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_history(Token&& token) {
@@ -75,13 +90,13 @@ class MachineStub : public virtual ::rr::Stub {
   }
   void set_history(const ::std::optional<::std::vector<State>>& value,
                    const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Machine[1], options, &value);
+    rr_set(rr_members_Machine[rr_at::history], options, &value);
   }
   template <class Token>
   auto async_set_history(const ::std::optional<::std::vector<State>>& value,
                          const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<::std::optional<::std::vector<State>>>(rr_members_Machine[1], options,
-                                                               ::std::forward<Token>(token), value);
+    return rr_async_set<::std::optional<::std::vector<State>>>(
+        rr_members_Machine[rr_at::history], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_history(const ::std::optional<::std::vector<State>>& value, Token&& token) {
@@ -89,13 +104,13 @@ class MachineStub : public virtual ::rr::Stub {
   }
   ::std::optional<::std::map<::std::string, State>> get_parts(
       const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::optional<::std::map<::std::string, State>>>(rr_members_Machine[2],
-                                                                     options);
+    return rr_get<::std::optional<::std::map<::std::string, State>>>(
+        rr_members_Machine[rr_at::parts], options);
   }
   template <class Token>
   auto async_get_parts(const ::rr::CallOptions& options, Token&& token) {
     return rr_async_get<::std::optional<::std::map<::std::string, State>>>(
-        rr_members_Machine[2], options, ::std::forward<Token>(token));
+        rr_members_Machine[rr_at::parts], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_parts(Token&& token) {
@@ -103,13 +118,13 @@ class MachineStub : public virtual ::rr::Stub {
   }
   void set_parts(const ::std::optional<::std::map<::std::string, State>>& value,
                  const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Machine[2], options, &value);
+    rr_set(rr_members_Machine[rr_at::parts], options, &value);
   }
   template <class Token>
   auto async_set_parts(const ::std::optional<::std::map<::std::string, State>>& value,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_set<::std::optional<::std::map<::std::string, State>>>(
-        rr_members_Machine[2], options, ::std::forward<Token>(token), value);
+        rr_members_Machine[rr_at::parts], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_parts(const ::std::optional<::std::map<::std::string, State>>& value,
@@ -117,12 +132,12 @@ class MachineStub : public virtual ::rr::Stub {
     return async_set_parts(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   Limits limit(State state, const ::rr::CallOptions& options = {}) {
-    return rr_call<Limits>(rr_members_Machine[3], options, state);
+    return rr_call<Limits>(rr_members_Machine[rr_at::limit], options, state);
   }
   template <class Token>
   auto async_limit(State state, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_call<Limits>(rr_members_Machine[3], options, ::std::forward<Token>(token),
-                                 state);
+    return rr_async_call<Limits>(rr_members_Machine[rr_at::limit], options,
+                                 ::std::forward<Token>(token), state);
   }
   template <class Token>
   auto async_limit(State state, Token&& token) {
@@ -133,6 +148,8 @@ class MachineStub : public virtual ::rr::Stub {
 
 /// Serves one Machine: derive from it and implement its members.
 class MachineSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Machine;
+
  public:
   virtual State get_state() = 0;
   virtual void set_state(State value) = 0;

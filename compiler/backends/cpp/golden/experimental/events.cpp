@@ -54,7 +54,7 @@ const ::rr::ObjectType& SirenSkeleton::rr_object_type() const { return rr_object
 
 void SirenSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 2: {  // function test
+    case rr_at::test: {
       return async_test(rr_request);
     }
     default:

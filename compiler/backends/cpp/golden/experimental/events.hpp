@@ -24,22 +24,36 @@ struct Alarm {
 };
 extern const ::rr::RecordType rr_type_Alarm;
 
-extern const ::rr::Member rr_members_Siren[3];
+/// Where each member is in the table.
+struct rr_at_Siren {
+  enum : ::std::size_t {
+    tick,
+    raised,
+    test,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Siren[rr_at_Siren::rr_count];
 extern const ::rr::ObjectType rr_object_Siren;
 
 /// A Siren on another node.
 class SirenStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Siren;
+
  public:
-  ::rr::Event<> tick() { return {*this, rr_members_Siren[0]}; }
+  ::rr::Event<> tick() { return {*this, rr_members_Siren[rr_at::tick]}; }
   ::rr::Event<::std::int32_t, ::std::optional<Alarm>, ::rr::Array<double>,
               ::std::optional<::std::vector<::std::string>>>
   raised() {
-    return {*this, rr_members_Siren[1]};
+    return {*this, rr_members_Siren[rr_at::raised]};
   }
-  void test(const ::rr::CallOptions& options = {}) { rr_call<void>(rr_members_Siren[2], options); }
+  void test(const ::rr::CallOptions& options = {}) {
+    rr_call<void>(rr_members_Siren[rr_at::test], options);
+  }
   template <class Token>
   auto async_test(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_call<void>(rr_members_Siren[2], options, ::std::forward<Token>(token));
+    return rr_async_call<void>(rr_members_Siren[rr_at::test], options,
+                               ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_test(Token&& token) {
@@ -50,12 +64,14 @@ class SirenStub : public virtual ::rr::Stub {
 
 /// Serves one Siren: derive from it and implement its members.
 class SirenSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Siren;
+
  public:
-  void tick() const { rr_fire_event(rr_members_Siren[0]); }
+  void tick() const { rr_fire_event(rr_members_Siren[rr_at::tick]); }
   void raised(::std::int32_t level, const ::std::optional<Alarm>& alarm,
               const ::rr::Array<double>& readings,
               const ::std::optional<::std::vector<::std::string>>& places) const {
-    rr_fire_event(rr_members_Siren[1], level, alarm, readings, places);
+    rr_fire_event(rr_members_Siren[rr_at::raised], level, alarm, readings, places);
   }
   virtual void test() = 0;
   virtual void async_test(::rr::Answer<void> answer) {

@@ -33,7 +33,7 @@ const ::rr::ObjectType& PressSkeleton::rr_object_type() const { return rr_object
 
 void PressSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // function close
+    case rr_at::close: {
       return async_close(rr_request);
     }
     default:

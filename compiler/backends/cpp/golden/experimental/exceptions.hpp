@@ -35,16 +35,28 @@ class Overload : public ::rr::Error {
   explicit Overload(const ::rr::Error& error) : ::rr::Error(error) {}
 };
 
-extern const ::rr::Member rr_members_Press[1];
+/// Where each member is in the table.
+struct rr_at_Press {
+  enum : ::std::size_t {
+    close,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Press[rr_at_Press::rr_count];
 extern const ::rr::ObjectType rr_object_Press;
 
 /// A Press on another node.
 class PressStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Press;
+
  public:
-  void close(const ::rr::CallOptions& options = {}) { rr_call<void>(rr_members_Press[0], options); }
+  void close(const ::rr::CallOptions& options = {}) {
+    rr_call<void>(rr_members_Press[rr_at::close], options);
+  }
   template <class Token>
   auto async_close(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_call<void>(rr_members_Press[0], options, ::std::forward<Token>(token));
+    return rr_async_call<void>(rr_members_Press[rr_at::close], options,
+                               ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_close(Token&& token) {
@@ -55,6 +67,8 @@ class PressStub : public virtual ::rr::Stub {
 
 /// Serves one Press: derive from it and implement its members.
 class PressSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Press;
+
  public:
   virtual void close() = 0;
   virtual void async_close(::rr::Answer<void> answer) {

@@ -77,39 +77,39 @@ const ::rr::ObjectType& MachineSkeleton::rr_object_type() const { return rr_obje
 
 void MachineSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // function stop
+    case rr_at::stop: {
       return async_stop(rr_request);
     }
-    case 1: {  // function speed
+    case rr_at::speed: {
       return async_speed(rr_request);
     }
-    case 2: {  // function move_to
+    case rr_at::move_to: {
       double pan = 0;
       double tilt = 0;
       rr_request.read(pan, tilt);
       return async_move_to(pan, tilt, rr_request);
     }
-    case 3: {  // function join
+    case rr_at::join: {
       ::std::string first{};
       ::std::string second{};
       ::std::optional<::std::vector<::std::string>> others{};
       rr_request.read(first, second, others);
       return async_join(first, second, others, rr_request);
     }
-    case 4: {  // function inspect
+    case rr_at::inspect: {
       ::std::optional<Report> previous{};
       ::rr::Array<::std::uint8_t> picture{};
       rr_request.read(previous, picture);
       return async_inspect(previous, picture, rr_request);
     }
-    case 5: {  // function filter
+    case rr_at::filter: {
       ::rr::Array<double> samples{};
       ::std::array<double, 3> weights{};
       bool normalize = false;
       rr_request.read(samples, weights, normalize);
       return async_filter(samples, weights, normalize, rr_request);
     }
-    case 6: {  // function a_function_whose_name_is_rather_long
+    case rr_at::a_function_whose_name_is_rather_long: {
       ::rr::VarValue a_first_parameter_with_a_long_name{};
       ::std::optional<::std::vector<::rr::VarValue>> another_parameter_with_a_long_name{};
       rr_request.read(a_first_parameter_with_a_long_name, another_parameter_with_a_long_name);

@@ -28,41 +28,58 @@ struct Report {
 };
 extern const ::rr::RecordType rr_type_Report;
 
-extern const ::rr::Member rr_members_Machine[7];
+/// Where each member is in the table.
+struct rr_at_Machine {
+  enum : ::std::size_t {
+    stop,
+    speed,
+    move_to,
+    join,
+    inspect,
+    filter,
+    a_function_whose_name_is_rather_long,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Machine[rr_at_Machine::rr_count];
 extern const ::rr::ObjectType rr_object_Machine;
 
 /// A Machine on another node.
 class MachineStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Machine;
+
  public:
   void stop(const ::rr::CallOptions& options = {}) {
-    rr_call<void>(rr_members_Machine[0], options);
+    rr_call<void>(rr_members_Machine[rr_at::stop], options);
   }
   template <class Token>
   auto async_stop(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_call<void>(rr_members_Machine[0], options, ::std::forward<Token>(token));
+    return rr_async_call<void>(rr_members_Machine[rr_at::stop], options,
+                               ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_stop(Token&& token) {
     return async_stop(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double speed(const ::rr::CallOptions& options = {}) {
-    return rr_call<double>(rr_members_Machine[1], options);
+    return rr_call<double>(rr_members_Machine[rr_at::speed], options);
   }
   template <class Token>
   auto async_speed(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_call<double>(rr_members_Machine[1], options, ::std::forward<Token>(token));
+    return rr_async_call<double>(rr_members_Machine[rr_at::speed], options,
+                                 ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_speed(Token&& token) {
     return async_speed(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void move_to(double pan, double tilt, const ::rr::CallOptions& options = {}) {
-    rr_call<void>(rr_members_Machine[2], options, pan, tilt);
+    rr_call<void>(rr_members_Machine[rr_at::move_to], options, pan, tilt);
   }
   template <class Token>
   auto async_move_to(double pan, double tilt, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_call<void>(rr_members_Machine[2], options, ::std::forward<Token>(token), pan,
-                               tilt);
+    return rr_async_call<void>(rr_members_Machine[rr_at::move_to], options,
+                               ::std::forward<Token>(token), pan, tilt);
   }
   template <class Token>
   auto async_move_to(double pan, double tilt, Token&& token) {
@@ -71,13 +88,13 @@ class MachineStub : public virtual ::rr::Stub {
   ::std::string join(const ::std::string& first, const ::std::string& second,
                      const ::std::optional<::std::vector<::std::string>>& others,
                      const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::string>(rr_members_Machine[3], options, first, second, others);
+    return rr_call<::std::string>(rr_members_Machine[rr_at::join], options, first, second, others);
   }
   template <class Token>
   auto async_join(const ::std::string& first, const ::std::string& second,
                   const ::std::optional<::std::vector<::std::string>>& others,
                   const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_call<::std::string>(rr_members_Machine[3], options,
+    return rr_async_call<::std::string>(rr_members_Machine[rr_at::join], options,
                                         ::std::forward<Token>(token), first, second, others);
   }
   template <class Token>
@@ -88,13 +105,14 @@ class MachineStub : public virtual ::rr::Stub {
   ::std::optional<Report> inspect(const ::std::optional<Report>& previous,
                                   const ::rr::Array<::std::uint8_t>& picture,
                                   const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<Report>>(rr_members_Machine[4], options, previous, picture);
+    return rr_call<::std::optional<Report>>(rr_members_Machine[rr_at::inspect], options, previous,
+                                            picture);
   }
   template <class Token>
   auto async_inspect(const ::std::optional<Report>& previous,
                      const ::rr::Array<::std::uint8_t>& picture, const ::rr::CallOptions& options,
                      Token&& token) {
-    return rr_async_call<::std::optional<Report>>(rr_members_Machine[4], options,
+    return rr_async_call<::std::optional<Report>>(rr_members_Machine[rr_at::inspect], options,
                                                   ::std::forward<Token>(token), previous, picture);
   }
   template <class Token>
@@ -105,14 +123,15 @@ class MachineStub : public virtual ::rr::Stub {
   ::rr::Array<double> filter(const ::rr::Array<double>& samples,
                              const ::std::array<double, 3>& weights, bool normalize,
                              const ::rr::CallOptions& options = {}) {
-    return rr_call<::rr::Array<double>>(rr_members_Machine[5], options, samples, weights,
-                                        normalize);
+    return rr_call<::rr::Array<double>>(rr_members_Machine[rr_at::filter], options, samples,
+                                        weights, normalize);
   }
   template <class Token>
   auto async_filter(const ::rr::Array<double>& samples, const ::std::array<double, 3>& weights,
                     bool normalize, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_call<::rr::Array<double>>(
-        rr_members_Machine[5], options, ::std::forward<Token>(token), samples, weights, normalize);
+    return rr_async_call<::rr::Array<double>>(rr_members_Machine[rr_at::filter], options,
+                                              ::std::forward<Token>(token), samples, weights,
+                                              normalize);
   }
   template <class Token>
   auto async_filter(const ::rr::Array<double>& samples, const ::std::array<double, 3>& weights,
@@ -125,8 +144,8 @@ class MachineStub : public virtual ::rr::Stub {
       const ::std::optional<::std::vector<::rr::VarValue>>& another_parameter_with_a_long_name,
       const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(
-        rr_members_Machine[6], options, a_first_parameter_with_a_long_name,
-        another_parameter_with_a_long_name);
+        rr_members_Machine[rr_at::a_function_whose_name_is_rather_long], options,
+        a_first_parameter_with_a_long_name, another_parameter_with_a_long_name);
   }
   template <class Token>
   auto async_a_function_whose_name_is_rather_long(
@@ -134,8 +153,9 @@ class MachineStub : public virtual ::rr::Stub {
       const ::std::optional<::std::vector<::rr::VarValue>>& another_parameter_with_a_long_name,
       const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(
-        rr_members_Machine[6], options, ::std::forward<Token>(token),
-        a_first_parameter_with_a_long_name, another_parameter_with_a_long_name);
+        rr_members_Machine[rr_at::a_function_whose_name_is_rather_long], options,
+        ::std::forward<Token>(token), a_first_parameter_with_a_long_name,
+        another_parameter_with_a_long_name);
   }
   template <class Token>
   auto async_a_function_whose_name_is_rather_long(
@@ -151,6 +171,8 @@ class MachineStub : public virtual ::rr::Stub {
 
 /// Serves one Machine: derive from it and implement its members.
 class MachineSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Machine;
+
  public:
   virtual void stop() = 0;
   virtual void async_stop(::rr::Answer<void> answer) {

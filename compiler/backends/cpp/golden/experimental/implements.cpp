@@ -66,7 +66,7 @@ const ::rr::ObjectType& NamedSkeleton::rr_object_type() const { return rr_object
 
 void NamedSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property name
+    case rr_at::name: {
       const auto value = get_name();
       return rr_request.answer(&value);
     }
@@ -105,11 +105,11 @@ const ::rr::ObjectType& DeviceSkeleton::rr_object_type() const { return rr_objec
 
 void DeviceSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property name
+    case rr_at::name: {
       const auto value = get_name();
       return rr_request.answer(&value);
     }
-    case 2: {  // function reset
+    case rr_at::reset: {
       return async_reset(rr_request);
     }
     default:
@@ -148,11 +148,11 @@ const ::rr::ObjectType& PoweredSkeleton::rr_object_type() const { return rr_obje
 
 void PoweredSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property name
+    case rr_at::name: {
       const auto value = get_name();
       return rr_request.answer(&value);
     }
-    case 2: {  // property on
+    case rr_at::on: {
       if (rr_request.is_set()) {
         bool value = false;
         rr_request.read_value(&value);
@@ -203,21 +203,21 @@ const ::rr::ObjectType& DriveStub::rr_object_type() const { return rr_object_Dri
 
 ::std::shared_ptr<NamedStub> DriveStub::get_part(const ::std::string& index,
                                                  const ::rr::CallOptions& options) {
-  return rr_find_as<NamedStub>(rr_members_Drive[6], options, index);
+  return rr_find_as<NamedStub>(rr_members_Drive[rr_at::part], options, index);
 }
 
 const ::rr::ObjectType& DriveSkeleton::rr_object_type() const { return rr_object_Drive; }
 
 void DriveSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property name
+    case rr_at::name: {
       const auto value = get_name();
       return rr_request.answer(&value);
     }
-    case 2: {  // function reset
+    case rr_at::reset: {
       return async_reset(rr_request);
     }
-    case 3: {  // property on
+    case rr_at::on: {
       if (rr_request.is_set()) {
         bool value = false;
         rr_request.read_value(&value);
@@ -227,7 +227,7 @@ void DriveSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_on();
       return rr_request.answer(&value);
     }
-    case 4: {  // property angle
+    case rr_at::angle: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -237,7 +237,7 @@ void DriveSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_angle();
       return rr_request.answer(&value);
     }
-    case 5: {  // property torque
+    case rr_at::torque: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -255,7 +255,7 @@ void DriveSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
 ::std::shared_ptr<::rr::Skeleton> DriveSkeleton::rr_child(::std::size_t rr_member,
                                                           const ::rr::ObjectIndex& rr_index) {
   switch (rr_member) {
-    case 6:
+    case rr_at::part:
       return get_part(::std::string(rr_index.text));
     default:
       return nullptr;

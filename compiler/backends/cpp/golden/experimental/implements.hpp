@@ -16,32 +16,47 @@ static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace experimental::implements {
 
-extern const ::rr::Member rr_members_Named[2];
+/// Where each member is in the table.
+struct rr_at_Named {
+  enum : ::std::size_t {
+    name,
+    renamed,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Named[rr_at_Named::rr_count];
 extern const ::rr::ObjectType rr_object_Named;
 
 /// A Named on another node.
 class NamedStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Named;
+
  public:
   ::std::string get_name(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::string>(rr_members_Named[0], options);
+    return rr_get<::std::string>(rr_members_Named[rr_at::name], options);
   }
   template <class Token>
   auto async_get_name(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::string>(rr_members_Named[0], options, ::std::forward<Token>(token));
+    return rr_async_get<::std::string>(rr_members_Named[rr_at::name], options,
+                                       ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_name(Token&& token) {
     return async_get_name(::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::Event<::std::string> renamed() { return {*this, rr_members_Named[1]}; }
+  ::rr::Event<::std::string> renamed() { return {*this, rr_members_Named[rr_at::renamed]}; }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
 
 /// Serves one Named: derive from it and implement its members.
 class NamedSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Named;
+
  public:
   virtual ::std::string get_name() = 0;
-  void renamed(const ::std::string& name) const { rr_fire_event(rr_members_Named[1], name); }
+  void renamed(const ::std::string& name) const {
+    rr_fire_event(rr_members_Named[rr_at::renamed], name);
+  }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
   void rr_dispatch(::std::size_t member, ::rr::Request& request) override;
   ::std::shared_ptr<::rr::Skeleton> rr_child(::std::size_t member,
@@ -59,18 +74,30 @@ class NamedDefault : public NamedSkeleton {
   ::rr::Stored<::std::string> rr_value_name;
 };
 
-extern const ::rr::Member rr_members_Device[3];
+/// Where each member is in the table.
+struct rr_at_Device {
+  enum : ::std::size_t {
+    name,
+    renamed,
+    reset,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Device[rr_at_Device::rr_count];
 extern const ::rr::ObjectType rr_object_Device;
 
 /// A Device on another node.
 class DeviceStub : public virtual NamedStub {
+  using rr_at = rr_at_Device;
+
  public:
   void reset(const ::rr::CallOptions& options = {}) {
-    rr_call<void>(rr_members_Device[2], options);
+    rr_call<void>(rr_members_Device[rr_at::reset], options);
   }
   template <class Token>
   auto async_reset(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_call<void>(rr_members_Device[2], options, ::std::forward<Token>(token));
+    return rr_async_call<void>(rr_members_Device[rr_at::reset], options,
+                               ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_reset(Token&& token) {
@@ -81,6 +108,8 @@ class DeviceStub : public virtual NamedStub {
 
 /// Serves one Device: derive from it and implement its members.
 class DeviceSkeleton : public virtual NamedSkeleton {
+  using rr_at = rr_at_Device;
+
  public:
   virtual void reset() = 0;
   virtual void async_reset(::rr::Answer<void> answer) {
@@ -105,29 +134,41 @@ class DeviceDefault : public DeviceSkeleton {
   ::rr::Stored<::std::string> rr_value_name;
 };
 
-extern const ::rr::Member rr_members_Powered[3];
+/// Where each member is in the table.
+struct rr_at_Powered {
+  enum : ::std::size_t {
+    name,
+    renamed,
+    on,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Powered[rr_at_Powered::rr_count];
 extern const ::rr::ObjectType rr_object_Powered;
 
 /// A Powered on another node.
 class PoweredStub : public virtual NamedStub {
+  using rr_at = rr_at_Powered;
+
  public:
   bool get_on(const ::rr::CallOptions& options = {}) {
-    return rr_get<bool>(rr_members_Powered[2], options);
+    return rr_get<bool>(rr_members_Powered[rr_at::on], options);
   }
   template <class Token>
   auto async_get_on(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<bool>(rr_members_Powered[2], options, ::std::forward<Token>(token));
+    return rr_async_get<bool>(rr_members_Powered[rr_at::on], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_on(Token&& token) {
     return async_get_on(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_on(bool value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Powered[2], options, &value);
+    rr_set(rr_members_Powered[rr_at::on], options, &value);
   }
   template <class Token>
   auto async_set_on(bool value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<bool>(rr_members_Powered[2], options, ::std::forward<Token>(token), value);
+    return rr_async_set<bool>(rr_members_Powered[rr_at::on], options, ::std::forward<Token>(token),
+                              value);
   }
   template <class Token>
   auto async_set_on(bool value, Token&& token) {
@@ -138,6 +179,8 @@ class PoweredStub : public virtual NamedStub {
 
 /// Serves one Powered: derive from it and implement its members.
 class PoweredSkeleton : public virtual NamedSkeleton {
+  using rr_at = rr_at_Powered;
+
  public:
   virtual bool get_on() = 0;
   virtual void set_on(bool value) = 0;
@@ -161,7 +204,20 @@ class PoweredDefault : public PoweredSkeleton {
   ::rr::Stored<bool> rr_value_on;
 };
 
-extern const ::rr::Member rr_members_Drive[7];
+/// Where each member is in the table.
+struct rr_at_Drive {
+  enum : ::std::size_t {
+    name,
+    renamed,
+    reset,
+    on,
+    angle,
+    torque,
+    part,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Drive[rr_at_Drive::rr_count];
 extern const ::rr::ObjectType rr_object_Drive;
 
 /// A Drive on another node.
@@ -171,24 +227,28 @@ class DriveStub : public virtual DeviceStub,
                   public virtual PoweredStub,
                   public virtual NamedStub,
                   public virtual ::experimental::objrefs::JointStub {
+  using rr_at = rr_at_Drive;
+
  public:
   double get_torque(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_Drive[5], options);
+    return rr_get<double>(rr_members_Drive[rr_at::torque], options);
   }
   template <class Token>
   auto async_get_torque(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_Drive[5], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_Drive[rr_at::torque], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_torque(Token&& token) {
     return async_get_torque(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_torque(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Drive[5], options, &value);
+    rr_set(rr_members_Drive[rr_at::torque], options, &value);
   }
   template <class Token>
   auto async_set_torque(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_Drive[5], options, ::std::forward<Token>(token), value);
+    return rr_async_set<double>(rr_members_Drive[rr_at::torque], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_torque(double value, Token&& token) {
@@ -198,8 +258,8 @@ class DriveStub : public virtual DeviceStub,
                                         const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_part(const ::std::string& index, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<NamedStub>(rr_members_Drive[6], options, ::std::forward<Token>(token),
-                                    index);
+    return rr_async_find<NamedStub>(rr_members_Drive[rr_at::part], options,
+                                    ::std::forward<Token>(token), index);
   }
   template <class Token>
   auto async_get_part(const ::std::string& index, Token&& token) {
@@ -215,6 +275,8 @@ class DriveSkeleton : public virtual DeviceSkeleton,
                       public virtual PoweredSkeleton,
                       public virtual NamedSkeleton,
                       public virtual ::experimental::objrefs::JointSkeleton {
+  using rr_at = rr_at_Drive;
+
  public:
   virtual double get_torque() = 0;
   virtual void set_torque(double value) = 0;

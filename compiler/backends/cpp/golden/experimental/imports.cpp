@@ -64,7 +64,7 @@ const ::rr::ObjectType& PlannerSkeleton::rr_object_type() const { return rr_obje
 
 void PlannerSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property plan
+    case rr_at::plan: {
       if (rr_request.is_set()) {
         ::std::optional<Plan> value{};
         rr_request.read_value(&value);
@@ -74,7 +74,7 @@ void PlannerSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_req
       const auto value = get_plan();
       return rr_request.answer(&value);
     }
-    case 1: {  // property picture
+    case rr_at::picture: {
       if (rr_request.is_set()) {
         ::rr::Array<::experimental::namedarrays::Pixel> value{};
         rr_request.read_value(&value);
@@ -84,7 +84,7 @@ void PlannerSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_req
       const auto value = get_picture();
       return rr_request.answer(&value);
     }
-    case 2: {  // function solve
+    case rr_at::solve: {
       Pose start{};
       Direction approach{};
       State state{};

@@ -30,18 +30,29 @@ struct Plan {
 };
 extern const ::rr::RecordType rr_type_Plan;
 
-extern const ::rr::Member rr_members_Planner[3];
+/// Where each member is in the table.
+struct rr_at_Planner {
+  enum : ::std::size_t {
+    plan,
+    picture,
+    solve,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Planner[rr_at_Planner::rr_count];
 extern const ::rr::ObjectType rr_object_Planner;
 
 /// A Planner on another node.
 class PlannerStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Planner;
+
  public:
   ::std::optional<Plan> get_plan(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::optional<Plan>>(rr_members_Planner[0], options);
+    return rr_get<::std::optional<Plan>>(rr_members_Planner[rr_at::plan], options);
   }
   template <class Token>
   auto async_get_plan(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::optional<Plan>>(rr_members_Planner[0], options,
+    return rr_async_get<::std::optional<Plan>>(rr_members_Planner[rr_at::plan], options,
                                                ::std::forward<Token>(token));
   }
   template <class Token>
@@ -49,12 +60,12 @@ class PlannerStub : public virtual ::rr::Stub {
     return async_get_plan(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_plan(const ::std::optional<Plan>& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Planner[0], options, &value);
+    rr_set(rr_members_Planner[rr_at::plan], options, &value);
   }
   template <class Token>
   auto async_set_plan(const ::std::optional<Plan>& value, const ::rr::CallOptions& options,
                       Token&& token) {
-    return rr_async_set<::std::optional<Plan>>(rr_members_Planner[0], options,
+    return rr_async_set<::std::optional<Plan>>(rr_members_Planner[rr_at::plan], options,
                                                ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -63,12 +74,13 @@ class PlannerStub : public virtual ::rr::Stub {
   }
   ::rr::Array<::experimental::namedarrays::Pixel> get_picture(
       const ::rr::CallOptions& options = {}) {
-    return rr_get<::rr::Array<::experimental::namedarrays::Pixel>>(rr_members_Planner[1], options);
+    return rr_get<::rr::Array<::experimental::namedarrays::Pixel>>(
+        rr_members_Planner[rr_at::picture], options);
   }
   template <class Token>
   auto async_get_picture(const ::rr::CallOptions& options, Token&& token) {
     return rr_async_get<::rr::Array<::experimental::namedarrays::Pixel>>(
-        rr_members_Planner[1], options, ::std::forward<Token>(token));
+        rr_members_Planner[rr_at::picture], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_picture(Token&& token) {
@@ -76,13 +88,13 @@ class PlannerStub : public virtual ::rr::Stub {
   }
   void set_picture(const ::rr::Array<::experimental::namedarrays::Pixel>& value,
                    const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Planner[1], options, &value);
+    rr_set(rr_members_Planner[rr_at::picture], options, &value);
   }
   template <class Token>
   auto async_set_picture(const ::rr::Array<::experimental::namedarrays::Pixel>& value,
                          const ::rr::CallOptions& options, Token&& token) {
     return rr_async_set<::rr::Array<::experimental::namedarrays::Pixel>>(
-        rr_members_Planner[1], options, ::std::forward<Token>(token), value);
+        rr_members_Planner[rr_at::picture], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_picture(const ::rr::Array<::experimental::namedarrays::Pixel>& value,
@@ -91,12 +103,13 @@ class PlannerStub : public virtual ::rr::Stub {
   }
   ::rr::Array<Pose> solve(const Pose& start, const Direction& approach, State state,
                           const ::rr::CallOptions& options = {}) {
-    return rr_call<::rr::Array<Pose>>(rr_members_Planner[2], options, start, approach, state);
+    return rr_call<::rr::Array<Pose>>(rr_members_Planner[rr_at::solve], options, start, approach,
+                                      state);
   }
   template <class Token>
   auto async_solve(const Pose& start, const Direction& approach, State state,
                    const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_call<::rr::Array<Pose>>(rr_members_Planner[2], options,
+    return rr_async_call<::rr::Array<Pose>>(rr_members_Planner[rr_at::solve], options,
                                             ::std::forward<Token>(token), start, approach, state);
   }
   template <class Token>
@@ -108,6 +121,8 @@ class PlannerStub : public virtual ::rr::Stub {
 
 /// Serves one Planner: derive from it and implement its members.
 class PlannerSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Planner;
+
  public:
   virtual ::std::optional<Plan> get_plan() = 0;
   virtual void set_plan(const ::std::optional<Plan>& value) = 0;

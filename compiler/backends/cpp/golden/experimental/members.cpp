@@ -156,7 +156,7 @@ const ::rr::ObjectType& SensorSkeleton::rr_object_type() const { return rr_objec
 
 void SensorSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 4: {  // function count
+    case rr_at::count: {
       double limit = 0;
       rr_request.read(limit);
       return rr_request.answer(count(limit));
@@ -173,7 +173,7 @@ void SensorSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
 
 ::std::shared_ptr<::rr::MemorySource> SensorSkeleton::rr_memory(::std::size_t rr_member) {
   switch (rr_member) {
-    case 3:
+    case rr_at::buffer:
       return buffer();
     default:
       return nullptr;
@@ -218,32 +218,32 @@ const ::rr::ObjectType& GeneratorsSkeleton::rr_object_type() const { return rr_o
 
 void GeneratorsSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // function count
+    case rr_at::count: {
       double limit = 0;
       rr_request.read(limit);
       return rr_request.answer(count(limit));
     }
-    case 1: {  // function all_frames
+    case rr_at::all_frames: {
       return rr_request.answer(all_frames());
     }
-    case 2: {  // function collect
+    case rr_at::collect: {
       ::std::string label{};
       rr_request.read(label);
       return rr_request.answer(collect(::std::move(label)));
     }
-    case 3: {  // function accept
+    case rr_at::accept: {
       return rr_request.answer(accept());
     }
-    case 4: {  // function running_sum
+    case rr_at::running_sum: {
       double start = 0;
       ::std::string unit{};
       rr_request.read(start, unit);
       return rr_request.answer(running_sum(start, ::std::move(unit)));
     }
-    case 5: {  // function relabel
+    case rr_at::relabel: {
       return rr_request.answer(relabel());
     }
-    case 6: {  // function trace_a_path_between_points
+    case rr_at::trace_a_path_between_points: {
       Vector3 a_first_point_with_a_long_name{};
       ::rr::Array<Vector3> other_points{};
       ::std::optional<::std::vector<Mode>> modes{};
@@ -252,7 +252,7 @@ void GeneratorsSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_
           trace_a_path_between_points(::std::move(a_first_point_with_a_long_name),
                                       ::std::move(other_points), ::std::move(modes)));
     }
-    case 7: {  // function token
+    case rr_at::token: {
       ::rr::VarValue Token{};
       ::std::int32_t limit = 0;
       rr_request.read(Token, limit);
@@ -395,7 +395,7 @@ const ::rr::ObjectType& MemoriesSkeleton::rr_object_type() const { return rr_obj
 
 void MemoriesSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property label
+    case rr_at::label: {
       if (rr_request.is_set()) {
         ::std::string value{};
         rr_request.read_value(&value);
@@ -417,19 +417,19 @@ void MemoriesSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_re
 
 ::std::shared_ptr<::rr::MemorySource> MemoriesSkeleton::rr_memory(::std::size_t rr_member) {
   switch (rr_member) {
-    case 1:
+    case rr_at::m_double:
       return m_double();
-    case 2:
+    case rr_at::m_bool:
       return m_bool();
-    case 3:
+    case rr_at::md_cdouble:
       return md_cdouble();
-    case 4:
+    case rr_at::samples:
       return samples();
-    case 5:
+    case rr_at::sample_grid:
       return sample_grid();
-    case 6:
+    case rr_at::points:
       return points();
-    case 7:
+    case rr_at::point_grid:
       return point_grid();
     default:
       return nullptr;
@@ -475,19 +475,19 @@ constinit const ::rr::ObjectType rr_object_Station{
 const ::rr::ObjectType& StationStub::rr_object_type() const { return rr_object_Station; }
 
 ::std::shared_ptr<GeneratorsStub> StationStub::get_generators(const ::rr::CallOptions& options) {
-  return rr_find_as<GeneratorsStub>(rr_members_Station[15], options);
+  return rr_find_as<GeneratorsStub>(rr_members_Station[rr_at::generators], options);
 }
 
 const ::rr::ObjectType& StationSkeleton::rr_object_type() const { return rr_object_Station; }
 
 void StationSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 4: {  // function count
+    case rr_at::count: {
       double limit = 0;
       rr_request.read(limit);
       return rr_request.answer(count(limit));
     }
-    case 5: {  // property label
+    case rr_at::label: {
       if (rr_request.is_set()) {
         ::std::string value{};
         rr_request.read_value(&value);
@@ -505,7 +505,7 @@ void StationSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_req
 ::std::shared_ptr<::rr::Skeleton> StationSkeleton::rr_child(::std::size_t rr_member,
                                                             const ::rr::ObjectIndex&) {
   switch (rr_member) {
-    case 15:
+    case rr_at::generators:
       return get_generators();
     default:
       return nullptr;
@@ -514,21 +514,21 @@ void StationSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_req
 
 ::std::shared_ptr<::rr::MemorySource> StationSkeleton::rr_memory(::std::size_t rr_member) {
   switch (rr_member) {
-    case 3:
+    case rr_at::buffer:
       return buffer();
-    case 6:
+    case rr_at::m_double:
       return m_double();
-    case 7:
+    case rr_at::m_bool:
       return m_bool();
-    case 8:
+    case rr_at::md_cdouble:
       return md_cdouble();
-    case 9:
+    case rr_at::samples:
       return samples();
-    case 10:
+    case rr_at::sample_grid:
       return sample_grid();
-    case 11:
+    case rr_at::points:
       return points();
-    case 12:
+    case rr_at::point_grid:
       return point_grid();
     default:
       return nullptr;
@@ -561,7 +561,7 @@ const ::rr::ObjectType& ReservedSkeleton::rr_object_type() const { return rr_obj
 
 void ReservedSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 4: {  // function for
+    case rr_at::for_: {
       ::std::int32_t this_one = 0;
       rr_request.read(this_one);
       return rr_request.answer(for_(this_one));
@@ -578,7 +578,7 @@ void ReservedSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_re
 
 ::std::shared_ptr<::rr::MemorySource> ReservedSkeleton::rr_memory(::std::size_t rr_member) {
   switch (rr_member) {
-    case 3:
+    case rr_at::register_:
       return register_();
     default:
       return nullptr;

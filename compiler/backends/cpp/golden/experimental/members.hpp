@@ -44,23 +44,38 @@ struct Frame {
 };
 extern const ::rr::RecordType rr_type_Frame;
 
-extern const ::rr::Member rr_members_Sensor[5];
+/// Where each member is in the table.
+struct rr_at_Sensor {
+  enum : ::std::size_t {
+    frames,
+    ask,
+    force,
+    buffer,
+    count,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Sensor[rr_at_Sensor::rr_count];
 extern const ::rr::ObjectType rr_object_Sensor;
 
 /// A Sensor on another node.
 class SensorStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Sensor;
+
  public:
   /// Each picture when it is taken.
-  ::rr::Pipe<::std::optional<Frame>> frames() { return {*this, rr_members_Sensor[0]}; }
-  ::rr::Callback<::std::int32_t(::std::int32_t)> ask() { return {*this, rr_members_Sensor[1]}; }
-  ::rr::Wire<::std::array<double, 3>> force() { return {*this, rr_members_Sensor[2]}; }
-  ::rr::ArrayMemory<double> buffer() { return {*this, rr_members_Sensor[3]}; }
+  ::rr::Pipe<::std::optional<Frame>> frames() { return {*this, rr_members_Sensor[rr_at::frames]}; }
+  ::rr::Callback<::std::int32_t(::std::int32_t)> ask() {
+    return {*this, rr_members_Sensor[rr_at::ask]};
+  }
+  ::rr::Wire<::std::array<double, 3>> force() { return {*this, rr_members_Sensor[rr_at::force]}; }
+  ::rr::ArrayMemory<double> buffer() { return {*this, rr_members_Sensor[rr_at::buffer]}; }
   ::rr::Generator<double> count(double limit, const ::rr::CallOptions& options = {}) {
-    return rr_generate<double, void>(rr_members_Sensor[4], options, limit);
+    return rr_generate<double, void>(rr_members_Sensor[rr_at::count], options, limit);
   }
   template <class Token>
   auto async_count(double limit, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_generate<double, void>(rr_members_Sensor[4], options,
+    return rr_async_generate<double, void>(rr_members_Sensor[rr_at::count], options,
                                            ::std::forward<Token>(token), limit);
   }
   template <class Token>
@@ -72,24 +87,30 @@ class SensorStub : public virtual ::rr::Stub {
 
 /// Serves one Sensor: derive from it and implement its members.
 class SensorSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Sensor;
+
  public:
   /// Each picture when it is taken.
-  ::rr::PipeServer<::std::optional<Frame>> frames() const { return {*this, rr_members_Sensor[0]}; }
+  ::rr::PipeServer<::std::optional<Frame>> frames() const {
+    return {*this, rr_members_Sensor[rr_at::frames]};
+  }
   ::std::int32_t ask(::std::uint32_t client, ::std::int32_t question,
                      const ::rr::CallOptions& options = {}) const {
-    return rr_call_back<::std::int32_t>(rr_members_Sensor[1], options, client, question);
+    return rr_call_back<::std::int32_t>(rr_members_Sensor[rr_at::ask], options, client, question);
   }
   template <class Token>
   auto async_ask(::std::uint32_t client, ::std::int32_t question, const ::rr::CallOptions& options,
                  Token&& token) const {
-    return rr_async_call_back<::std::int32_t>(rr_members_Sensor[1], options,
+    return rr_async_call_back<::std::int32_t>(rr_members_Sensor[rr_at::ask], options,
                                               ::std::forward<Token>(token), client, question);
   }
   template <class Token>
   auto async_ask(::std::uint32_t client, ::std::int32_t question, Token&& token) const {
     return async_ask(client, question, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::WireServer<::std::array<double, 3>> force() const { return {*this, rr_members_Sensor[2]}; }
+  ::rr::WireServer<::std::array<double, 3>> force() const {
+    return {*this, rr_members_Sensor[rr_at::force]};
+  }
   virtual ::std::shared_ptr<::rr::ArrayMemorySource<double>> buffer() = 0;
   virtual ::rr::Sequence<double> count(double limit) = 0;
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
@@ -110,18 +131,34 @@ class SensorDefault : public SensorSkeleton {
       ::std::make_shared<::rr::StoredArrayMemory<double>>();
 };
 
-extern const ::rr::Member rr_members_Generators[8];
+/// Where each member is in the table.
+struct rr_at_Generators {
+  enum : ::std::size_t {
+    count,
+    all_frames,
+    collect,
+    accept,
+    running_sum,
+    relabel,
+    trace_a_path_between_points,
+    token,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Generators[rr_at_Generators::rr_count];
 extern const ::rr::ObjectType rr_object_Generators;
 
 /// A Generators on another node.
 class GeneratorsStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Generators;
+
  public:
   ::rr::Generator<double> count(double limit, const ::rr::CallOptions& options = {}) {
-    return rr_generate<double, void>(rr_members_Generators[0], options, limit);
+    return rr_generate<double, void>(rr_members_Generators[rr_at::count], options, limit);
   }
   template <class Token>
   auto async_count(double limit, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_generate<double, void>(rr_members_Generators[0], options,
+    return rr_async_generate<double, void>(rr_members_Generators[rr_at::count], options,
                                            ::std::forward<Token>(token), limit);
   }
   template <class Token>
@@ -129,12 +166,13 @@ class GeneratorsStub : public virtual ::rr::Stub {
     return async_count(limit, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::Generator<::std::optional<Frame>> all_frames(const ::rr::CallOptions& options = {}) {
-    return rr_generate<::std::optional<Frame>, void>(rr_members_Generators[1], options);
+    return rr_generate<::std::optional<Frame>, void>(rr_members_Generators[rr_at::all_frames],
+                                                     options);
   }
   template <class Token>
   auto async_all_frames(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_generate<::std::optional<Frame>, void>(rr_members_Generators[1], options,
-                                                           ::std::forward<Token>(token));
+    return rr_async_generate<::std::optional<Frame>, void>(rr_members_Generators[rr_at::all_frames],
+                                                           options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_all_frames(Token&& token) {
@@ -142,24 +180,26 @@ class GeneratorsStub : public virtual ::rr::Stub {
   }
   ::rr::Generator<void, ::std::optional<Frame>> collect(const ::std::string& label,
                                                         const ::rr::CallOptions& options = {}) {
-    return rr_generate<void, ::std::optional<Frame>>(rr_members_Generators[2], options, label);
+    return rr_generate<void, ::std::optional<Frame>>(rr_members_Generators[rr_at::collect], options,
+                                                     label);
   }
   template <class Token>
   auto async_collect(const ::std::string& label, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_generate<void, ::std::optional<Frame>>(rr_members_Generators[2], options,
-                                                           ::std::forward<Token>(token), label);
+    return rr_async_generate<void, ::std::optional<Frame>>(
+        rr_members_Generators[rr_at::collect], options, ::std::forward<Token>(token), label);
   }
   template <class Token>
   auto async_collect(const ::std::string& label, Token&& token) {
     return async_collect(label, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::Generator<void, ::rr::Array<::std::uint8_t>> accept(const ::rr::CallOptions& options = {}) {
-    return rr_generate<void, ::rr::Array<::std::uint8_t>>(rr_members_Generators[3], options);
+    return rr_generate<void, ::rr::Array<::std::uint8_t>>(rr_members_Generators[rr_at::accept],
+                                                          options);
   }
   template <class Token>
   auto async_accept(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_generate<void, ::rr::Array<::std::uint8_t>>(rr_members_Generators[3], options,
-                                                                ::std::forward<Token>(token));
+    return rr_async_generate<void, ::rr::Array<::std::uint8_t>>(
+        rr_members_Generators[rr_at::accept], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_accept(Token&& token) {
@@ -167,12 +207,13 @@ class GeneratorsStub : public virtual ::rr::Stub {
   }
   ::rr::Generator<double, double> running_sum(double start, const ::std::string& unit,
                                               const ::rr::CallOptions& options = {}) {
-    return rr_generate<double, double>(rr_members_Generators[4], options, start, unit);
+    return rr_generate<double, double>(rr_members_Generators[rr_at::running_sum], options, start,
+                                       unit);
   }
   template <class Token>
   auto async_running_sum(double start, const ::std::string& unit, const ::rr::CallOptions& options,
                          Token&& token) {
-    return rr_async_generate<double, double>(rr_members_Generators[4], options,
+    return rr_async_generate<double, double>(rr_members_Generators[rr_at::running_sum], options,
                                              ::std::forward<Token>(token), start, unit);
   }
   template <class Token>
@@ -181,12 +222,13 @@ class GeneratorsStub : public virtual ::rr::Stub {
   }
   ::rr::Generator<::std::string, ::rr::Array<Sample>> relabel(
       const ::rr::CallOptions& options = {}) {
-    return rr_generate<::std::string, ::rr::Array<Sample>>(rr_members_Generators[5], options);
+    return rr_generate<::std::string, ::rr::Array<Sample>>(rr_members_Generators[rr_at::relabel],
+                                                           options);
   }
   template <class Token>
   auto async_relabel(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_generate<::std::string, ::rr::Array<Sample>>(rr_members_Generators[5], options,
-                                                                 ::std::forward<Token>(token));
+    return rr_async_generate<::std::string, ::rr::Array<Sample>>(
+        rr_members_Generators[rr_at::relabel], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_relabel(Token&& token) {
@@ -195,17 +237,17 @@ class GeneratorsStub : public virtual ::rr::Stub {
   ::rr::Generator<Vector3> trace_a_path_between_points(
       const Vector3& a_first_point_with_a_long_name, const ::rr::Array<Vector3>& other_points,
       const ::std::optional<::std::vector<Mode>>& modes, const ::rr::CallOptions& options = {}) {
-    return rr_generate<Vector3, void>(rr_members_Generators[6], options,
-                                      a_first_point_with_a_long_name, other_points, modes);
+    return rr_generate<Vector3, void>(rr_members_Generators[rr_at::trace_a_path_between_points],
+                                      options, a_first_point_with_a_long_name, other_points, modes);
   }
   template <class Token>
   auto async_trace_a_path_between_points(const Vector3& a_first_point_with_a_long_name,
                                          const ::rr::Array<Vector3>& other_points,
                                          const ::std::optional<::std::vector<Mode>>& modes,
                                          const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_generate<Vector3, void>(rr_members_Generators[6], options,
-                                            ::std::forward<Token>(token),
-                                            a_first_point_with_a_long_name, other_points, modes);
+    return rr_async_generate<Vector3, void>(
+        rr_members_Generators[rr_at::trace_a_path_between_points], options,
+        ::std::forward<Token>(token), a_first_point_with_a_long_name, other_points, modes);
   }
   template <class Token>
   auto async_trace_a_path_between_points(const Vector3& a_first_point_with_a_long_name,
@@ -217,12 +259,13 @@ class GeneratorsStub : public virtual ::rr::Stub {
   }
   ::rr::Generator<::rr::VarValue> token(const ::rr::VarValue& Token, ::std::int32_t limit,
                                         const ::rr::CallOptions& options = {}) {
-    return rr_generate<::rr::VarValue, void>(rr_members_Generators[7], options, Token, limit);
+    return rr_generate<::rr::VarValue, void>(rr_members_Generators[rr_at::token], options, Token,
+                                             limit);
   }
   template <class Token_>
   auto async_token(const ::rr::VarValue& Token, ::std::int32_t limit,
                    const ::rr::CallOptions& options, Token_&& token) {
-    return rr_async_generate<::rr::VarValue, void>(rr_members_Generators[7], options,
+    return rr_async_generate<::rr::VarValue, void>(rr_members_Generators[rr_at::token], options,
                                                    ::std::forward<Token_>(token), Token, limit);
   }
   template <class Token_>
@@ -234,6 +277,8 @@ class GeneratorsStub : public virtual ::rr::Stub {
 
 /// Serves one Generators: derive from it and implement its members.
 class GeneratorsSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Generators;
+
  public:
   virtual ::rr::Sequence<double> count(double limit) = 0;
   virtual ::rr::Sequence<::std::optional<Frame>> all_frames() = 0;
@@ -279,55 +324,86 @@ class GeneratorsDefault : public GeneratorsSkeleton {
   }
 };
 
-extern const ::rr::Member rr_members_Pipes[11];
+/// Where each member is in the table.
+struct rr_at_Pipes {
+  enum : ::std::size_t {
+    numbers,
+    bytes_out,
+    text_in,
+    lossy,
+    points,
+    samples,
+    mode,
+    batches,
+    anything,
+    long_ones,
+    a_pipe_whose_name_is_so_long_that_its_line_has_to_be_broken_somewhere,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Pipes[rr_at_Pipes::rr_count];
 extern const ::rr::ObjectType rr_object_Pipes;
 
 /// A Pipes on another node.
 class PipesStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Pipes;
+
  public:
-  ::rr::Pipe<double> numbers() { return {*this, rr_members_Pipes[0]}; }
-  ::rr::Pipe<::rr::Array<::std::uint8_t>> bytes_out() { return {*this, rr_members_Pipes[1]}; }
-  ::rr::Pipe<::std::string> text_in() { return {*this, rr_members_Pipes[2]}; }
-  ::rr::Pipe<::std::int32_t> lossy() { return {*this, rr_members_Pipes[3]}; }
-  ::rr::Pipe<Vector3> points() { return {*this, rr_members_Pipes[4]}; }
-  ::rr::Pipe<::rr::Array<Sample>> samples() { return {*this, rr_members_Pipes[5]}; }
-  ::rr::Pipe<Mode> mode() { return {*this, rr_members_Pipes[6]}; }
+  ::rr::Pipe<double> numbers() { return {*this, rr_members_Pipes[rr_at::numbers]}; }
+  ::rr::Pipe<::rr::Array<::std::uint8_t>> bytes_out() {
+    return {*this, rr_members_Pipes[rr_at::bytes_out]};
+  }
+  ::rr::Pipe<::std::string> text_in() { return {*this, rr_members_Pipes[rr_at::text_in]}; }
+  ::rr::Pipe<::std::int32_t> lossy() { return {*this, rr_members_Pipes[rr_at::lossy]}; }
+  ::rr::Pipe<Vector3> points() { return {*this, rr_members_Pipes[rr_at::points]}; }
+  ::rr::Pipe<::rr::Array<Sample>> samples() { return {*this, rr_members_Pipes[rr_at::samples]}; }
+  ::rr::Pipe<Mode> mode() { return {*this, rr_members_Pipes[rr_at::mode]}; }
   ::rr::Pipe<::std::optional<::std::vector<::std::optional<Frame>>>> batches() {
-    return {*this, rr_members_Pipes[7]};
+    return {*this, rr_members_Pipes[rr_at::batches]};
   }
   ::rr::Pipe<::std::optional<::std::map<::std::string, ::rr::VarValue>>> anything() {
-    return {*this, rr_members_Pipes[8]};
+    return {*this, rr_members_Pipes[rr_at::anything]};
   }
-  ::rr::Pipe<::rr::Array<double>> long_ones() { return {*this, rr_members_Pipes[9]}; }
+  ::rr::Pipe<::rr::Array<double>> long_ones() {
+    return {*this, rr_members_Pipes[rr_at::long_ones]};
+  }
   ::rr::Pipe<::std::optional<::std::map<::std::string, ::rr::MultiArray<Sample>>>>
   a_pipe_whose_name_is_so_long_that_its_line_has_to_be_broken_somewhere() {
-    return {*this, rr_members_Pipes[10]};
+    return {*this, rr_members_Pipes[rr_at::a_pipe_whose_name_is_so_long_that_its_line_has_to_be_broken_somewhere]};
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
 
 /// Serves one Pipes: derive from it and implement its members.
 class PipesSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Pipes;
+
  public:
-  ::rr::PipeServer<double> numbers() const { return {*this, rr_members_Pipes[0]}; }
+  ::rr::PipeServer<double> numbers() const { return {*this, rr_members_Pipes[rr_at::numbers]}; }
   ::rr::PipeServer<::rr::Array<::std::uint8_t>> bytes_out() const {
-    return {*this, rr_members_Pipes[1]};
+    return {*this, rr_members_Pipes[rr_at::bytes_out]};
   }
-  ::rr::PipeServer<::std::string> text_in() const { return {*this, rr_members_Pipes[2]}; }
-  ::rr::PipeServer<::std::int32_t> lossy() const { return {*this, rr_members_Pipes[3]}; }
-  ::rr::PipeServer<Vector3> points() const { return {*this, rr_members_Pipes[4]}; }
-  ::rr::PipeServer<::rr::Array<Sample>> samples() const { return {*this, rr_members_Pipes[5]}; }
-  ::rr::PipeServer<Mode> mode() const { return {*this, rr_members_Pipes[6]}; }
+  ::rr::PipeServer<::std::string> text_in() const {
+    return {*this, rr_members_Pipes[rr_at::text_in]};
+  }
+  ::rr::PipeServer<::std::int32_t> lossy() const { return {*this, rr_members_Pipes[rr_at::lossy]}; }
+  ::rr::PipeServer<Vector3> points() const { return {*this, rr_members_Pipes[rr_at::points]}; }
+  ::rr::PipeServer<::rr::Array<Sample>> samples() const {
+    return {*this, rr_members_Pipes[rr_at::samples]};
+  }
+  ::rr::PipeServer<Mode> mode() const { return {*this, rr_members_Pipes[rr_at::mode]}; }
   ::rr::PipeServer<::std::optional<::std::vector<::std::optional<Frame>>>> batches() const {
-    return {*this, rr_members_Pipes[7]};
+    return {*this, rr_members_Pipes[rr_at::batches]};
   }
   ::rr::PipeServer<::std::optional<::std::map<::std::string, ::rr::VarValue>>> anything() const {
-    return {*this, rr_members_Pipes[8]};
+    return {*this, rr_members_Pipes[rr_at::anything]};
   }
-  ::rr::PipeServer<::rr::Array<double>> long_ones() const { return {*this, rr_members_Pipes[9]}; }
+  ::rr::PipeServer<::rr::Array<double>> long_ones() const {
+    return {*this, rr_members_Pipes[rr_at::long_ones]};
+  }
   ::rr::PipeServer<::std::optional<::std::map<::std::string, ::rr::MultiArray<Sample>>>>
   a_pipe_whose_name_is_so_long_that_its_line_has_to_be_broken_somewhere() const {
-    return {*this, rr_members_Pipes[10]};
+    return {*this, rr_members_Pipes[rr_at::a_pipe_whose_name_is_so_long_that_its_line_has_to_be_broken_somewhere]};
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
   void rr_dispatch(::std::size_t member, ::rr::Request& request) override;
@@ -335,41 +411,56 @@ class PipesSkeleton : public virtual ::rr::Skeleton {
                                              const ::rr::ObjectIndex& index) override;
 };
 
-extern const ::rr::Member rr_members_Callbacks[5];
+/// Where each member is in the table.
+struct rr_at_Callbacks {
+  enum : ::std::size_t {
+    ping,
+    add,
+    measure,
+    hurry,
+    a_callback_whose_name_is_rather_long,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Callbacks[rr_at_Callbacks::rr_count];
 extern const ::rr::ObjectType rr_object_Callbacks;
 
 /// A Callbacks on another node.
 class CallbacksStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Callbacks;
+
  public:
-  ::rr::Callback<void()> ping() { return {*this, rr_members_Callbacks[0]}; }
+  ::rr::Callback<void()> ping() { return {*this, rr_members_Callbacks[rr_at::ping]}; }
   ::rr::Callback<::std::int32_t(::std::int32_t, ::std::int32_t)> add() {
-    return {*this, rr_members_Callbacks[1]};
+    return {*this, rr_members_Callbacks[rr_at::add]};
   }
   ::rr::Callback<::std::optional<Frame>(::std::string, Vector3)> measure() {
-    return {*this, rr_members_Callbacks[2]};
+    return {*this, rr_members_Callbacks[rr_at::measure]};
   }
   ::rr::Callback<double(::rr::Array<Sample>, ::std::optional<::std::vector<::std::int32_t>>)>
   hurry() {
-    return {*this, rr_members_Callbacks[3]};
+    return {*this, rr_members_Callbacks[rr_at::hurry]};
   }
   ::rr::Callback<::std::optional<::std::map<::std::string, ::rr::VarValue>>(
       ::rr::VarValue, ::std::optional<::std::vector<::rr::VarValue>>)>
   a_callback_whose_name_is_rather_long() {
-    return {*this, rr_members_Callbacks[4]};
+    return {*this, rr_members_Callbacks[rr_at::a_callback_whose_name_is_rather_long]};
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
 
 /// Serves one Callbacks: derive from it and implement its members.
 class CallbacksSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Callbacks;
+
  public:
   void ping(::std::uint32_t client, const ::rr::CallOptions& options = {}) const {
-    rr_call_back<void>(rr_members_Callbacks[0], options, client);
+    rr_call_back<void>(rr_members_Callbacks[rr_at::ping], options, client);
   }
   template <class Token>
   auto async_ping(::std::uint32_t client, const ::rr::CallOptions& options, Token&& token) const {
-    return rr_async_call_back<void>(rr_members_Callbacks[0], options, ::std::forward<Token>(token),
-                                    client);
+    return rr_async_call_back<void>(rr_members_Callbacks[rr_at::ping], options,
+                                    ::std::forward<Token>(token), client);
   }
   template <class Token>
   auto async_ping(::std::uint32_t client, Token&& token) const {
@@ -377,12 +468,12 @@ class CallbacksSkeleton : public virtual ::rr::Skeleton {
   }
   ::std::int32_t add(::std::uint32_t client, ::std::int32_t a, ::std::int32_t b,
                      const ::rr::CallOptions& options = {}) const {
-    return rr_call_back<::std::int32_t>(rr_members_Callbacks[1], options, client, a, b);
+    return rr_call_back<::std::int32_t>(rr_members_Callbacks[rr_at::add], options, client, a, b);
   }
   template <class Token>
   auto async_add(::std::uint32_t client, ::std::int32_t a, ::std::int32_t b,
                  const ::rr::CallOptions& options, Token&& token) const {
-    return rr_async_call_back<::std::int32_t>(rr_members_Callbacks[1], options,
+    return rr_async_call_back<::std::int32_t>(rr_members_Callbacks[rr_at::add], options,
                                               ::std::forward<Token>(token), client, a, b);
   }
   template <class Token>
@@ -391,14 +482,15 @@ class CallbacksSkeleton : public virtual ::rr::Skeleton {
   }
   ::std::optional<Frame> measure(::std::uint32_t client, const ::std::string& label,
                                  const Vector3& at, const ::rr::CallOptions& options = {}) const {
-    return rr_call_back<::std::optional<Frame>>(rr_members_Callbacks[2], options, client, label,
-                                                at);
+    return rr_call_back<::std::optional<Frame>>(rr_members_Callbacks[rr_at::measure], options,
+                                                client, label, at);
   }
   template <class Token>
   auto async_measure(::std::uint32_t client, const ::std::string& label, const Vector3& at,
                      const ::rr::CallOptions& options, Token&& token) const {
-    return rr_async_call_back<::std::optional<Frame>>(
-        rr_members_Callbacks[2], options, ::std::forward<Token>(token), client, label, at);
+    return rr_async_call_back<::std::optional<Frame>>(rr_members_Callbacks[rr_at::measure], options,
+                                                      ::std::forward<Token>(token), client, label,
+                                                      at);
   }
   template <class Token>
   auto async_measure(::std::uint32_t client, const ::std::string& label, const Vector3& at,
@@ -408,13 +500,14 @@ class CallbacksSkeleton : public virtual ::rr::Skeleton {
   double hurry(::std::uint32_t client_, const ::rr::Array<Sample>& client,
                const ::std::optional<::std::vector<::std::int32_t>>& token,
                const ::rr::CallOptions& options = {}) const {
-    return rr_call_back<double>(rr_members_Callbacks[3], options, client_, client, token);
+    return rr_call_back<double>(rr_members_Callbacks[rr_at::hurry], options, client_, client,
+                                token);
   }
   template <class Token>
   auto async_hurry(::std::uint32_t client_, const ::rr::Array<Sample>& client,
                    const ::std::optional<::std::vector<::std::int32_t>>& token,
                    const ::rr::CallOptions& options, Token&& token_) const {
-    return rr_async_call_back<double>(rr_members_Callbacks[3], options,
+    return rr_async_call_back<double>(rr_members_Callbacks[rr_at::hurry], options,
                                       ::std::forward<Token>(token_), client_, client, token);
   }
   template <class Token>
@@ -428,8 +521,8 @@ class CallbacksSkeleton : public virtual ::rr::Skeleton {
       const ::std::optional<::std::vector<::rr::VarValue>>& another_parameter_with_a_long_name,
       const ::rr::CallOptions& options = {}) const {
     return rr_call_back<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(
-        rr_members_Callbacks[4], options, client, a_first_parameter_with_a_long_name,
-        another_parameter_with_a_long_name);
+        rr_members_Callbacks[rr_at::a_callback_whose_name_is_rather_long], options, client,
+        a_first_parameter_with_a_long_name, another_parameter_with_a_long_name);
   }
   template <class Token>
   auto async_a_callback_whose_name_is_rather_long(
@@ -437,8 +530,9 @@ class CallbacksSkeleton : public virtual ::rr::Skeleton {
       const ::std::optional<::std::vector<::rr::VarValue>>& another_parameter_with_a_long_name,
       const ::rr::CallOptions& options, Token&& token) const {
     return rr_async_call_back<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(
-        rr_members_Callbacks[4], options, ::std::forward<Token>(token), client,
-        a_first_parameter_with_a_long_name, another_parameter_with_a_long_name);
+        rr_members_Callbacks[rr_at::a_callback_whose_name_is_rather_long], options,
+        ::std::forward<Token>(token), client, a_first_parameter_with_a_long_name,
+        another_parameter_with_a_long_name);
   }
   template <class Token>
   auto async_a_callback_whose_name_is_rather_long(
@@ -455,43 +549,72 @@ class CallbacksSkeleton : public virtual ::rr::Skeleton {
                                              const ::rr::ObjectIndex& index) override;
 };
 
-extern const ::rr::Member rr_members_Wires[9];
+/// Where each member is in the table.
+struct rr_at_Wires {
+  enum : ::std::size_t {
+    level,
+    frame,
+    counts_out,
+    target_in,
+    point,
+    sample,
+    grid,
+    anything,
+    modes,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Wires[rr_at_Wires::rr_count];
 extern const ::rr::ObjectType rr_object_Wires;
 
 /// A Wires on another node.
 class WiresStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Wires;
+
  public:
-  ::rr::Wire<double> level() { return {*this, rr_members_Wires[0]}; }
-  ::rr::Wire<::std::optional<Frame>> frame() { return {*this, rr_members_Wires[1]}; }
-  ::rr::Wire<::rr::Array<::std::int32_t>> counts_out() { return {*this, rr_members_Wires[2]}; }
-  ::rr::Wire<::std::array<double, 3>> target_in() { return {*this, rr_members_Wires[3]}; }
-  ::rr::Wire<Vector3> point() { return {*this, rr_members_Wires[4]}; }
-  ::rr::Wire<Sample> sample() { return {*this, rr_members_Wires[5]}; }
-  ::rr::Wire<::rr::MultiArray<bool>> grid() { return {*this, rr_members_Wires[6]}; }
-  ::rr::Wire<::rr::VarValue> anything() { return {*this, rr_members_Wires[7]}; }
+  ::rr::Wire<double> level() { return {*this, rr_members_Wires[rr_at::level]}; }
+  ::rr::Wire<::std::optional<Frame>> frame() { return {*this, rr_members_Wires[rr_at::frame]}; }
+  ::rr::Wire<::rr::Array<::std::int32_t>> counts_out() {
+    return {*this, rr_members_Wires[rr_at::counts_out]};
+  }
+  ::rr::Wire<::std::array<double, 3>> target_in() {
+    return {*this, rr_members_Wires[rr_at::target_in]};
+  }
+  ::rr::Wire<Vector3> point() { return {*this, rr_members_Wires[rr_at::point]}; }
+  ::rr::Wire<Sample> sample() { return {*this, rr_members_Wires[rr_at::sample]}; }
+  ::rr::Wire<::rr::MultiArray<bool>> grid() { return {*this, rr_members_Wires[rr_at::grid]}; }
+  ::rr::Wire<::rr::VarValue> anything() { return {*this, rr_members_Wires[rr_at::anything]}; }
   ::rr::Wire<::std::optional<::std::map<::std::int32_t, Mode>>> modes() {
-    return {*this, rr_members_Wires[8]};
+    return {*this, rr_members_Wires[rr_at::modes]};
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
 
 /// Serves one Wires: derive from it and implement its members.
 class WiresSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Wires;
+
  public:
-  ::rr::WireServer<double> level() const { return {*this, rr_members_Wires[0]}; }
-  ::rr::WireServer<::std::optional<Frame>> frame() const { return {*this, rr_members_Wires[1]}; }
+  ::rr::WireServer<double> level() const { return {*this, rr_members_Wires[rr_at::level]}; }
+  ::rr::WireServer<::std::optional<Frame>> frame() const {
+    return {*this, rr_members_Wires[rr_at::frame]};
+  }
   ::rr::WireServer<::rr::Array<::std::int32_t>> counts_out() const {
-    return {*this, rr_members_Wires[2]};
+    return {*this, rr_members_Wires[rr_at::counts_out]};
   }
   ::rr::WireServer<::std::array<double, 3>> target_in() const {
-    return {*this, rr_members_Wires[3]};
+    return {*this, rr_members_Wires[rr_at::target_in]};
   }
-  ::rr::WireServer<Vector3> point() const { return {*this, rr_members_Wires[4]}; }
-  ::rr::WireServer<Sample> sample() const { return {*this, rr_members_Wires[5]}; }
-  ::rr::WireServer<::rr::MultiArray<bool>> grid() const { return {*this, rr_members_Wires[6]}; }
-  ::rr::WireServer<::rr::VarValue> anything() const { return {*this, rr_members_Wires[7]}; }
+  ::rr::WireServer<Vector3> point() const { return {*this, rr_members_Wires[rr_at::point]}; }
+  ::rr::WireServer<Sample> sample() const { return {*this, rr_members_Wires[rr_at::sample]}; }
+  ::rr::WireServer<::rr::MultiArray<bool>> grid() const {
+    return {*this, rr_members_Wires[rr_at::grid]};
+  }
+  ::rr::WireServer<::rr::VarValue> anything() const {
+    return {*this, rr_members_Wires[rr_at::anything]};
+  }
   ::rr::WireServer<::std::optional<::std::map<::std::int32_t, Mode>>> modes() const {
-    return {*this, rr_members_Wires[8]};
+    return {*this, rr_members_Wires[rr_at::modes]};
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
   void rr_dispatch(::std::size_t member, ::rr::Request& request) override;
@@ -499,18 +622,34 @@ class WiresSkeleton : public virtual ::rr::Skeleton {
                                              const ::rr::ObjectIndex& index) override;
 };
 
-extern const ::rr::Member rr_members_Memories[8];
+/// Where each member is in the table.
+struct rr_at_Memories {
+  enum : ::std::size_t {
+    label,
+    m_double,
+    m_bool,
+    md_cdouble,
+    samples,
+    sample_grid,
+    points,
+    point_grid,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Memories[rr_at_Memories::rr_count];
 extern const ::rr::ObjectType rr_object_Memories;
 
 /// A Memories on another node.
 class MemoriesStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Memories;
+
  public:
   ::std::string get_label(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::string>(rr_members_Memories[0], options);
+    return rr_get<::std::string>(rr_members_Memories[rr_at::label], options);
   }
   template <class Token>
   auto async_get_label(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::string>(rr_members_Memories[0], options,
+    return rr_async_get<::std::string>(rr_members_Memories[rr_at::label], options,
                                        ::std::forward<Token>(token));
   }
   template <class Token>
@@ -518,30 +657,38 @@ class MemoriesStub : public virtual ::rr::Stub {
     return async_get_label(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_label(const ::std::string& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Memories[0], options, &value);
+    rr_set(rr_members_Memories[rr_at::label], options, &value);
   }
   template <class Token>
   auto async_set_label(const ::std::string& value, const ::rr::CallOptions& options,
                        Token&& token) {
-    return rr_async_set<::std::string>(rr_members_Memories[0], options,
+    return rr_async_set<::std::string>(rr_members_Memories[rr_at::label], options,
                                        ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_label(const ::std::string& value, Token&& token) {
     return async_set_label(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::ArrayMemory<double> m_double() { return {*this, rr_members_Memories[1]}; }
-  ::rr::ArrayMemory<bool> m_bool() { return {*this, rr_members_Memories[2]}; }
-  ::rr::MultiMemory<::std::complex<double>> md_cdouble() { return {*this, rr_members_Memories[3]}; }
-  ::rr::ArrayMemory<Sample> samples() { return {*this, rr_members_Memories[4]}; }
-  ::rr::MultiMemory<Sample> sample_grid() { return {*this, rr_members_Memories[5]}; }
-  ::rr::ArrayMemory<Vector3> points() { return {*this, rr_members_Memories[6]}; }
-  ::rr::MultiMemory<Vector3> point_grid() { return {*this, rr_members_Memories[7]}; }
+  ::rr::ArrayMemory<double> m_double() { return {*this, rr_members_Memories[rr_at::m_double]}; }
+  ::rr::ArrayMemory<bool> m_bool() { return {*this, rr_members_Memories[rr_at::m_bool]}; }
+  ::rr::MultiMemory<::std::complex<double>> md_cdouble() {
+    return {*this, rr_members_Memories[rr_at::md_cdouble]};
+  }
+  ::rr::ArrayMemory<Sample> samples() { return {*this, rr_members_Memories[rr_at::samples]}; }
+  ::rr::MultiMemory<Sample> sample_grid() {
+    return {*this, rr_members_Memories[rr_at::sample_grid]};
+  }
+  ::rr::ArrayMemory<Vector3> points() { return {*this, rr_members_Memories[rr_at::points]}; }
+  ::rr::MultiMemory<Vector3> point_grid() {
+    return {*this, rr_members_Memories[rr_at::point_grid]};
+  }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
 
 /// Serves one Memories: derive from it and implement its members.
 class MemoriesSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Memories;
+
  public:
   virtual ::std::string get_label() = 0;
   virtual void set_label(const ::std::string& value) = 0;
@@ -601,20 +748,44 @@ class MemoriesDefault : public MemoriesSkeleton {
       ::std::make_shared<::rr::StoredMultiMemory<Vector3>>();
 };
 
-extern const ::rr::Member rr_members_Station[16];
+/// Where each member is in the table.
+struct rr_at_Station {
+  enum : ::std::size_t {
+    frames,
+    ask,
+    force,
+    buffer,
+    count,
+    label,
+    m_double,
+    m_bool,
+    md_cdouble,
+    samples,
+    sample_grid,
+    points,
+    point_grid,
+    mode,
+    changed,
+    generators,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Station[rr_at_Station::rr_count];
 extern const ::rr::ObjectType rr_object_Station;
 
 /// A Station on another node.
 ///
 /// Has the members of two others, and some of its own.
 class StationStub : public virtual SensorStub, public virtual MemoriesStub {
+  using rr_at = rr_at_Station;
+
  public:
-  ::rr::Wire<Mode> mode() { return {*this, rr_members_Station[13]}; }
-  ::rr::Event<Mode> changed() { return {*this, rr_members_Station[14]}; }
+  ::rr::Wire<Mode> mode() { return {*this, rr_members_Station[rr_at::mode]}; }
+  ::rr::Event<Mode> changed() { return {*this, rr_members_Station[rr_at::changed]}; }
   ::std::shared_ptr<GeneratorsStub> get_generators(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_generators(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<GeneratorsStub>(rr_members_Station[15], options,
+    return rr_async_find<GeneratorsStub>(rr_members_Station[rr_at::generators], options,
                                          ::std::forward<Token>(token));
   }
   template <class Token>
@@ -628,9 +799,11 @@ class StationStub : public virtual SensorStub, public virtual MemoriesStub {
 ///
 /// Has the members of two others, and some of its own.
 class StationSkeleton : public virtual SensorSkeleton, public virtual MemoriesSkeleton {
+  using rr_at = rr_at_Station;
+
  public:
-  ::rr::WireServer<Mode> mode() const { return {*this, rr_members_Station[13]}; }
-  void changed(Mode mode) const { rr_fire_event(rr_members_Station[14], mode); }
+  ::rr::WireServer<Mode> mode() const { return {*this, rr_members_Station[rr_at::mode]}; }
+  void changed(Mode mode) const { rr_fire_event(rr_members_Station[rr_at::changed], mode); }
   virtual ::std::shared_ptr<GeneratorsSkeleton> get_generators() = 0;
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
   void rr_dispatch(::std::size_t member, ::rr::Request& request) override;
@@ -688,26 +861,42 @@ class StationDefault : public StationSkeleton {
       ::std::make_shared<::rr::StoredMultiMemory<Vector3>>();
 };
 
-extern const ::rr::Member rr_members_Reserved[5];
+/// Where each member is in the table.
+struct rr_at_Reserved {
+  enum : ::std::size_t {
+    new_,
+    delete_,
+    union_,
+    register_,
+    for_,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Reserved[rr_at_Reserved::rr_count];
 extern const ::rr::ObjectType rr_object_Reserved;
 
 /// A Reserved on another node.
 class ReservedStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Reserved;
+
  public:
-  ::rr::Pipe<::std::int32_t> new_() { return {*this, rr_members_Reserved[0]}; }
+  ::rr::Pipe<::std::int32_t> new_() { return {*this, rr_members_Reserved[rr_at::new_]}; }
   ::rr::Callback<::std::int32_t(::std::int32_t)> delete_() {
-    return {*this, rr_members_Reserved[1]};
+    return {*this, rr_members_Reserved[rr_at::delete_]};
   }
-  ::rr::Wire<::std::int32_t> union_() { return {*this, rr_members_Reserved[2]}; }
-  ::rr::ArrayMemory<::std::int32_t> register_() { return {*this, rr_members_Reserved[3]}; }
+  ::rr::Wire<::std::int32_t> union_() { return {*this, rr_members_Reserved[rr_at::union_]}; }
+  ::rr::ArrayMemory<::std::int32_t> register_() {
+    return {*this, rr_members_Reserved[rr_at::register_]};
+  }
   ::rr::Generator<::std::int32_t, ::std::int32_t> for_(::std::int32_t this_one,
                                                        const ::rr::CallOptions& options = {}) {
-    return rr_generate<::std::int32_t, ::std::int32_t>(rr_members_Reserved[4], options, this_one);
+    return rr_generate<::std::int32_t, ::std::int32_t>(rr_members_Reserved[rr_at::for_], options,
+                                                       this_one);
   }
   template <class Token>
   auto async_for_(::std::int32_t this_one, const ::rr::CallOptions& options, Token&& token) {
     return rr_async_generate<::std::int32_t, ::std::int32_t>(
-        rr_members_Reserved[4], options, ::std::forward<Token>(token), this_one);
+        rr_members_Reserved[rr_at::for_], options, ::std::forward<Token>(token), this_one);
   }
   template <class Token>
   auto async_for_(::std::int32_t this_one, Token&& token) {
@@ -718,23 +907,30 @@ class ReservedStub : public virtual ::rr::Stub {
 
 /// Serves one Reserved: derive from it and implement its members.
 class ReservedSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Reserved;
+
  public:
-  ::rr::PipeServer<::std::int32_t> new_() const { return {*this, rr_members_Reserved[0]}; }
+  ::rr::PipeServer<::std::int32_t> new_() const {
+    return {*this, rr_members_Reserved[rr_at::new_]};
+  }
   ::std::int32_t delete_(::std::uint32_t client, ::std::int32_t class_,
                          const ::rr::CallOptions& options = {}) const {
-    return rr_call_back<::std::int32_t>(rr_members_Reserved[1], options, client, class_);
+    return rr_call_back<::std::int32_t>(rr_members_Reserved[rr_at::delete_], options, client,
+                                        class_);
   }
   template <class Token>
   auto async_delete_(::std::uint32_t client, ::std::int32_t class_,
                      const ::rr::CallOptions& options, Token&& token) const {
-    return rr_async_call_back<::std::int32_t>(rr_members_Reserved[1], options,
+    return rr_async_call_back<::std::int32_t>(rr_members_Reserved[rr_at::delete_], options,
                                               ::std::forward<Token>(token), client, class_);
   }
   template <class Token>
   auto async_delete_(::std::uint32_t client, ::std::int32_t class_, Token&& token) const {
     return async_delete_(client, class_, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::WireServer<::std::int32_t> union_() const { return {*this, rr_members_Reserved[2]}; }
+  ::rr::WireServer<::std::int32_t> union_() const {
+    return {*this, rr_members_Reserved[rr_at::union_]};
+  }
   virtual ::std::shared_ptr<::rr::ArrayMemorySource<::std::int32_t>> register_() = 0;
   virtual ::rr::Sequence<::std::int32_t, ::std::int32_t> for_(::std::int32_t this_one) = 0;
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;

@@ -76,7 +76,7 @@ const ::rr::ObjectType& ArmSkeleton::rr_object_type() const { return rr_object_A
 
 void ArmSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property pose
+    case rr_at::pose: {
       if (rr_request.is_set()) {
         Pose value{};
         rr_request.read_value(&value);
@@ -86,7 +86,7 @@ void ArmSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request
       const auto value = get_pose();
       return rr_request.answer(&value);
     }
-    case 1: {  // property path
+    case rr_at::path: {
       if (rr_request.is_set()) {
         ::rr::Array<Pose> value{};
         rr_request.read_value(&value);
@@ -96,7 +96,7 @@ void ArmSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request
       const auto value = get_path();
       return rr_request.answer(&value);
     }
-    case 2: {  // property corners
+    case rr_at::corners: {
       if (rr_request.is_set()) {
         ::std::array<Vector3, 2> value{};
         rr_request.read_value(&value);
@@ -106,7 +106,7 @@ void ArmSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request
       const auto value = get_corners();
       return rr_request.answer(&value);
     }
-    case 3: {  // property contacts
+    case rr_at::contacts: {
       if (rr_request.is_set()) {
         ::rr::BoundedArray<Vector3, 4> value{};
         rr_request.read_value(&value);
@@ -116,7 +116,7 @@ void ArmSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request
       const auto value = get_contacts();
       return rr_request.answer(&value);
     }
-    case 4: {  // property picture
+    case rr_at::picture: {
       if (rr_request.is_set()) {
         ::rr::MultiArray<Pixel> value{};
         rr_request.read_value(&value);
@@ -126,7 +126,7 @@ void ArmSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request
       const auto value = get_picture();
       return rr_request.answer(&value);
     }
-    case 5: {  // property thumbnail
+    case rr_at::thumbnail: {
       if (rr_request.is_set()) {
         ::rr::FixedMultiArray<Pixel, 2, 2> value{};
         rr_request.read_value(&value);
@@ -136,7 +136,7 @@ void ArmSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request
       const auto value = get_thumbnail();
       return rr_request.answer(&value);
     }
-    case 6: {  // property places
+    case rr_at::places: {
       if (rr_request.is_set()) {
         ::std::optional<::std::map<::std::string, Pose>> value{};
         rr_request.read_value(&value);
@@ -146,7 +146,7 @@ void ArmSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request
       const auto value = get_places();
       return rr_request.answer(&value);
     }
-    case 7: {  // function cross
+    case rr_at::cross: {
       Vector3 a{};
       Vector3 b{};
       rr_request.read(a, b);

@@ -54,40 +54,57 @@ struct Pixel {
 };
 extern const ::rr::RecordType rr_type_Pixel;
 
-extern const ::rr::Member rr_members_Arm[8];
+/// Where each member is in the table.
+struct rr_at_Arm {
+  enum : ::std::size_t {
+    pose,
+    path,
+    corners,
+    contacts,
+    picture,
+    thumbnail,
+    places,
+    cross,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Arm[rr_at_Arm::rr_count];
 extern const ::rr::ObjectType rr_object_Arm;
 
 /// A Arm on another node.
 class ArmStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Arm;
+
  public:
   Pose get_pose(const ::rr::CallOptions& options = {}) {
-    return rr_get<Pose>(rr_members_Arm[0], options);
+    return rr_get<Pose>(rr_members_Arm[rr_at::pose], options);
   }
   template <class Token>
   auto async_get_pose(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<Pose>(rr_members_Arm[0], options, ::std::forward<Token>(token));
+    return rr_async_get<Pose>(rr_members_Arm[rr_at::pose], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_pose(Token&& token) {
     return async_get_pose(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_pose(const Pose& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Arm[0], options, &value);
+    rr_set(rr_members_Arm[rr_at::pose], options, &value);
   }
   template <class Token>
   auto async_set_pose(const Pose& value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<Pose>(rr_members_Arm[0], options, ::std::forward<Token>(token), value);
+    return rr_async_set<Pose>(rr_members_Arm[rr_at::pose], options, ::std::forward<Token>(token),
+                              value);
   }
   template <class Token>
   auto async_set_pose(const Pose& value, Token&& token) {
     return async_set_pose(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::Array<Pose> get_path(const ::rr::CallOptions& options = {}) {
-    return rr_get<::rr::Array<Pose>>(rr_members_Arm[1], options);
+    return rr_get<::rr::Array<Pose>>(rr_members_Arm[rr_at::path], options);
   }
   template <class Token>
   auto async_get_path(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::rr::Array<Pose>>(rr_members_Arm[1], options,
+    return rr_async_get<::rr::Array<Pose>>(rr_members_Arm[rr_at::path], options,
                                            ::std::forward<Token>(token));
   }
   template <class Token>
@@ -95,24 +112,24 @@ class ArmStub : public virtual ::rr::Stub {
     return async_get_path(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_path(const ::rr::Array<Pose>& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Arm[1], options, &value);
+    rr_set(rr_members_Arm[rr_at::path], options, &value);
   }
   template <class Token>
   auto async_set_path(const ::rr::Array<Pose>& value, const ::rr::CallOptions& options,
                       Token&& token) {
-    return rr_async_set<::rr::Array<Pose>>(rr_members_Arm[1], options, ::std::forward<Token>(token),
-                                           value);
+    return rr_async_set<::rr::Array<Pose>>(rr_members_Arm[rr_at::path], options,
+                                           ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_path(const ::rr::Array<Pose>& value, Token&& token) {
     return async_set_path(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::array<Vector3, 2> get_corners(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::array<Vector3, 2>>(rr_members_Arm[2], options);
+    return rr_get<::std::array<Vector3, 2>>(rr_members_Arm[rr_at::corners], options);
   }
   template <class Token>
   auto async_get_corners(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::array<Vector3, 2>>(rr_members_Arm[2], options,
+    return rr_async_get<::std::array<Vector3, 2>>(rr_members_Arm[rr_at::corners], options,
                                                   ::std::forward<Token>(token));
   }
   template <class Token>
@@ -120,12 +137,12 @@ class ArmStub : public virtual ::rr::Stub {
     return async_get_corners(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_corners(const ::std::array<Vector3, 2>& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Arm[2], options, &value);
+    rr_set(rr_members_Arm[rr_at::corners], options, &value);
   }
   template <class Token>
   auto async_set_corners(const ::std::array<Vector3, 2>& value, const ::rr::CallOptions& options,
                          Token&& token) {
-    return rr_async_set<::std::array<Vector3, 2>>(rr_members_Arm[2], options,
+    return rr_async_set<::std::array<Vector3, 2>>(rr_members_Arm[rr_at::corners], options,
                                                   ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -133,11 +150,11 @@ class ArmStub : public virtual ::rr::Stub {
     return async_set_corners(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::BoundedArray<Vector3, 4> get_contacts(const ::rr::CallOptions& options = {}) {
-    return rr_get<::rr::BoundedArray<Vector3, 4>>(rr_members_Arm[3], options);
+    return rr_get<::rr::BoundedArray<Vector3, 4>>(rr_members_Arm[rr_at::contacts], options);
   }
   template <class Token>
   auto async_get_contacts(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::rr::BoundedArray<Vector3, 4>>(rr_members_Arm[3], options,
+    return rr_async_get<::rr::BoundedArray<Vector3, 4>>(rr_members_Arm[rr_at::contacts], options,
                                                         ::std::forward<Token>(token));
   }
   template <class Token>
@@ -146,12 +163,12 @@ class ArmStub : public virtual ::rr::Stub {
   }
   void set_contacts(const ::rr::BoundedArray<Vector3, 4>& value,
                     const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Arm[3], options, &value);
+    rr_set(rr_members_Arm[rr_at::contacts], options, &value);
   }
   template <class Token>
   auto async_set_contacts(const ::rr::BoundedArray<Vector3, 4>& value,
                           const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<::rr::BoundedArray<Vector3, 4>>(rr_members_Arm[3], options,
+    return rr_async_set<::rr::BoundedArray<Vector3, 4>>(rr_members_Arm[rr_at::contacts], options,
                                                         ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -159,11 +176,11 @@ class ArmStub : public virtual ::rr::Stub {
     return async_set_contacts(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::MultiArray<Pixel> get_picture(const ::rr::CallOptions& options = {}) {
-    return rr_get<::rr::MultiArray<Pixel>>(rr_members_Arm[4], options);
+    return rr_get<::rr::MultiArray<Pixel>>(rr_members_Arm[rr_at::picture], options);
   }
   template <class Token>
   auto async_get_picture(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::rr::MultiArray<Pixel>>(rr_members_Arm[4], options,
+    return rr_async_get<::rr::MultiArray<Pixel>>(rr_members_Arm[rr_at::picture], options,
                                                  ::std::forward<Token>(token));
   }
   template <class Token>
@@ -171,12 +188,12 @@ class ArmStub : public virtual ::rr::Stub {
     return async_get_picture(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_picture(const ::rr::MultiArray<Pixel>& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Arm[4], options, &value);
+    rr_set(rr_members_Arm[rr_at::picture], options, &value);
   }
   template <class Token>
   auto async_set_picture(const ::rr::MultiArray<Pixel>& value, const ::rr::CallOptions& options,
                          Token&& token) {
-    return rr_async_set<::rr::MultiArray<Pixel>>(rr_members_Arm[4], options,
+    return rr_async_set<::rr::MultiArray<Pixel>>(rr_members_Arm[rr_at::picture], options,
                                                  ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -184,12 +201,12 @@ class ArmStub : public virtual ::rr::Stub {
     return async_set_picture(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::FixedMultiArray<Pixel, 2, 2> get_thumbnail(const ::rr::CallOptions& options = {}) {
-    return rr_get<::rr::FixedMultiArray<Pixel, 2, 2>>(rr_members_Arm[5], options);
+    return rr_get<::rr::FixedMultiArray<Pixel, 2, 2>>(rr_members_Arm[rr_at::thumbnail], options);
   }
   template <class Token>
   auto async_get_thumbnail(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::rr::FixedMultiArray<Pixel, 2, 2>>(rr_members_Arm[5], options,
-                                                            ::std::forward<Token>(token));
+    return rr_async_get<::rr::FixedMultiArray<Pixel, 2, 2>>(rr_members_Arm[rr_at::thumbnail],
+                                                            options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_thumbnail(Token&& token) {
@@ -197,13 +214,13 @@ class ArmStub : public virtual ::rr::Stub {
   }
   void set_thumbnail(const ::rr::FixedMultiArray<Pixel, 2, 2>& value,
                      const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Arm[5], options, &value);
+    rr_set(rr_members_Arm[rr_at::thumbnail], options, &value);
   }
   template <class Token>
   auto async_set_thumbnail(const ::rr::FixedMultiArray<Pixel, 2, 2>& value,
                            const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<::rr::FixedMultiArray<Pixel, 2, 2>>(rr_members_Arm[5], options,
-                                                            ::std::forward<Token>(token), value);
+    return rr_async_set<::rr::FixedMultiArray<Pixel, 2, 2>>(
+        rr_members_Arm[rr_at::thumbnail], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_thumbnail(const ::rr::FixedMultiArray<Pixel, 2, 2>& value, Token&& token) {
@@ -211,12 +228,13 @@ class ArmStub : public virtual ::rr::Stub {
   }
   ::std::optional<::std::map<::std::string, Pose>> get_places(
       const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::optional<::std::map<::std::string, Pose>>>(rr_members_Arm[6], options);
+    return rr_get<::std::optional<::std::map<::std::string, Pose>>>(rr_members_Arm[rr_at::places],
+                                                                    options);
   }
   template <class Token>
   auto async_get_places(const ::rr::CallOptions& options, Token&& token) {
     return rr_async_get<::std::optional<::std::map<::std::string, Pose>>>(
-        rr_members_Arm[6], options, ::std::forward<Token>(token));
+        rr_members_Arm[rr_at::places], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_places(Token&& token) {
@@ -224,13 +242,13 @@ class ArmStub : public virtual ::rr::Stub {
   }
   void set_places(const ::std::optional<::std::map<::std::string, Pose>>& value,
                   const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Arm[6], options, &value);
+    rr_set(rr_members_Arm[rr_at::places], options, &value);
   }
   template <class Token>
   auto async_set_places(const ::std::optional<::std::map<::std::string, Pose>>& value,
                         const ::rr::CallOptions& options, Token&& token) {
     return rr_async_set<::std::optional<::std::map<::std::string, Pose>>>(
-        rr_members_Arm[6], options, ::std::forward<Token>(token), value);
+        rr_members_Arm[rr_at::places], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_places(const ::std::optional<::std::map<::std::string, Pose>>& value,
@@ -238,12 +256,13 @@ class ArmStub : public virtual ::rr::Stub {
     return async_set_places(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   Vector3 cross(const Vector3& a, const Vector3& b, const ::rr::CallOptions& options = {}) {
-    return rr_call<Vector3>(rr_members_Arm[7], options, a, b);
+    return rr_call<Vector3>(rr_members_Arm[rr_at::cross], options, a, b);
   }
   template <class Token>
   auto async_cross(const Vector3& a, const Vector3& b, const ::rr::CallOptions& options,
                    Token&& token) {
-    return rr_async_call<Vector3>(rr_members_Arm[7], options, ::std::forward<Token>(token), a, b);
+    return rr_async_call<Vector3>(rr_members_Arm[rr_at::cross], options,
+                                  ::std::forward<Token>(token), a, b);
   }
   template <class Token>
   auto async_cross(const Vector3& a, const Vector3& b, Token&& token) {
@@ -254,6 +273,8 @@ class ArmStub : public virtual ::rr::Stub {
 
 /// Serves one Arm: derive from it and implement its members.
 class ArmSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Arm;
+
  public:
   virtual Pose get_pose() = 0;
   virtual void set_pose(const Pose& value) = 0;

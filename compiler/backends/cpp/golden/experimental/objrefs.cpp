@@ -38,7 +38,7 @@ const ::rr::ObjectType& JointSkeleton::rr_object_type() const { return rr_object
 
 void JointSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property angle
+    case rr_at::angle: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -76,31 +76,31 @@ constinit const ::rr::ObjectType rr_object_Robot{
 const ::rr::ObjectType& RobotStub::rr_object_type() const { return rr_object_Robot; }
 
 ::std::shared_ptr<JointStub> RobotStub::get_base(const ::rr::CallOptions& options) {
-  return rr_find_as<JointStub>(rr_members_Robot[0], options);
+  return rr_find_as<JointStub>(rr_members_Robot[rr_at::base], options);
 }
 
 ::std::shared_ptr<JointStub> RobotStub::get_joint(::std::int32_t index,
                                                   const ::rr::CallOptions& options) {
-  return rr_find_as<JointStub>(rr_members_Robot[1], options, index);
+  return rr_find_as<JointStub>(rr_members_Robot[rr_at::joint], options, index);
 }
 
 ::std::shared_ptr<JointStub> RobotStub::get_joint_by_number(::std::int32_t index,
                                                             const ::rr::CallOptions& options) {
-  return rr_find_as<JointStub>(rr_members_Robot[2], options, index);
+  return rr_find_as<JointStub>(rr_members_Robot[rr_at::joint_by_number], options, index);
 }
 
 ::std::shared_ptr<JointStub> RobotStub::get_joint_by_name(const ::std::string& index,
                                                           const ::rr::CallOptions& options) {
-  return rr_find_as<JointStub>(rr_members_Robot[3], options, index);
+  return rr_find_as<JointStub>(rr_members_Robot[rr_at::joint_by_name], options, index);
 }
 
 ::std::shared_ptr<::rr::Stub> RobotStub::get_tool(const ::rr::CallOptions& options) {
-  return rr_find(rr_members_Robot[4], options);
+  return rr_find(rr_members_Robot[rr_at::tool], options);
 }
 
 ::std::shared_ptr<::rr::Stub> RobotStub::get_tools(const ::std::string& index,
                                                    const ::rr::CallOptions& options) {
-  return rr_find(rr_members_Robot[5], options, index);
+  return rr_find(rr_members_Robot[rr_at::tools], options, index);
 }
 
 const ::rr::ObjectType& RobotSkeleton::rr_object_type() const { return rr_object_Robot; }
@@ -110,17 +110,17 @@ void RobotSkeleton::rr_dispatch(::std::size_t, ::rr::Request&) {}
 ::std::shared_ptr<::rr::Skeleton> RobotSkeleton::rr_child(::std::size_t rr_member,
                                                           const ::rr::ObjectIndex& rr_index) {
   switch (rr_member) {
-    case 0:
+    case rr_at::base:
       return get_base();
-    case 1:
+    case rr_at::joint:
       return get_joint(rr_index.number);
-    case 2:
+    case rr_at::joint_by_number:
       return get_joint_by_number(rr_index.number);
-    case 3:
+    case rr_at::joint_by_name:
       return get_joint_by_name(::std::string(rr_index.text));
-    case 4:
+    case rr_at::tool:
       return get_tool();
-    case 5:
+    case rr_at::tools:
       return get_tools(::std::string(rr_index.text));
     default:
       return nullptr;

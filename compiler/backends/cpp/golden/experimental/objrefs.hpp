@@ -15,29 +15,40 @@ static_assert(::rr::stub_api == 3, "made for stub API 3; run robdef again");
 
 namespace experimental::objrefs {
 
-extern const ::rr::Member rr_members_Joint[1];
+/// Where each member is in the table.
+struct rr_at_Joint {
+  enum : ::std::size_t {
+    angle,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Joint[rr_at_Joint::rr_count];
 extern const ::rr::ObjectType rr_object_Joint;
 
 /// A Joint on another node.
 class JointStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Joint;
+
  public:
   double get_angle(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_Joint[0], options);
+    return rr_get<double>(rr_members_Joint[rr_at::angle], options);
   }
   template <class Token>
   auto async_get_angle(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_Joint[0], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_Joint[rr_at::angle], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_angle(Token&& token) {
     return async_get_angle(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_angle(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Joint[0], options, &value);
+    rr_set(rr_members_Joint[rr_at::angle], options, &value);
   }
   template <class Token>
   auto async_set_angle(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_Joint[0], options, ::std::forward<Token>(token), value);
+    return rr_async_set<double>(rr_members_Joint[rr_at::angle], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_angle(double value, Token&& token) {
@@ -48,6 +59,8 @@ class JointStub : public virtual ::rr::Stub {
 
 /// Serves one Joint: derive from it and implement its members.
 class JointSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Joint;
+
  public:
   virtual double get_angle() = 0;
   virtual void set_angle(double value) = 0;
@@ -68,16 +81,31 @@ class JointDefault : public JointSkeleton {
   ::rr::Stored<double> rr_value_angle;
 };
 
-extern const ::rr::Member rr_members_Robot[6];
+/// Where each member is in the table.
+struct rr_at_Robot {
+  enum : ::std::size_t {
+    base,
+    joint,
+    joint_by_number,
+    joint_by_name,
+    tool,
+    tools,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Robot[rr_at_Robot::rr_count];
 extern const ::rr::ObjectType rr_object_Robot;
 
 /// A Robot on another node.
 class RobotStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Robot;
+
  public:
   ::std::shared_ptr<JointStub> get_base(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_base(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<JointStub>(rr_members_Robot[0], options, ::std::forward<Token>(token));
+    return rr_async_find<JointStub>(rr_members_Robot[rr_at::base], options,
+                                    ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_base(Token&& token) {
@@ -87,8 +115,8 @@ class RobotStub : public virtual ::rr::Stub {
                                          const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_joint(::std::int32_t index, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<JointStub>(rr_members_Robot[1], options, ::std::forward<Token>(token),
-                                    index);
+    return rr_async_find<JointStub>(rr_members_Robot[rr_at::joint], options,
+                                    ::std::forward<Token>(token), index);
   }
   template <class Token>
   auto async_get_joint(::std::int32_t index, Token&& token) {
@@ -99,8 +127,8 @@ class RobotStub : public virtual ::rr::Stub {
   template <class Token>
   auto async_get_joint_by_number(::std::int32_t index, const ::rr::CallOptions& options,
                                  Token&& token) {
-    return rr_async_find<JointStub>(rr_members_Robot[2], options, ::std::forward<Token>(token),
-                                    index);
+    return rr_async_find<JointStub>(rr_members_Robot[rr_at::joint_by_number], options,
+                                    ::std::forward<Token>(token), index);
   }
   template <class Token>
   auto async_get_joint_by_number(::std::int32_t index, Token&& token) {
@@ -111,8 +139,8 @@ class RobotStub : public virtual ::rr::Stub {
   template <class Token>
   auto async_get_joint_by_name(const ::std::string& index, const ::rr::CallOptions& options,
                                Token&& token) {
-    return rr_async_find<JointStub>(rr_members_Robot[3], options, ::std::forward<Token>(token),
-                                    index);
+    return rr_async_find<JointStub>(rr_members_Robot[rr_at::joint_by_name], options,
+                                    ::std::forward<Token>(token), index);
   }
   template <class Token>
   auto async_get_joint_by_name(const ::std::string& index, Token&& token) {
@@ -121,7 +149,8 @@ class RobotStub : public virtual ::rr::Stub {
   ::std::shared_ptr<::rr::Stub> get_tool(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_tool(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<::rr::Stub>(rr_members_Robot[4], options, ::std::forward<Token>(token));
+    return rr_async_find<::rr::Stub>(rr_members_Robot[rr_at::tool], options,
+                                     ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_tool(Token&& token) {
@@ -132,8 +161,8 @@ class RobotStub : public virtual ::rr::Stub {
   template <class Token>
   auto async_get_tools(const ::std::string& index, const ::rr::CallOptions& options,
                        Token&& token) {
-    return rr_async_find<::rr::Stub>(rr_members_Robot[5], options, ::std::forward<Token>(token),
-                                     index);
+    return rr_async_find<::rr::Stub>(rr_members_Robot[rr_at::tools], options,
+                                     ::std::forward<Token>(token), index);
   }
   template <class Token>
   auto async_get_tools(const ::std::string& index, Token&& token) {
@@ -144,6 +173,8 @@ class RobotStub : public virtual ::rr::Stub {
 
 /// Serves one Robot: derive from it and implement its members.
 class RobotSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Robot;
+
  public:
   virtual ::std::shared_ptr<JointSkeleton> get_base() = 0;
   virtual ::std::shared_ptr<JointSkeleton> get_joint(::std::int32_t index) = 0;

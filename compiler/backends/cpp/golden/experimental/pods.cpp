@@ -91,7 +91,7 @@ const ::rr::ObjectType& RecorderSkeleton::rr_object_type() const { return rr_obj
 
 void RecorderSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property last
+    case rr_at::last: {
       if (rr_request.is_set()) {
         Sample value{};
         rr_request.read_value(&value);
@@ -101,7 +101,7 @@ void RecorderSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_re
       const auto value = get_last();
       return rr_request.answer(&value);
     }
-    case 1: {  // property history
+    case rr_at::history: {
       if (rr_request.is_set()) {
         ::rr::Array<Sample> value{};
         rr_request.read_value(&value);
@@ -111,7 +111,7 @@ void RecorderSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_re
       const auto value = get_history();
       return rr_request.answer(&value);
     }
-    case 2: {  // property bursts
+    case rr_at::bursts: {
       if (rr_request.is_set()) {
         ::std::array<Burst, 2> value{};
         rr_request.read_value(&value);
@@ -121,7 +121,7 @@ void RecorderSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_re
       const auto value = get_bursts();
       return rr_request.answer(&value);
     }
-    case 3: {  // property matrix
+    case rr_at::matrix: {
       if (rr_request.is_set()) {
         ::rr::MultiArray<Sample> value{};
         rr_request.read_value(&value);
@@ -131,7 +131,7 @@ void RecorderSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_re
       const auto value = get_matrix();
       return rr_request.answer(&value);
     }
-    case 4: {  // property marked
+    case rr_at::marked: {
       if (rr_request.is_set()) {
         ::std::optional<::std::vector<Sample>> value{};
         rr_request.read_value(&value);
@@ -141,7 +141,7 @@ void RecorderSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_re
       const auto value = get_marked();
       return rr_request.answer(&value);
     }
-    case 5: {  // function record
+    case rr_at::record: {
       Sample from{};
       ::rr::Array<Sample> until{};
       rr_request.read(from, until);

@@ -49,41 +49,56 @@ struct Burst {
 };
 extern const ::rr::RecordType rr_type_Burst;
 
-extern const ::rr::Member rr_members_Recorder[6];
+/// Where each member is in the table.
+struct rr_at_Recorder {
+  enum : ::std::size_t {
+    last,
+    history,
+    bursts,
+    matrix,
+    marked,
+    record,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Recorder[rr_at_Recorder::rr_count];
 extern const ::rr::ObjectType rr_object_Recorder;
 
 /// A Recorder on another node.
 class RecorderStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Recorder;
+
  public:
   Sample get_last(const ::rr::CallOptions& options = {}) {
-    return rr_get<Sample>(rr_members_Recorder[0], options);
+    return rr_get<Sample>(rr_members_Recorder[rr_at::last], options);
   }
   template <class Token>
   auto async_get_last(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<Sample>(rr_members_Recorder[0], options, ::std::forward<Token>(token));
+    return rr_async_get<Sample>(rr_members_Recorder[rr_at::last], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_last(Token&& token) {
     return async_get_last(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_last(const Sample& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Recorder[0], options, &value);
+    rr_set(rr_members_Recorder[rr_at::last], options, &value);
   }
   template <class Token>
   auto async_set_last(const Sample& value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<Sample>(rr_members_Recorder[0], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<Sample>(rr_members_Recorder[rr_at::last], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_last(const Sample& value, Token&& token) {
     return async_set_last(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::Array<Sample> get_history(const ::rr::CallOptions& options = {}) {
-    return rr_get<::rr::Array<Sample>>(rr_members_Recorder[1], options);
+    return rr_get<::rr::Array<Sample>>(rr_members_Recorder[rr_at::history], options);
   }
   template <class Token>
   auto async_get_history(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::rr::Array<Sample>>(rr_members_Recorder[1], options,
+    return rr_async_get<::rr::Array<Sample>>(rr_members_Recorder[rr_at::history], options,
                                              ::std::forward<Token>(token));
   }
   template <class Token>
@@ -91,12 +106,12 @@ class RecorderStub : public virtual ::rr::Stub {
     return async_get_history(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_history(const ::rr::Array<Sample>& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Recorder[1], options, &value);
+    rr_set(rr_members_Recorder[rr_at::history], options, &value);
   }
   template <class Token>
   auto async_set_history(const ::rr::Array<Sample>& value, const ::rr::CallOptions& options,
                          Token&& token) {
-    return rr_async_set<::rr::Array<Sample>>(rr_members_Recorder[1], options,
+    return rr_async_set<::rr::Array<Sample>>(rr_members_Recorder[rr_at::history], options,
                                              ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -104,11 +119,11 @@ class RecorderStub : public virtual ::rr::Stub {
     return async_set_history(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::array<Burst, 2> get_bursts(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::array<Burst, 2>>(rr_members_Recorder[2], options);
+    return rr_get<::std::array<Burst, 2>>(rr_members_Recorder[rr_at::bursts], options);
   }
   template <class Token>
   auto async_get_bursts(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::array<Burst, 2>>(rr_members_Recorder[2], options,
+    return rr_async_get<::std::array<Burst, 2>>(rr_members_Recorder[rr_at::bursts], options,
                                                 ::std::forward<Token>(token));
   }
   template <class Token>
@@ -116,12 +131,12 @@ class RecorderStub : public virtual ::rr::Stub {
     return async_get_bursts(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_bursts(const ::std::array<Burst, 2>& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Recorder[2], options, &value);
+    rr_set(rr_members_Recorder[rr_at::bursts], options, &value);
   }
   template <class Token>
   auto async_set_bursts(const ::std::array<Burst, 2>& value, const ::rr::CallOptions& options,
                         Token&& token) {
-    return rr_async_set<::std::array<Burst, 2>>(rr_members_Recorder[2], options,
+    return rr_async_set<::std::array<Burst, 2>>(rr_members_Recorder[rr_at::bursts], options,
                                                 ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -129,11 +144,11 @@ class RecorderStub : public virtual ::rr::Stub {
     return async_set_bursts(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::MultiArray<Sample> get_matrix(const ::rr::CallOptions& options = {}) {
-    return rr_get<::rr::MultiArray<Sample>>(rr_members_Recorder[3], options);
+    return rr_get<::rr::MultiArray<Sample>>(rr_members_Recorder[rr_at::matrix], options);
   }
   template <class Token>
   auto async_get_matrix(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::rr::MultiArray<Sample>>(rr_members_Recorder[3], options,
+    return rr_async_get<::rr::MultiArray<Sample>>(rr_members_Recorder[rr_at::matrix], options,
                                                   ::std::forward<Token>(token));
   }
   template <class Token>
@@ -141,12 +156,12 @@ class RecorderStub : public virtual ::rr::Stub {
     return async_get_matrix(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_matrix(const ::rr::MultiArray<Sample>& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Recorder[3], options, &value);
+    rr_set(rr_members_Recorder[rr_at::matrix], options, &value);
   }
   template <class Token>
   auto async_set_matrix(const ::rr::MultiArray<Sample>& value, const ::rr::CallOptions& options,
                         Token&& token) {
-    return rr_async_set<::rr::MultiArray<Sample>>(rr_members_Recorder[3], options,
+    return rr_async_set<::rr::MultiArray<Sample>>(rr_members_Recorder[rr_at::matrix], options,
                                                   ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -154,12 +169,13 @@ class RecorderStub : public virtual ::rr::Stub {
     return async_set_matrix(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::std::vector<Sample>> get_marked(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::optional<::std::vector<Sample>>>(rr_members_Recorder[4], options);
+    return rr_get<::std::optional<::std::vector<Sample>>>(rr_members_Recorder[rr_at::marked],
+                                                          options);
   }
   template <class Token>
   auto async_get_marked(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::optional<::std::vector<Sample>>>(rr_members_Recorder[4], options,
-                                                                ::std::forward<Token>(token));
+    return rr_async_get<::std::optional<::std::vector<Sample>>>(
+        rr_members_Recorder[rr_at::marked], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_marked(Token&& token) {
@@ -167,13 +183,13 @@ class RecorderStub : public virtual ::rr::Stub {
   }
   void set_marked(const ::std::optional<::std::vector<Sample>>& value,
                   const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Recorder[4], options, &value);
+    rr_set(rr_members_Recorder[rr_at::marked], options, &value);
   }
   template <class Token>
   auto async_set_marked(const ::std::optional<::std::vector<Sample>>& value,
                         const ::rr::CallOptions& options, Token&& token) {
     return rr_async_set<::std::optional<::std::vector<Sample>>>(
-        rr_members_Recorder[4], options, ::std::forward<Token>(token), value);
+        rr_members_Recorder[rr_at::marked], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_marked(const ::std::optional<::std::vector<Sample>>& value, Token&& token) {
@@ -181,13 +197,13 @@ class RecorderStub : public virtual ::rr::Stub {
   }
   Burst record(const Sample& from, const ::rr::Array<Sample>& until,
                const ::rr::CallOptions& options = {}) {
-    return rr_call<Burst>(rr_members_Recorder[5], options, from, until);
+    return rr_call<Burst>(rr_members_Recorder[rr_at::record], options, from, until);
   }
   template <class Token>
   auto async_record(const Sample& from, const ::rr::Array<Sample>& until,
                     const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_call<Burst>(rr_members_Recorder[5], options, ::std::forward<Token>(token), from,
-                                until);
+    return rr_async_call<Burst>(rr_members_Recorder[rr_at::record], options,
+                                ::std::forward<Token>(token), from, until);
   }
   template <class Token>
   auto async_record(const Sample& from, const ::rr::Array<Sample>& until, Token&& token) {
@@ -198,6 +214,8 @@ class RecorderStub : public virtual ::rr::Stub {
 
 /// Serves one Recorder: derive from it and implement its members.
 class RecorderSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Recorder;
+
  public:
   virtual Sample get_last() = 0;
   virtual void set_last(const Sample& value) = 0;

@@ -75,7 +75,7 @@ const ::rr::ObjectType& BoardSkeleton::rr_object_type() const { return rr_object
 
 void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property gain
+    case rr_at::gain: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -85,7 +85,7 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_gain();
       return rr_request.answer(&value);
     }
-    case 1: {  // property enabled
+    case rr_at::enabled: {
       if (rr_request.is_set()) {
         bool value = false;
         rr_request.read_value(&value);
@@ -95,7 +95,7 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_enabled();
       return rr_request.answer(&value);
     }
-    case 2: {  // property label
+    case rr_at::label: {
       if (rr_request.is_set()) {
         ::std::string value{};
         rr_request.read_value(&value);
@@ -105,7 +105,7 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_label();
       return rr_request.answer(&value);
     }
-    case 3: {  // property response
+    case rr_at::response: {
       if (rr_request.is_set()) {
         ::std::complex<double> value{};
         rr_request.read_value(&value);
@@ -115,7 +115,7 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_response();
       return rr_request.answer(&value);
     }
-    case 4: {  // property mode
+    case rr_at::mode: {
       if (rr_request.is_set()) {
         Mode value{};
         rr_request.read_value(&value);
@@ -125,7 +125,7 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_mode();
       return rr_request.answer(&value);
     }
-    case 5: {  // property samples
+    case rr_at::samples: {
       if (rr_request.is_set()) {
         ::rr::Array<double> value{};
         rr_request.read_value(&value);
@@ -135,7 +135,7 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_samples();
       return rr_request.answer(&value);
     }
-    case 6: {  // property address
+    case rr_at::address: {
       if (rr_request.is_set()) {
         ::std::array<::std::uint8_t, 4> value{};
         rr_request.read_value(&value);
@@ -145,7 +145,7 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_address();
       return rr_request.answer(&value);
     }
-    case 7: {  // property steps
+    case rr_at::steps: {
       if (rr_request.is_set()) {
         ::rr::BoundedArray<::std::int16_t, 8> value{};
         rr_request.read_value(&value);
@@ -155,7 +155,7 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_steps();
       return rr_request.answer(&value);
     }
-    case 8: {  // property image
+    case rr_at::image: {
       if (rr_request.is_set()) {
         ::rr::MultiArray<float> value{};
         rr_request.read_value(&value);
@@ -165,7 +165,7 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_image();
       return rr_request.answer(&value);
     }
-    case 9: {  // property rotation
+    case rr_at::rotation: {
       if (rr_request.is_set()) {
         ::rr::FixedMultiArray<double, 3, 3> value{};
         rr_request.read_value(&value);
@@ -175,7 +175,7 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_rotation();
       return rr_request.answer(&value);
     }
-    case 10: {  // property names
+    case rr_at::names: {
       if (rr_request.is_set()) {
         ::std::optional<::std::vector<::std::string>> value{};
         rr_request.read_value(&value);
@@ -185,7 +185,7 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_names();
       return rr_request.answer(&value);
     }
-    case 11: {  // property by_number
+    case rr_at::by_number: {
       if (rr_request.is_set()) {
         ::std::optional<::std::map<::std::int32_t, double>> value{};
         rr_request.read_value(&value);
@@ -195,7 +195,7 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_by_number();
       return rr_request.answer(&value);
     }
-    case 12: {  // property by_name
+    case rr_at::by_name: {
       if (rr_request.is_set()) {
         ::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>> value{};
         rr_request.read_value(&value);
@@ -205,7 +205,7 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_by_name();
       return rr_request.answer(&value);
     }
-    case 13: {  // property anything
+    case rr_at::anything: {
       if (rr_request.is_set()) {
         ::rr::VarValue value{};
         rr_request.read_value(&value);
@@ -215,7 +215,7 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_anything();
       return rr_request.answer(&value);
     }
-    case 14: {  // property settings
+    case rr_at::settings: {
       if (rr_request.is_set()) {
         ::std::optional<::std::map<::std::string, ::rr::VarValue>> value{};
         rr_request.read_value(&value);
@@ -225,17 +225,17 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_settings();
       return rr_request.answer(&value);
     }
-    case 15: {  // property serial_number
+    case rr_at::serial_number: {
       const auto value = get_serial_number();
       return rr_request.answer(&value);
     }
-    case 16: {  // property password
+    case rr_at::password: {
       ::std::string value{};
       rr_request.read_value(&value);
       set_password(value);
       return rr_request.answer(nullptr);
     }
-    case 17: {  // property shared
+    case rr_at::shared: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -245,7 +245,7 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_shared();
       return rr_request.answer(&value);
     }
-    case 18: {  // property page
+    case rr_at::page: {
       if (rr_request.is_set()) {
         ::std::int32_t value = 0;
         rr_request.read_value(&value);
@@ -255,7 +255,7 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_page();
       return rr_request.answer(&value);
     }
-    case 19: {  // property notes
+    case rr_at::notes: {
       if (rr_request.is_set()) {
         ::std::optional<::std::vector<::std::string>> value{};
         rr_request.read_value(&value);
@@ -265,7 +265,7 @@ void BoardSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reque
       const auto value = get_notes();
       return rr_request.answer(&value);
     }
-    case 20: {  // property view
+    case rr_at::view: {
       const auto value = get_view();
       return rr_request.answer(&value);
     }

@@ -27,86 +27,120 @@ enum class Mode : ::std::int32_t {
   running = 1,
 };
 
-extern const ::rr::Member rr_members_Board[21];
+/// Where each member is in the table.
+struct rr_at_Board {
+  enum : ::std::size_t {
+    gain,
+    enabled,
+    label,
+    response,
+    mode,
+    samples,
+    address,
+    steps,
+    image,
+    rotation,
+    names,
+    by_number,
+    by_name,
+    anything,
+    settings,
+    serial_number,
+    password,
+    shared,
+    page,
+    notes,
+    view,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Board[rr_at_Board::rr_count];
 extern const ::rr::ObjectType rr_object_Board;
 
 /// A Board on another node.
 class BoardStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Board;
+
  public:
   double get_gain(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_Board[0], options);
+    return rr_get<double>(rr_members_Board[rr_at::gain], options);
   }
   template <class Token>
   auto async_get_gain(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_Board[0], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_Board[rr_at::gain], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_gain(Token&& token) {
     return async_get_gain(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_gain(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[0], options, &value);
+    rr_set(rr_members_Board[rr_at::gain], options, &value);
   }
   template <class Token>
   auto async_set_gain(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_Board[0], options, ::std::forward<Token>(token), value);
+    return rr_async_set<double>(rr_members_Board[rr_at::gain], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_gain(double value, Token&& token) {
     return async_set_gain(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   bool get_enabled(const ::rr::CallOptions& options = {}) {
-    return rr_get<bool>(rr_members_Board[1], options);
+    return rr_get<bool>(rr_members_Board[rr_at::enabled], options);
   }
   template <class Token>
   auto async_get_enabled(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<bool>(rr_members_Board[1], options, ::std::forward<Token>(token));
+    return rr_async_get<bool>(rr_members_Board[rr_at::enabled], options,
+                              ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_enabled(Token&& token) {
     return async_get_enabled(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_enabled(bool value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[1], options, &value);
+    rr_set(rr_members_Board[rr_at::enabled], options, &value);
   }
   template <class Token>
   auto async_set_enabled(bool value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<bool>(rr_members_Board[1], options, ::std::forward<Token>(token), value);
+    return rr_async_set<bool>(rr_members_Board[rr_at::enabled], options,
+                              ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_enabled(bool value, Token&& token) {
     return async_set_enabled(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::string get_label(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::string>(rr_members_Board[2], options);
+    return rr_get<::std::string>(rr_members_Board[rr_at::label], options);
   }
   template <class Token>
   auto async_get_label(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::string>(rr_members_Board[2], options, ::std::forward<Token>(token));
+    return rr_async_get<::std::string>(rr_members_Board[rr_at::label], options,
+                                       ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_label(Token&& token) {
     return async_get_label(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_label(const ::std::string& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[2], options, &value);
+    rr_set(rr_members_Board[rr_at::label], options, &value);
   }
   template <class Token>
   auto async_set_label(const ::std::string& value, const ::rr::CallOptions& options,
                        Token&& token) {
-    return rr_async_set<::std::string>(rr_members_Board[2], options, ::std::forward<Token>(token),
-                                       value);
+    return rr_async_set<::std::string>(rr_members_Board[rr_at::label], options,
+                                       ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_label(const ::std::string& value, Token&& token) {
     return async_set_label(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::complex<double> get_response(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::complex<double>>(rr_members_Board[3], options);
+    return rr_get<::std::complex<double>>(rr_members_Board[rr_at::response], options);
   }
   template <class Token>
   auto async_get_response(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::complex<double>>(rr_members_Board[3], options,
+    return rr_async_get<::std::complex<double>>(rr_members_Board[rr_at::response], options,
                                                 ::std::forward<Token>(token));
   }
   template <class Token>
@@ -114,12 +148,12 @@ class BoardStub : public virtual ::rr::Stub {
     return async_get_response(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_response(::std::complex<double> value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[3], options, &value);
+    rr_set(rr_members_Board[rr_at::response], options, &value);
   }
   template <class Token>
   auto async_set_response(::std::complex<double> value, const ::rr::CallOptions& options,
                           Token&& token) {
-    return rr_async_set<::std::complex<double>>(rr_members_Board[3], options,
+    return rr_async_set<::std::complex<double>>(rr_members_Board[rr_at::response], options,
                                                 ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -127,33 +161,34 @@ class BoardStub : public virtual ::rr::Stub {
     return async_set_response(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   Mode get_mode(const ::rr::CallOptions& options = {}) {
-    return rr_get<Mode>(rr_members_Board[4], options);
+    return rr_get<Mode>(rr_members_Board[rr_at::mode], options);
   }
   template <class Token>
   auto async_get_mode(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<Mode>(rr_members_Board[4], options, ::std::forward<Token>(token));
+    return rr_async_get<Mode>(rr_members_Board[rr_at::mode], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_mode(Token&& token) {
     return async_get_mode(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_mode(Mode value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[4], options, &value);
+    rr_set(rr_members_Board[rr_at::mode], options, &value);
   }
   template <class Token>
   auto async_set_mode(Mode value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<Mode>(rr_members_Board[4], options, ::std::forward<Token>(token), value);
+    return rr_async_set<Mode>(rr_members_Board[rr_at::mode], options, ::std::forward<Token>(token),
+                              value);
   }
   template <class Token>
   auto async_set_mode(Mode value, Token&& token) {
     return async_set_mode(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::Array<double> get_samples(const ::rr::CallOptions& options = {}) {
-    return rr_get<::rr::Array<double>>(rr_members_Board[5], options);
+    return rr_get<::rr::Array<double>>(rr_members_Board[rr_at::samples], options);
   }
   template <class Token>
   auto async_get_samples(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::rr::Array<double>>(rr_members_Board[5], options,
+    return rr_async_get<::rr::Array<double>>(rr_members_Board[rr_at::samples], options,
                                              ::std::forward<Token>(token));
   }
   template <class Token>
@@ -161,12 +196,12 @@ class BoardStub : public virtual ::rr::Stub {
     return async_get_samples(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_samples(const ::rr::Array<double>& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[5], options, &value);
+    rr_set(rr_members_Board[rr_at::samples], options, &value);
   }
   template <class Token>
   auto async_set_samples(const ::rr::Array<double>& value, const ::rr::CallOptions& options,
                          Token&& token) {
-    return rr_async_set<::rr::Array<double>>(rr_members_Board[5], options,
+    return rr_async_set<::rr::Array<double>>(rr_members_Board[rr_at::samples], options,
                                              ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -174,11 +209,11 @@ class BoardStub : public virtual ::rr::Stub {
     return async_set_samples(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::array<::std::uint8_t, 4> get_address(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::array<::std::uint8_t, 4>>(rr_members_Board[6], options);
+    return rr_get<::std::array<::std::uint8_t, 4>>(rr_members_Board[rr_at::address], options);
   }
   template <class Token>
   auto async_get_address(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::array<::std::uint8_t, 4>>(rr_members_Board[6], options,
+    return rr_async_get<::std::array<::std::uint8_t, 4>>(rr_members_Board[rr_at::address], options,
                                                          ::std::forward<Token>(token));
   }
   template <class Token>
@@ -187,12 +222,12 @@ class BoardStub : public virtual ::rr::Stub {
   }
   void set_address(const ::std::array<::std::uint8_t, 4>& value,
                    const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[6], options, &value);
+    rr_set(rr_members_Board[rr_at::address], options, &value);
   }
   template <class Token>
   auto async_set_address(const ::std::array<::std::uint8_t, 4>& value,
                          const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<::std::array<::std::uint8_t, 4>>(rr_members_Board[6], options,
+    return rr_async_set<::std::array<::std::uint8_t, 4>>(rr_members_Board[rr_at::address], options,
                                                          ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -200,12 +235,12 @@ class BoardStub : public virtual ::rr::Stub {
     return async_set_address(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::BoundedArray<::std::int16_t, 8> get_steps(const ::rr::CallOptions& options = {}) {
-    return rr_get<::rr::BoundedArray<::std::int16_t, 8>>(rr_members_Board[7], options);
+    return rr_get<::rr::BoundedArray<::std::int16_t, 8>>(rr_members_Board[rr_at::steps], options);
   }
   template <class Token>
   auto async_get_steps(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::rr::BoundedArray<::std::int16_t, 8>>(rr_members_Board[7], options,
-                                                               ::std::forward<Token>(token));
+    return rr_async_get<::rr::BoundedArray<::std::int16_t, 8>>(
+        rr_members_Board[rr_at::steps], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_steps(Token&& token) {
@@ -213,24 +248,24 @@ class BoardStub : public virtual ::rr::Stub {
   }
   void set_steps(const ::rr::BoundedArray<::std::int16_t, 8>& value,
                  const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[7], options, &value);
+    rr_set(rr_members_Board[rr_at::steps], options, &value);
   }
   template <class Token>
   auto async_set_steps(const ::rr::BoundedArray<::std::int16_t, 8>& value,
                        const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<::rr::BoundedArray<::std::int16_t, 8>>(rr_members_Board[7], options,
-                                                               ::std::forward<Token>(token), value);
+    return rr_async_set<::rr::BoundedArray<::std::int16_t, 8>>(
+        rr_members_Board[rr_at::steps], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_steps(const ::rr::BoundedArray<::std::int16_t, 8>& value, Token&& token) {
     return async_set_steps(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::MultiArray<float> get_image(const ::rr::CallOptions& options = {}) {
-    return rr_get<::rr::MultiArray<float>>(rr_members_Board[8], options);
+    return rr_get<::rr::MultiArray<float>>(rr_members_Board[rr_at::image], options);
   }
   template <class Token>
   auto async_get_image(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::rr::MultiArray<float>>(rr_members_Board[8], options,
+    return rr_async_get<::rr::MultiArray<float>>(rr_members_Board[rr_at::image], options,
                                                  ::std::forward<Token>(token));
   }
   template <class Token>
@@ -238,12 +273,12 @@ class BoardStub : public virtual ::rr::Stub {
     return async_get_image(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_image(const ::rr::MultiArray<float>& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[8], options, &value);
+    rr_set(rr_members_Board[rr_at::image], options, &value);
   }
   template <class Token>
   auto async_set_image(const ::rr::MultiArray<float>& value, const ::rr::CallOptions& options,
                        Token&& token) {
-    return rr_async_set<::rr::MultiArray<float>>(rr_members_Board[8], options,
+    return rr_async_set<::rr::MultiArray<float>>(rr_members_Board[rr_at::image], options,
                                                  ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -251,12 +286,12 @@ class BoardStub : public virtual ::rr::Stub {
     return async_set_image(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::FixedMultiArray<double, 3, 3> get_rotation(const ::rr::CallOptions& options = {}) {
-    return rr_get<::rr::FixedMultiArray<double, 3, 3>>(rr_members_Board[9], options);
+    return rr_get<::rr::FixedMultiArray<double, 3, 3>>(rr_members_Board[rr_at::rotation], options);
   }
   template <class Token>
   auto async_get_rotation(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::rr::FixedMultiArray<double, 3, 3>>(rr_members_Board[9], options,
-                                                             ::std::forward<Token>(token));
+    return rr_async_get<::rr::FixedMultiArray<double, 3, 3>>(rr_members_Board[rr_at::rotation],
+                                                             options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_rotation(Token&& token) {
@@ -264,25 +299,26 @@ class BoardStub : public virtual ::rr::Stub {
   }
   void set_rotation(const ::rr::FixedMultiArray<double, 3, 3>& value,
                     const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[9], options, &value);
+    rr_set(rr_members_Board[rr_at::rotation], options, &value);
   }
   template <class Token>
   auto async_set_rotation(const ::rr::FixedMultiArray<double, 3, 3>& value,
                           const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<::rr::FixedMultiArray<double, 3, 3>>(rr_members_Board[9], options,
-                                                             ::std::forward<Token>(token), value);
+    return rr_async_set<::rr::FixedMultiArray<double, 3, 3>>(
+        rr_members_Board[rr_at::rotation], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_rotation(const ::rr::FixedMultiArray<double, 3, 3>& value, Token&& token) {
     return async_set_rotation(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::std::vector<::std::string>> get_names(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::optional<::std::vector<::std::string>>>(rr_members_Board[10], options);
+    return rr_get<::std::optional<::std::vector<::std::string>>>(rr_members_Board[rr_at::names],
+                                                                 options);
   }
   template <class Token>
   auto async_get_names(const ::rr::CallOptions& options, Token&& token) {
     return rr_async_get<::std::optional<::std::vector<::std::string>>>(
-        rr_members_Board[10], options, ::std::forward<Token>(token));
+        rr_members_Board[rr_at::names], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_names(Token&& token) {
@@ -290,13 +326,13 @@ class BoardStub : public virtual ::rr::Stub {
   }
   void set_names(const ::std::optional<::std::vector<::std::string>>& value,
                  const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[10], options, &value);
+    rr_set(rr_members_Board[rr_at::names], options, &value);
   }
   template <class Token>
   auto async_set_names(const ::std::optional<::std::vector<::std::string>>& value,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_set<::std::optional<::std::vector<::std::string>>>(
-        rr_members_Board[10], options, ::std::forward<Token>(token), value);
+        rr_members_Board[rr_at::names], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_names(const ::std::optional<::std::vector<::std::string>>& value, Token&& token) {
@@ -304,13 +340,13 @@ class BoardStub : public virtual ::rr::Stub {
   }
   ::std::optional<::std::map<::std::int32_t, double>> get_by_number(
       const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::optional<::std::map<::std::int32_t, double>>>(rr_members_Board[11],
-                                                                       options);
+    return rr_get<::std::optional<::std::map<::std::int32_t, double>>>(
+        rr_members_Board[rr_at::by_number], options);
   }
   template <class Token>
   auto async_get_by_number(const ::rr::CallOptions& options, Token&& token) {
     return rr_async_get<::std::optional<::std::map<::std::int32_t, double>>>(
-        rr_members_Board[11], options, ::std::forward<Token>(token));
+        rr_members_Board[rr_at::by_number], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_by_number(Token&& token) {
@@ -318,13 +354,13 @@ class BoardStub : public virtual ::rr::Stub {
   }
   void set_by_number(const ::std::optional<::std::map<::std::int32_t, double>>& value,
                      const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[11], options, &value);
+    rr_set(rr_members_Board[rr_at::by_number], options, &value);
   }
   template <class Token>
   auto async_set_by_number(const ::std::optional<::std::map<::std::int32_t, double>>& value,
                            const ::rr::CallOptions& options, Token&& token) {
     return rr_async_set<::std::optional<::std::map<::std::int32_t, double>>>(
-        rr_members_Board[11], options, ::std::forward<Token>(token), value);
+        rr_members_Board[rr_at::by_number], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_by_number(const ::std::optional<::std::map<::std::int32_t, double>>& value,
@@ -334,12 +370,12 @@ class BoardStub : public virtual ::rr::Stub {
   ::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>> get_by_name(
       const ::rr::CallOptions& options = {}) {
     return rr_get<::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>>>(
-        rr_members_Board[12], options);
+        rr_members_Board[rr_at::by_name], options);
   }
   template <class Token>
   auto async_get_by_name(const ::rr::CallOptions& options, Token&& token) {
     return rr_async_get<::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>>>(
-        rr_members_Board[12], options, ::std::forward<Token>(token));
+        rr_members_Board[rr_at::by_name], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_by_name(Token&& token) {
@@ -348,14 +384,14 @@ class BoardStub : public virtual ::rr::Stub {
   void set_by_name(
       const ::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>>& value,
       const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[12], options, &value);
+    rr_set(rr_members_Board[rr_at::by_name], options, &value);
   }
   template <class Token>
   auto async_set_by_name(
       const ::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>>& value,
       const ::rr::CallOptions& options, Token&& token) {
     return rr_async_set<::std::optional<::std::map<::std::string, ::rr::Array<::std::int32_t>>>>(
-        rr_members_Board[12], options, ::std::forward<Token>(token), value);
+        rr_members_Board[rr_at::by_name], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_by_name(
@@ -364,11 +400,11 @@ class BoardStub : public virtual ::rr::Stub {
     return async_set_by_name(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::rr::VarValue get_anything(const ::rr::CallOptions& options = {}) {
-    return rr_get<::rr::VarValue>(rr_members_Board[13], options);
+    return rr_get<::rr::VarValue>(rr_members_Board[rr_at::anything], options);
   }
   template <class Token>
   auto async_get_anything(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::rr::VarValue>(rr_members_Board[13], options,
+    return rr_async_get<::rr::VarValue>(rr_members_Board[rr_at::anything], options,
                                         ::std::forward<Token>(token));
   }
   template <class Token>
@@ -376,13 +412,13 @@ class BoardStub : public virtual ::rr::Stub {
     return async_get_anything(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_anything(const ::rr::VarValue& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[13], options, &value);
+    rr_set(rr_members_Board[rr_at::anything], options, &value);
   }
   template <class Token>
   auto async_set_anything(const ::rr::VarValue& value, const ::rr::CallOptions& options,
                           Token&& token) {
-    return rr_async_set<::rr::VarValue>(rr_members_Board[13], options, ::std::forward<Token>(token),
-                                        value);
+    return rr_async_set<::rr::VarValue>(rr_members_Board[rr_at::anything], options,
+                                        ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_anything(const ::rr::VarValue& value, Token&& token) {
@@ -390,13 +426,13 @@ class BoardStub : public virtual ::rr::Stub {
   }
   ::std::optional<::std::map<::std::string, ::rr::VarValue>> get_settings(
       const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(rr_members_Board[14],
-                                                                              options);
+    return rr_get<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(
+        rr_members_Board[rr_at::settings], options);
   }
   template <class Token>
   auto async_get_settings(const ::rr::CallOptions& options, Token&& token) {
     return rr_async_get<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(
-        rr_members_Board[14], options, ::std::forward<Token>(token));
+        rr_members_Board[rr_at::settings], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_settings(Token&& token) {
@@ -404,13 +440,13 @@ class BoardStub : public virtual ::rr::Stub {
   }
   void set_settings(const ::std::optional<::std::map<::std::string, ::rr::VarValue>>& value,
                     const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[14], options, &value);
+    rr_set(rr_members_Board[rr_at::settings], options, &value);
   }
   template <class Token>
   auto async_set_settings(const ::std::optional<::std::map<::std::string, ::rr::VarValue>>& value,
                           const ::rr::CallOptions& options, Token&& token) {
     return rr_async_set<::std::optional<::std::map<::std::string, ::rr::VarValue>>>(
-        rr_members_Board[14], options, ::std::forward<Token>(token), value);
+        rr_members_Board[rr_at::settings], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_settings(const ::std::optional<::std::map<::std::string, ::rr::VarValue>>& value,
@@ -418,11 +454,11 @@ class BoardStub : public virtual ::rr::Stub {
     return async_set_settings(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::int32_t get_serial_number(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::int32_t>(rr_members_Board[15], options);
+    return rr_get<::std::int32_t>(rr_members_Board[rr_at::serial_number], options);
   }
   template <class Token>
   auto async_get_serial_number(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::int32_t>(rr_members_Board[15], options,
+    return rr_async_get<::std::int32_t>(rr_members_Board[rr_at::serial_number], options,
                                         ::std::forward<Token>(token));
   }
   template <class Token>
@@ -430,46 +466,48 @@ class BoardStub : public virtual ::rr::Stub {
     return async_get_serial_number(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_password(const ::std::string& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[16], options, &value);
+    rr_set(rr_members_Board[rr_at::password], options, &value);
   }
   template <class Token>
   auto async_set_password(const ::std::string& value, const ::rr::CallOptions& options,
                           Token&& token) {
-    return rr_async_set<::std::string>(rr_members_Board[16], options, ::std::forward<Token>(token),
-                                       value);
+    return rr_async_set<::std::string>(rr_members_Board[rr_at::password], options,
+                                       ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_password(const ::std::string& value, Token&& token) {
     return async_set_password(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_shared(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_Board[17], options);
+    return rr_get<double>(rr_members_Board[rr_at::shared], options);
   }
   template <class Token>
   auto async_get_shared(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_Board[17], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_Board[rr_at::shared], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_shared(Token&& token) {
     return async_get_shared(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_shared(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[17], options, &value);
+    rr_set(rr_members_Board[rr_at::shared], options, &value);
   }
   template <class Token>
   auto async_set_shared(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_Board[17], options, ::std::forward<Token>(token), value);
+    return rr_async_set<double>(rr_members_Board[rr_at::shared], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_shared(double value, Token&& token) {
     return async_set_shared(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::int32_t get_page(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::int32_t>(rr_members_Board[18], options);
+    return rr_get<::std::int32_t>(rr_members_Board[rr_at::page], options);
   }
   template <class Token>
   auto async_get_page(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::int32_t>(rr_members_Board[18], options,
+    return rr_async_get<::std::int32_t>(rr_members_Board[rr_at::page], options,
                                         ::std::forward<Token>(token));
   }
   template <class Token>
@@ -477,24 +515,25 @@ class BoardStub : public virtual ::rr::Stub {
     return async_get_page(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_page(::std::int32_t value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[18], options, &value);
+    rr_set(rr_members_Board[rr_at::page], options, &value);
   }
   template <class Token>
   auto async_set_page(::std::int32_t value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<::std::int32_t>(rr_members_Board[18], options, ::std::forward<Token>(token),
-                                        value);
+    return rr_async_set<::std::int32_t>(rr_members_Board[rr_at::page], options,
+                                        ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_page(::std::int32_t value, Token&& token) {
     return async_set_page(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   ::std::optional<::std::vector<::std::string>> get_notes(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::optional<::std::vector<::std::string>>>(rr_members_Board[19], options);
+    return rr_get<::std::optional<::std::vector<::std::string>>>(rr_members_Board[rr_at::notes],
+                                                                 options);
   }
   template <class Token>
   auto async_get_notes(const ::rr::CallOptions& options, Token&& token) {
     return rr_async_get<::std::optional<::std::vector<::std::string>>>(
-        rr_members_Board[19], options, ::std::forward<Token>(token));
+        rr_members_Board[rr_at::notes], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_notes(Token&& token) {
@@ -502,24 +541,24 @@ class BoardStub : public virtual ::rr::Stub {
   }
   void set_notes(const ::std::optional<::std::vector<::std::string>>& value,
                  const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Board[19], options, &value);
+    rr_set(rr_members_Board[rr_at::notes], options, &value);
   }
   template <class Token>
   auto async_set_notes(const ::std::optional<::std::vector<::std::string>>& value,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_set<::std::optional<::std::vector<::std::string>>>(
-        rr_members_Board[19], options, ::std::forward<Token>(token), value);
+        rr_members_Board[rr_at::notes], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_notes(const ::std::optional<::std::vector<::std::string>>& value, Token&& token) {
     return async_set_notes(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   Mode get_view(const ::rr::CallOptions& options = {}) {
-    return rr_get<Mode>(rr_members_Board[20], options);
+    return rr_get<Mode>(rr_members_Board[rr_at::view], options);
   }
   template <class Token>
   auto async_get_view(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<Mode>(rr_members_Board[20], options, ::std::forward<Token>(token));
+    return rr_async_get<Mode>(rr_members_Board[rr_at::view], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_view(Token&& token) {
@@ -530,6 +569,8 @@ class BoardStub : public virtual ::rr::Stub {
 
 /// Serves one Board: derive from it and implement its members.
 class BoardSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Board;
+
  public:
   virtual double get_gain() = 0;
   virtual void set_gain(double value) = 0;

@@ -839,7 +839,7 @@ const ::rr::ObjectType& deleteSkeleton::rr_object_type() const { return rr_objec
 
 void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property alignas
+    case rr_at::alignas__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -849,7 +849,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_alignas();
       return rr_request.answer(&value);
     }
-    case 1: {  // property alignof
+    case rr_at::alignof__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -859,7 +859,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_alignof();
       return rr_request.answer(&value);
     }
-    case 2: {  // property and
+    case rr_at::and__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -869,7 +869,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_and();
       return rr_request.answer(&value);
     }
-    case 3: {  // property and_eq
+    case rr_at::and_eq__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -879,7 +879,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_and_eq();
       return rr_request.answer(&value);
     }
-    case 4: {  // property asm
+    case rr_at::asm__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -889,7 +889,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_asm();
       return rr_request.answer(&value);
     }
-    case 5: {  // property auto
+    case rr_at::auto__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -899,7 +899,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_auto();
       return rr_request.answer(&value);
     }
-    case 6: {  // property bitand
+    case rr_at::bitand__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -909,7 +909,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_bitand();
       return rr_request.answer(&value);
     }
-    case 7: {  // property bitor
+    case rr_at::bitor__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -919,7 +919,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_bitor();
       return rr_request.answer(&value);
     }
-    case 8: {  // property break
+    case rr_at::break__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -929,7 +929,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_break();
       return rr_request.answer(&value);
     }
-    case 9: {  // property case
+    case rr_at::case__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -939,7 +939,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_case();
       return rr_request.answer(&value);
     }
-    case 10: {  // property catch
+    case rr_at::catch__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -949,7 +949,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_catch();
       return rr_request.answer(&value);
     }
-    case 11: {  // property char
+    case rr_at::char__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -959,7 +959,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_char();
       return rr_request.answer(&value);
     }
-    case 12: {  // property char16_t
+    case rr_at::char16_t_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -969,7 +969,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_char16_t();
       return rr_request.answer(&value);
     }
-    case 13: {  // property char32_t
+    case rr_at::char32_t_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -979,7 +979,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_char32_t();
       return rr_request.answer(&value);
     }
-    case 14: {  // property char8_t
+    case rr_at::char8_t_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -989,7 +989,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_char8_t();
       return rr_request.answer(&value);
     }
-    case 15: {  // property class
+    case rr_at::class__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -999,7 +999,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_class();
       return rr_request.answer(&value);
     }
-    case 16: {  // property co_await
+    case rr_at::co_await_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1009,7 +1009,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_co_await();
       return rr_request.answer(&value);
     }
-    case 17: {  // property co_return
+    case rr_at::co_return_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1019,7 +1019,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_co_return();
       return rr_request.answer(&value);
     }
-    case 18: {  // property co_yield
+    case rr_at::co_yield_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1029,7 +1029,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_co_yield();
       return rr_request.answer(&value);
     }
-    case 19: {  // property compl
+    case rr_at::compl_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1039,7 +1039,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_compl();
       return rr_request.answer(&value);
     }
-    case 20: {  // property concept
+    case rr_at::concept_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1049,7 +1049,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_concept();
       return rr_request.answer(&value);
     }
-    case 21: {  // property const
+    case rr_at::const_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1059,7 +1059,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_const();
       return rr_request.answer(&value);
     }
-    case 22: {  // property const_cast
+    case rr_at::const_cast_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1069,7 +1069,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_const_cast();
       return rr_request.answer(&value);
     }
-    case 23: {  // property consteval
+    case rr_at::consteval_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1079,7 +1079,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_consteval();
       return rr_request.answer(&value);
     }
-    case 24: {  // property constexpr
+    case rr_at::constexpr_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1089,7 +1089,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_constexpr();
       return rr_request.answer(&value);
     }
-    case 25: {  // property constinit
+    case rr_at::constinit_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1099,7 +1099,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_constinit();
       return rr_request.answer(&value);
     }
-    case 26: {  // property continue
+    case rr_at::continue_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1109,7 +1109,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_continue();
       return rr_request.answer(&value);
     }
-    case 27: {  // property decltype
+    case rr_at::decltype_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1119,7 +1119,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_decltype();
       return rr_request.answer(&value);
     }
-    case 28: {  // property default
+    case rr_at::default_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1129,7 +1129,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_default();
       return rr_request.answer(&value);
     }
-    case 29: {  // property delete
+    case rr_at::delete__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1139,7 +1139,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_delete();
       return rr_request.answer(&value);
     }
-    case 30: {  // property do
+    case rr_at::do_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1149,7 +1149,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_do();
       return rr_request.answer(&value);
     }
-    case 31: {  // property dynamic_cast
+    case rr_at::dynamic_cast_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1159,7 +1159,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_dynamic_cast();
       return rr_request.answer(&value);
     }
-    case 32: {  // property else
+    case rr_at::else_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1169,7 +1169,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_else();
       return rr_request.answer(&value);
     }
-    case 33: {  // property explicit
+    case rr_at::explicit_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1179,7 +1179,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_explicit();
       return rr_request.answer(&value);
     }
-    case 34: {  // property export
+    case rr_at::export__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1189,7 +1189,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_export();
       return rr_request.answer(&value);
     }
-    case 35: {  // property extern
+    case rr_at::extern_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1199,7 +1199,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_extern();
       return rr_request.answer(&value);
     }
-    case 36: {  // property false
+    case rr_at::false_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1209,7 +1209,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_false();
       return rr_request.answer(&value);
     }
-    case 37: {  // property float
+    case rr_at::float_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1219,7 +1219,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_float();
       return rr_request.answer(&value);
     }
-    case 38: {  // property for
+    case rr_at::for_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1229,7 +1229,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_for();
       return rr_request.answer(&value);
     }
-    case 39: {  // property friend
+    case rr_at::friend_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1239,7 +1239,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_friend();
       return rr_request.answer(&value);
     }
-    case 40: {  // property goto
+    case rr_at::goto_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1249,7 +1249,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_goto();
       return rr_request.answer(&value);
     }
-    case 41: {  // property if
+    case rr_at::if_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1259,7 +1259,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_if();
       return rr_request.answer(&value);
     }
-    case 42: {  // property inline
+    case rr_at::inline_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1269,7 +1269,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_inline();
       return rr_request.answer(&value);
     }
-    case 43: {  // property int
+    case rr_at::int_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1279,7 +1279,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_int();
       return rr_request.answer(&value);
     }
-    case 44: {  // property long
+    case rr_at::long_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1289,7 +1289,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_long();
       return rr_request.answer(&value);
     }
-    case 45: {  // property mutable
+    case rr_at::mutable_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1299,7 +1299,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_mutable();
       return rr_request.answer(&value);
     }
-    case 46: {  // property namespace
+    case rr_at::namespace_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1309,7 +1309,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_namespace();
       return rr_request.answer(&value);
     }
-    case 47: {  // property new
+    case rr_at::new__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1319,7 +1319,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_new();
       return rr_request.answer(&value);
     }
-    case 48: {  // property noexcept
+    case rr_at::noexcept_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1329,7 +1329,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_noexcept();
       return rr_request.answer(&value);
     }
-    case 49: {  // property not
+    case rr_at::not_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1339,7 +1339,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_not();
       return rr_request.answer(&value);
     }
-    case 50: {  // property not_eq
+    case rr_at::not_eq_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1349,7 +1349,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_not_eq();
       return rr_request.answer(&value);
     }
-    case 51: {  // property nullptr
+    case rr_at::nullptr_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1359,7 +1359,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_nullptr();
       return rr_request.answer(&value);
     }
-    case 52: {  // property operator
+    case rr_at::operator_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1369,7 +1369,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_operator();
       return rr_request.answer(&value);
     }
-    case 53: {  // property or
+    case rr_at::or_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1379,7 +1379,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_or();
       return rr_request.answer(&value);
     }
-    case 54: {  // property or_eq
+    case rr_at::or_eq_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1389,7 +1389,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_or_eq();
       return rr_request.answer(&value);
     }
-    case 55: {  // property private
+    case rr_at::private_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1399,7 +1399,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_private();
       return rr_request.answer(&value);
     }
-    case 56: {  // property protected
+    case rr_at::protected_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1409,7 +1409,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_protected();
       return rr_request.answer(&value);
     }
-    case 57: {  // property public
+    case rr_at::public_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1419,7 +1419,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_public();
       return rr_request.answer(&value);
     }
-    case 58: {  // property register
+    case rr_at::register__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1429,7 +1429,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_register();
       return rr_request.answer(&value);
     }
-    case 59: {  // property reinterpret_cast
+    case rr_at::reinterpret_cast_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1439,7 +1439,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_reinterpret_cast();
       return rr_request.answer(&value);
     }
-    case 60: {  // property requires
+    case rr_at::requires_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1449,7 +1449,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_requires();
       return rr_request.answer(&value);
     }
-    case 61: {  // property return
+    case rr_at::return_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1459,7 +1459,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_return();
       return rr_request.answer(&value);
     }
-    case 62: {  // property short
+    case rr_at::short_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1469,7 +1469,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_short();
       return rr_request.answer(&value);
     }
-    case 63: {  // property signed
+    case rr_at::signed_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1479,7 +1479,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_signed();
       return rr_request.answer(&value);
     }
-    case 64: {  // property sizeof
+    case rr_at::sizeof_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1489,7 +1489,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_sizeof();
       return rr_request.answer(&value);
     }
-    case 65: {  // property static
+    case rr_at::static__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1499,7 +1499,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_static();
       return rr_request.answer(&value);
     }
-    case 66: {  // property static_assert
+    case rr_at::static_assert_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1509,7 +1509,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_static_assert();
       return rr_request.answer(&value);
     }
-    case 67: {  // property static_cast
+    case rr_at::static_cast_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1519,7 +1519,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_static_cast();
       return rr_request.answer(&value);
     }
-    case 68: {  // property switch
+    case rr_at::switch_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1529,7 +1529,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_switch();
       return rr_request.answer(&value);
     }
-    case 69: {  // property template
+    case rr_at::template__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1539,7 +1539,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_template();
       return rr_request.answer(&value);
     }
-    case 70: {  // property thread_local
+    case rr_at::thread_local_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1549,7 +1549,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_thread_local();
       return rr_request.answer(&value);
     }
-    case 71: {  // property throw
+    case rr_at::throw_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1559,7 +1559,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_throw();
       return rr_request.answer(&value);
     }
-    case 72: {  // property true
+    case rr_at::true_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1569,7 +1569,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_true();
       return rr_request.answer(&value);
     }
-    case 73: {  // property try
+    case rr_at::try_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1579,7 +1579,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_try();
       return rr_request.answer(&value);
     }
-    case 74: {  // property typedef
+    case rr_at::typedef_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1589,7 +1589,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_typedef();
       return rr_request.answer(&value);
     }
-    case 75: {  // property typeid
+    case rr_at::typeid_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1599,7 +1599,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_typeid();
       return rr_request.answer(&value);
     }
-    case 76: {  // property typename
+    case rr_at::typename_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1609,7 +1609,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_typename();
       return rr_request.answer(&value);
     }
-    case 77: {  // property union
+    case rr_at::union__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1619,7 +1619,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_union();
       return rr_request.answer(&value);
     }
-    case 78: {  // property unsigned
+    case rr_at::unsigned_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1629,7 +1629,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_unsigned();
       return rr_request.answer(&value);
     }
-    case 79: {  // property virtual
+    case rr_at::virtual_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1639,7 +1639,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_virtual();
       return rr_request.answer(&value);
     }
-    case 80: {  // property volatile
+    case rr_at::volatile__: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1649,7 +1649,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_volatile();
       return rr_request.answer(&value);
     }
-    case 81: {  // property wchar_t
+    case rr_at::wchar_t_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1659,7 +1659,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_wchar_t();
       return rr_request.answer(&value);
     }
-    case 82: {  // property while
+    case rr_at::while_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1669,7 +1669,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_while();
       return rr_request.answer(&value);
     }
-    case 83: {  // property xor
+    case rr_at::xor_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1679,7 +1679,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_xor();
       return rr_request.answer(&value);
     }
-    case 84: {  // property xor_eq
+    case rr_at::xor_eq_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1689,7 +1689,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_xor_eq();
       return rr_request.answer(&value);
     }
-    case 85: {  // property assert
+    case rr_at::assert_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1699,7 +1699,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_assert();
       return rr_request.answer(&value);
     }
-    case 86: {  // property errno
+    case rr_at::errno_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1709,7 +1709,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_errno();
       return rr_request.answer(&value);
     }
-    case 87: {  // property linux
+    case rr_at::linux_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1719,7 +1719,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_linux();
       return rr_request.answer(&value);
     }
-    case 88: {  // property unix
+    case rr_at::unix_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1729,7 +1729,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_unix();
       return rr_request.answer(&value);
     }
-    case 89: {  // property major
+    case rr_at::major_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1739,7 +1739,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_major();
       return rr_request.answer(&value);
     }
-    case 90: {  // property minor
+    case rr_at::minor_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1749,7 +1749,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_minor();
       return rr_request.answer(&value);
     }
-    case 91: {  // property EOF
+    case rr_at::EOF_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1759,7 +1759,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_EOF();
       return rr_request.answer(&value);
     }
-    case 92: {  // property NULL
+    case rr_at::NULL_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1769,7 +1769,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_NULL();
       return rr_request.answer(&value);
     }
-    case 93: {  // property INFINITY
+    case rr_at::INFINITY_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1779,7 +1779,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_INFINITY();
       return rr_request.answer(&value);
     }
-    case 94: {  // property NAN
+    case rr_at::NAN_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1789,7 +1789,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_NAN();
       return rr_request.answer(&value);
     }
-    case 95: {  // property RAND_MAX
+    case rr_at::RAND_MAX_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1799,7 +1799,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_RAND_MAX();
       return rr_request.answer(&value);
     }
-    case 96: {  // property BUFSIZ
+    case rr_at::BUFSIZ_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1809,7 +1809,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_BUFSIZ();
       return rr_request.answer(&value);
     }
-    case 97: {  // property SIGINT
+    case rr_at::SIGINT_: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1819,7 +1819,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_SIGINT();
       return rr_request.answer(&value);
     }
-    case 98: {  // property final
+    case rr_at::final: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1829,7 +1829,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_final();
       return rr_request.answer(&value);
     }
-    case 99: {  // property override
+    case rr_at::override: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -1839,7 +1839,7 @@ void deleteSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_requ
       const auto value = get_override();
       return rr_request.answer(&value);
     }
-    case 100: {  // property module
+    case rr_at::module: {
       if (rr_request.is_set()) {
         double value = 0;
         rr_request.read_value(&value);
@@ -2282,507 +2282,507 @@ const ::rr::ObjectType& newSkeleton::rr_object_type() const { return rr_object_n
 
 void newSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // function alignas
+    case rr_at::alignas__: {
       ::experimental::reserved_words::export_ bitor__{};
       rr_request.read(bitor__);
       return async_alignas_(bitor__, rr_request);
     }
-    case 1: {  // function alignof
+    case rr_at::alignof__: {
       ::experimental::reserved_words::export_ break__{};
       rr_request.read(break__);
       return async_alignof_(break__, rr_request);
     }
-    case 2: {  // function and
+    case rr_at::and__: {
       ::experimental::reserved_words::export_ case__{};
       rr_request.read(case__);
       return async_and_(case__, rr_request);
     }
-    case 3: {  // function and_eq
+    case rr_at::and_eq__: {
       ::experimental::reserved_words::export_ catch__{};
       rr_request.read(catch__);
       return async_and_eq_(catch__, rr_request);
     }
-    case 4: {  // function asm
+    case rr_at::asm__: {
       ::experimental::reserved_words::export_ char__{};
       rr_request.read(char__);
       return async_asm_(char__, rr_request);
     }
-    case 5: {  // function auto
+    case rr_at::auto__: {
       ::experimental::reserved_words::export_ char16_t_{};
       rr_request.read(char16_t_);
       return async_auto_(char16_t_, rr_request);
     }
-    case 6: {  // function bitand
+    case rr_at::bitand__: {
       ::experimental::reserved_words::export_ char32_t_{};
       rr_request.read(char32_t_);
       return async_bitand_(char32_t_, rr_request);
     }
-    case 7: {  // function bitor
+    case rr_at::bitor__: {
       ::experimental::reserved_words::export_ char8_t_{};
       rr_request.read(char8_t_);
       return async_bitor_(char8_t_, rr_request);
     }
-    case 8: {  // function break
+    case rr_at::break__: {
       ::experimental::reserved_words::export_ class__{};
       rr_request.read(class__);
       return async_break_(class__, rr_request);
     }
-    case 9: {  // function case
+    case rr_at::case__: {
       ::experimental::reserved_words::export_ co_await_{};
       rr_request.read(co_await_);
       return async_case_(co_await_, rr_request);
     }
-    case 10: {  // function catch
+    case rr_at::catch__: {
       ::experimental::reserved_words::export_ co_return_{};
       rr_request.read(co_return_);
       return async_catch_(co_return_, rr_request);
     }
-    case 11: {  // function char
+    case rr_at::char__: {
       ::experimental::reserved_words::export_ co_yield_{};
       rr_request.read(co_yield_);
       return async_char_(co_yield_, rr_request);
     }
-    case 12: {  // function char16_t
+    case rr_at::char16_t_: {
       ::experimental::reserved_words::export_ compl_{};
       rr_request.read(compl_);
       return async_char16_t_(compl_, rr_request);
     }
-    case 13: {  // function char32_t
+    case rr_at::char32_t_: {
       ::experimental::reserved_words::export_ concept_{};
       rr_request.read(concept_);
       return async_char32_t_(concept_, rr_request);
     }
-    case 14: {  // function char8_t
+    case rr_at::char8_t_: {
       ::experimental::reserved_words::export_ const_{};
       rr_request.read(const_);
       return async_char8_t_(const_, rr_request);
     }
-    case 15: {  // function class
+    case rr_at::class__: {
       ::experimental::reserved_words::export_ const_cast_{};
       rr_request.read(const_cast_);
       return async_class_(const_cast_, rr_request);
     }
-    case 16: {  // function co_await
+    case rr_at::co_await_: {
       ::experimental::reserved_words::export_ consteval_{};
       rr_request.read(consteval_);
       return async_co_await_(consteval_, rr_request);
     }
-    case 17: {  // function co_return
+    case rr_at::co_return_: {
       ::experimental::reserved_words::export_ constexpr_{};
       rr_request.read(constexpr_);
       return async_co_return_(constexpr_, rr_request);
     }
-    case 18: {  // function co_yield
+    case rr_at::co_yield_: {
       ::experimental::reserved_words::export_ constinit_{};
       rr_request.read(constinit_);
       return async_co_yield_(constinit_, rr_request);
     }
-    case 19: {  // function compl
+    case rr_at::compl_: {
       ::experimental::reserved_words::export_ continue_{};
       rr_request.read(continue_);
       return async_compl_(continue_, rr_request);
     }
-    case 20: {  // function concept
+    case rr_at::concept_: {
       ::experimental::reserved_words::export_ decltype_{};
       rr_request.read(decltype_);
       return async_concept_(decltype_, rr_request);
     }
-    case 21: {  // function const
+    case rr_at::const_: {
       ::experimental::reserved_words::export_ default_{};
       rr_request.read(default_);
       return async_const_(default_, rr_request);
     }
-    case 22: {  // function const_cast
+    case rr_at::const_cast_: {
       ::experimental::reserved_words::export_ delete__{};
       rr_request.read(delete__);
       return async_const_cast_(delete__, rr_request);
     }
-    case 23: {  // function consteval
+    case rr_at::consteval_: {
       ::experimental::reserved_words::export_ do_{};
       rr_request.read(do_);
       return async_consteval_(do_, rr_request);
     }
-    case 24: {  // function constexpr
+    case rr_at::constexpr_: {
       ::experimental::reserved_words::export_ dynamic_cast_{};
       rr_request.read(dynamic_cast_);
       return async_constexpr_(dynamic_cast_, rr_request);
     }
-    case 25: {  // function constinit
+    case rr_at::constinit_: {
       ::experimental::reserved_words::export_ else_{};
       rr_request.read(else_);
       return async_constinit_(else_, rr_request);
     }
-    case 26: {  // function continue
+    case rr_at::continue_: {
       ::experimental::reserved_words::export_ explicit_{};
       rr_request.read(explicit_);
       return async_continue_(explicit_, rr_request);
     }
-    case 27: {  // function decltype
+    case rr_at::decltype_: {
       ::experimental::reserved_words::export_ export__{};
       rr_request.read(export__);
       return async_decltype_(export__, rr_request);
     }
-    case 28: {  // function default
+    case rr_at::default_: {
       ::experimental::reserved_words::export_ extern_{};
       rr_request.read(extern_);
       return async_default_(extern_, rr_request);
     }
-    case 29: {  // function delete
+    case rr_at::delete__: {
       ::experimental::reserved_words::export_ false_{};
       rr_request.read(false_);
       return async_delete_(false_, rr_request);
     }
-    case 30: {  // function do
+    case rr_at::do_: {
       ::experimental::reserved_words::export_ float_{};
       rr_request.read(float_);
       return async_do_(float_, rr_request);
     }
-    case 31: {  // function dynamic_cast
+    case rr_at::dynamic_cast_: {
       ::experimental::reserved_words::export_ for_{};
       rr_request.read(for_);
       return async_dynamic_cast_(for_, rr_request);
     }
-    case 32: {  // function else
+    case rr_at::else_: {
       ::experimental::reserved_words::export_ friend_{};
       rr_request.read(friend_);
       return async_else_(friend_, rr_request);
     }
-    case 33: {  // function explicit
+    case rr_at::explicit_: {
       ::experimental::reserved_words::export_ goto_{};
       rr_request.read(goto_);
       return async_explicit_(goto_, rr_request);
     }
-    case 34: {  // function export
+    case rr_at::export__: {
       ::experimental::reserved_words::export_ if_{};
       rr_request.read(if_);
       return async_export_(if_, rr_request);
     }
-    case 35: {  // function extern
+    case rr_at::extern_: {
       ::experimental::reserved_words::export_ inline_{};
       rr_request.read(inline_);
       return async_extern_(inline_, rr_request);
     }
-    case 36: {  // function false
+    case rr_at::false_: {
       ::experimental::reserved_words::export_ int_{};
       rr_request.read(int_);
       return async_false_(int_, rr_request);
     }
-    case 37: {  // function float
+    case rr_at::float_: {
       ::experimental::reserved_words::export_ long_{};
       rr_request.read(long_);
       return async_float_(long_, rr_request);
     }
-    case 38: {  // function for
+    case rr_at::for_: {
       ::experimental::reserved_words::export_ mutable_{};
       rr_request.read(mutable_);
       return async_for_(mutable_, rr_request);
     }
-    case 39: {  // function friend
+    case rr_at::friend_: {
       ::experimental::reserved_words::export_ namespace_{};
       rr_request.read(namespace_);
       return async_friend_(namespace_, rr_request);
     }
-    case 40: {  // function goto
+    case rr_at::goto_: {
       ::experimental::reserved_words::export_ new__{};
       rr_request.read(new__);
       return async_goto_(new__, rr_request);
     }
-    case 41: {  // function if
+    case rr_at::if_: {
       ::experimental::reserved_words::export_ noexcept_{};
       rr_request.read(noexcept_);
       return async_if_(noexcept_, rr_request);
     }
-    case 42: {  // function inline
+    case rr_at::inline_: {
       ::experimental::reserved_words::export_ not_{};
       rr_request.read(not_);
       return async_inline_(not_, rr_request);
     }
-    case 43: {  // function int
+    case rr_at::int_: {
       ::experimental::reserved_words::export_ not_eq_{};
       rr_request.read(not_eq_);
       return async_int_(not_eq_, rr_request);
     }
-    case 44: {  // function long
+    case rr_at::long_: {
       ::experimental::reserved_words::export_ nullptr_{};
       rr_request.read(nullptr_);
       return async_long_(nullptr_, rr_request);
     }
-    case 45: {  // function mutable
+    case rr_at::mutable_: {
       ::experimental::reserved_words::export_ operator_{};
       rr_request.read(operator_);
       return async_mutable_(operator_, rr_request);
     }
-    case 46: {  // function namespace
+    case rr_at::namespace_: {
       ::experimental::reserved_words::export_ or_{};
       rr_request.read(or_);
       return async_namespace_(or_, rr_request);
     }
-    case 47: {  // function new
+    case rr_at::new__: {
       ::experimental::reserved_words::export_ or_eq_{};
       rr_request.read(or_eq_);
       return async_new_(or_eq_, rr_request);
     }
-    case 48: {  // function noexcept
+    case rr_at::noexcept_: {
       ::experimental::reserved_words::export_ private_{};
       rr_request.read(private_);
       return async_noexcept_(private_, rr_request);
     }
-    case 49: {  // function not
+    case rr_at::not_: {
       ::experimental::reserved_words::export_ protected_{};
       rr_request.read(protected_);
       return async_not_(protected_, rr_request);
     }
-    case 50: {  // function not_eq
+    case rr_at::not_eq_: {
       ::experimental::reserved_words::export_ public_{};
       rr_request.read(public_);
       return async_not_eq_(public_, rr_request);
     }
-    case 51: {  // function nullptr
+    case rr_at::nullptr_: {
       ::experimental::reserved_words::export_ register__{};
       rr_request.read(register__);
       return async_nullptr_(register__, rr_request);
     }
-    case 52: {  // function operator
+    case rr_at::operator_: {
       ::experimental::reserved_words::export_ reinterpret_cast_{};
       rr_request.read(reinterpret_cast_);
       return async_operator_(reinterpret_cast_, rr_request);
     }
-    case 53: {  // function or
+    case rr_at::or_: {
       ::experimental::reserved_words::export_ requires_{};
       rr_request.read(requires_);
       return async_or_(requires_, rr_request);
     }
-    case 54: {  // function or_eq
+    case rr_at::or_eq_: {
       ::experimental::reserved_words::export_ return_{};
       rr_request.read(return_);
       return async_or_eq_(return_, rr_request);
     }
-    case 55: {  // function private
+    case rr_at::private_: {
       ::experimental::reserved_words::export_ short_{};
       rr_request.read(short_);
       return async_private_(short_, rr_request);
     }
-    case 56: {  // function protected
+    case rr_at::protected_: {
       ::experimental::reserved_words::export_ signed_{};
       rr_request.read(signed_);
       return async_protected_(signed_, rr_request);
     }
-    case 57: {  // function public
+    case rr_at::public_: {
       ::experimental::reserved_words::export_ sizeof_{};
       rr_request.read(sizeof_);
       return async_public_(sizeof_, rr_request);
     }
-    case 58: {  // function register
+    case rr_at::register__: {
       ::experimental::reserved_words::export_ static__{};
       rr_request.read(static__);
       return async_register_(static__, rr_request);
     }
-    case 59: {  // function reinterpret_cast
+    case rr_at::reinterpret_cast_: {
       ::experimental::reserved_words::export_ static_assert_{};
       rr_request.read(static_assert_);
       return async_reinterpret_cast_(static_assert_, rr_request);
     }
-    case 60: {  // function requires
+    case rr_at::requires_: {
       ::experimental::reserved_words::export_ static_cast_{};
       rr_request.read(static_cast_);
       return async_requires_(static_cast_, rr_request);
     }
-    case 61: {  // function return
+    case rr_at::return_: {
       ::experimental::reserved_words::export_ switch_{};
       rr_request.read(switch_);
       return async_return_(switch_, rr_request);
     }
-    case 62: {  // function short
+    case rr_at::short_: {
       ::experimental::reserved_words::export_ template__{};
       rr_request.read(template__);
       return async_short_(template__, rr_request);
     }
-    case 63: {  // function signed
+    case rr_at::signed_: {
       ::experimental::reserved_words::export_ thread_local_{};
       rr_request.read(thread_local_);
       return async_signed_(thread_local_, rr_request);
     }
-    case 64: {  // function sizeof
+    case rr_at::sizeof_: {
       ::experimental::reserved_words::export_ throw_{};
       rr_request.read(throw_);
       return async_sizeof_(throw_, rr_request);
     }
-    case 65: {  // function static
+    case rr_at::static__: {
       ::experimental::reserved_words::export_ true_{};
       rr_request.read(true_);
       return async_static_(true_, rr_request);
     }
-    case 66: {  // function static_assert
+    case rr_at::static_assert_: {
       ::experimental::reserved_words::export_ try_{};
       rr_request.read(try_);
       return async_static_assert_(try_, rr_request);
     }
-    case 67: {  // function static_cast
+    case rr_at::static_cast_: {
       ::experimental::reserved_words::export_ typedef_{};
       rr_request.read(typedef_);
       return async_static_cast_(typedef_, rr_request);
     }
-    case 68: {  // function switch
+    case rr_at::switch_: {
       ::experimental::reserved_words::export_ typeid_{};
       rr_request.read(typeid_);
       return async_switch_(typeid_, rr_request);
     }
-    case 69: {  // function template
+    case rr_at::template__: {
       ::experimental::reserved_words::export_ typename_{};
       rr_request.read(typename_);
       return async_template_(typename_, rr_request);
     }
-    case 70: {  // function thread_local
+    case rr_at::thread_local_: {
       ::experimental::reserved_words::export_ union__{};
       rr_request.read(union__);
       return async_thread_local_(union__, rr_request);
     }
-    case 71: {  // function throw
+    case rr_at::throw_: {
       ::experimental::reserved_words::export_ unsigned_{};
       rr_request.read(unsigned_);
       return async_throw_(unsigned_, rr_request);
     }
-    case 72: {  // function true
+    case rr_at::true_: {
       ::experimental::reserved_words::export_ virtual_{};
       rr_request.read(virtual_);
       return async_true_(virtual_, rr_request);
     }
-    case 73: {  // function try
+    case rr_at::try_: {
       ::experimental::reserved_words::export_ volatile__{};
       rr_request.read(volatile__);
       return async_try_(volatile__, rr_request);
     }
-    case 74: {  // function typedef
+    case rr_at::typedef_: {
       ::experimental::reserved_words::export_ wchar_t_{};
       rr_request.read(wchar_t_);
       return async_typedef_(wchar_t_, rr_request);
     }
-    case 75: {  // function typeid
+    case rr_at::typeid_: {
       ::experimental::reserved_words::export_ while_{};
       rr_request.read(while_);
       return async_typeid_(while_, rr_request);
     }
-    case 76: {  // function typename
+    case rr_at::typename_: {
       ::experimental::reserved_words::export_ xor_{};
       rr_request.read(xor_);
       return async_typename_(xor_, rr_request);
     }
-    case 77: {  // function union
+    case rr_at::union__: {
       ::experimental::reserved_words::export_ xor_eq_{};
       rr_request.read(xor_eq_);
       return async_union_(xor_eq_, rr_request);
     }
-    case 78: {  // function unsigned
+    case rr_at::unsigned_: {
       ::experimental::reserved_words::export_ assert_{};
       rr_request.read(assert_);
       return async_unsigned_(assert_, rr_request);
     }
-    case 79: {  // function virtual
+    case rr_at::virtual_: {
       ::experimental::reserved_words::export_ errno_{};
       rr_request.read(errno_);
       return async_virtual_(errno_, rr_request);
     }
-    case 80: {  // function volatile
+    case rr_at::volatile__: {
       ::experimental::reserved_words::export_ linux_{};
       rr_request.read(linux_);
       return async_volatile_(linux_, rr_request);
     }
-    case 81: {  // function wchar_t
+    case rr_at::wchar_t_: {
       ::experimental::reserved_words::export_ unix_{};
       rr_request.read(unix_);
       return async_wchar_t_(unix_, rr_request);
     }
-    case 82: {  // function while
+    case rr_at::while_: {
       ::experimental::reserved_words::export_ major_{};
       rr_request.read(major_);
       return async_while_(major_, rr_request);
     }
-    case 83: {  // function xor
+    case rr_at::xor_: {
       ::experimental::reserved_words::export_ minor_{};
       rr_request.read(minor_);
       return async_xor_(minor_, rr_request);
     }
-    case 84: {  // function xor_eq
+    case rr_at::xor_eq_: {
       ::experimental::reserved_words::export_ EOF_{};
       rr_request.read(EOF_);
       return async_xor_eq_(EOF_, rr_request);
     }
-    case 85: {  // function assert
+    case rr_at::assert_: {
       ::experimental::reserved_words::export_ NULL_{};
       rr_request.read(NULL_);
       return async_assert_(NULL_, rr_request);
     }
-    case 86: {  // function errno
+    case rr_at::errno_: {
       ::experimental::reserved_words::export_ INFINITY_{};
       rr_request.read(INFINITY_);
       return async_errno_(INFINITY_, rr_request);
     }
-    case 87: {  // function linux
+    case rr_at::linux_: {
       ::experimental::reserved_words::export_ NAN_{};
       rr_request.read(NAN_);
       return async_linux_(NAN_, rr_request);
     }
-    case 88: {  // function unix
+    case rr_at::unix_: {
       ::experimental::reserved_words::export_ RAND_MAX_{};
       rr_request.read(RAND_MAX_);
       return async_unix_(RAND_MAX_, rr_request);
     }
-    case 89: {  // function major
+    case rr_at::major_: {
       ::experimental::reserved_words::export_ BUFSIZ_{};
       rr_request.read(BUFSIZ_);
       return async_major_(BUFSIZ_, rr_request);
     }
-    case 90: {  // function minor
+    case rr_at::minor_: {
       ::experimental::reserved_words::export_ SIGINT_{};
       rr_request.read(SIGINT_);
       return async_minor_(SIGINT_, rr_request);
     }
-    case 91: {  // function EOF
+    case rr_at::EOF_: {
       ::experimental::reserved_words::export_ final{};
       rr_request.read(final);
       return async_EOF_(final, rr_request);
     }
-    case 92: {  // function NULL
+    case rr_at::NULL_: {
       ::experimental::reserved_words::export_ override{};
       rr_request.read(override);
       return async_NULL_(override, rr_request);
     }
-    case 93: {  // function INFINITY
+    case rr_at::INFINITY_: {
       ::experimental::reserved_words::export_ module{};
       rr_request.read(module);
       return async_INFINITY_(module, rr_request);
     }
-    case 94: {  // function NAN
+    case rr_at::NAN_: {
       ::experimental::reserved_words::export_ alignas__{};
       rr_request.read(alignas__);
       return async_NAN_(alignas__, rr_request);
     }
-    case 95: {  // function RAND_MAX
+    case rr_at::RAND_MAX_: {
       ::experimental::reserved_words::export_ alignof__{};
       rr_request.read(alignof__);
       return async_RAND_MAX_(alignof__, rr_request);
     }
-    case 96: {  // function BUFSIZ
+    case rr_at::BUFSIZ_: {
       ::experimental::reserved_words::export_ and__{};
       rr_request.read(and__);
       return async_BUFSIZ_(and__, rr_request);
     }
-    case 97: {  // function SIGINT
+    case rr_at::SIGINT_: {
       ::experimental::reserved_words::export_ and_eq__{};
       rr_request.read(and_eq__);
       return async_SIGINT_(and_eq__, rr_request);
     }
-    case 98: {  // function final
+    case rr_at::final: {
       ::experimental::reserved_words::export_ asm__{};
       rr_request.read(asm__);
       return async_final(asm__, rr_request);
     }
-    case 99: {  // function override
+    case rr_at::override: {
       ::experimental::reserved_words::export_ auto__{};
       rr_request.read(auto__);
       return async_override(auto__, rr_request);
     }
-    case 100: {  // function module
+    case rr_at::module: {
       ::experimental::reserved_words::export_ bitand__{};
       rr_request.read(bitand__);
       return async_module(bitand__, rr_request);
@@ -2953,247 +2953,247 @@ constinit const ::rr::ObjectType rr_object_class{
 const ::rr::ObjectType& classStub::rr_object_type() const { return rr_object_class; }
 
 ::std::shared_ptr<newStub> classStub::get_goto(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[40], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::goto_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_if(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[41], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::if_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_inline(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[42], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::inline_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_int(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[43], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::int_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_long(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[44], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::long_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_mutable(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[45], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::mutable_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_namespace(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[46], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::namespace_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_new(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[47], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::new__], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_noexcept(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[48], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::noexcept_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_not(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[49], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::not_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_not_eq(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[50], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::not_eq_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_nullptr(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[51], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::nullptr_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_operator(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[52], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::operator_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_or(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[53], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::or_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_or_eq(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[54], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::or_eq_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_private(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[55], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::private_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_protected(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[56], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::protected_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_public(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[57], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::public_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_register(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[58], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::register__], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_reinterpret_cast(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[59], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::reinterpret_cast_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_requires(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[60], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::requires_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_return(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[61], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::return_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_short(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[62], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::short_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_signed(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[63], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::signed_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_sizeof(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[64], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::sizeof_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_static(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[65], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::static__], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_static_assert(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[66], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::static_assert_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_static_cast(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[67], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::static_cast_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_switch(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[68], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::switch_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_template(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[69], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::template__], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_thread_local(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[70], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::thread_local_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_throw(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[71], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::throw_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_true(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[72], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::true_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_try(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[73], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::try_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_typedef(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[74], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::typedef_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_typeid(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[75], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::typeid_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_typename(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[76], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::typename_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_union(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[77], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::union__], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_unsigned(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[78], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::unsigned_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_virtual(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[79], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::virtual_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_volatile(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[80], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::volatile__], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_wchar_t(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[81], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::wchar_t_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_while(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[82], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::while_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_xor(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[83], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::xor_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_xor_eq(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[84], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::xor_eq_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_assert(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[85], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::assert_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_errno(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[86], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::errno_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_linux(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[87], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::linux_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_unix(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[88], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::unix_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_major(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[89], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::major_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_minor(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[90], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::minor_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_EOF(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[91], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::EOF_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_NULL(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[92], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::NULL_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_INFINITY(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[93], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::INFINITY_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_NAN(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[94], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::NAN_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_RAND_MAX(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[95], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::RAND_MAX_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_BUFSIZ(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[96], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::BUFSIZ_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_SIGINT(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[97], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::SIGINT_], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_final(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[98], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::final], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_override(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[99], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::override], options);
 }
 
 ::std::shared_ptr<newStub> classStub::get_module(const ::rr::CallOptions& options) {
-  return rr_find_as<newStub>(rr_members_class[100], options);
+  return rr_find_as<newStub>(rr_members_class[rr_at::module], options);
 }
 
 const ::rr::ObjectType& classSkeleton::rr_object_type() const { return rr_object_class; }
@@ -3203,127 +3203,127 @@ void classSkeleton::rr_dispatch(::std::size_t, ::rr::Request&) {}
 ::std::shared_ptr<::rr::Skeleton> classSkeleton::rr_child(::std::size_t rr_member,
                                                           const ::rr::ObjectIndex&) {
   switch (rr_member) {
-    case 40:
+    case rr_at::goto_:
       return get_goto();
-    case 41:
+    case rr_at::if_:
       return get_if();
-    case 42:
+    case rr_at::inline_:
       return get_inline();
-    case 43:
+    case rr_at::int_:
       return get_int();
-    case 44:
+    case rr_at::long_:
       return get_long();
-    case 45:
+    case rr_at::mutable_:
       return get_mutable();
-    case 46:
+    case rr_at::namespace_:
       return get_namespace();
-    case 47:
+    case rr_at::new__:
       return get_new();
-    case 48:
+    case rr_at::noexcept_:
       return get_noexcept();
-    case 49:
+    case rr_at::not_:
       return get_not();
-    case 50:
+    case rr_at::not_eq_:
       return get_not_eq();
-    case 51:
+    case rr_at::nullptr_:
       return get_nullptr();
-    case 52:
+    case rr_at::operator_:
       return get_operator();
-    case 53:
+    case rr_at::or_:
       return get_or();
-    case 54:
+    case rr_at::or_eq_:
       return get_or_eq();
-    case 55:
+    case rr_at::private_:
       return get_private();
-    case 56:
+    case rr_at::protected_:
       return get_protected();
-    case 57:
+    case rr_at::public_:
       return get_public();
-    case 58:
+    case rr_at::register__:
       return get_register();
-    case 59:
+    case rr_at::reinterpret_cast_:
       return get_reinterpret_cast();
-    case 60:
+    case rr_at::requires_:
       return get_requires();
-    case 61:
+    case rr_at::return_:
       return get_return();
-    case 62:
+    case rr_at::short_:
       return get_short();
-    case 63:
+    case rr_at::signed_:
       return get_signed();
-    case 64:
+    case rr_at::sizeof_:
       return get_sizeof();
-    case 65:
+    case rr_at::static__:
       return get_static();
-    case 66:
+    case rr_at::static_assert_:
       return get_static_assert();
-    case 67:
+    case rr_at::static_cast_:
       return get_static_cast();
-    case 68:
+    case rr_at::switch_:
       return get_switch();
-    case 69:
+    case rr_at::template__:
       return get_template();
-    case 70:
+    case rr_at::thread_local_:
       return get_thread_local();
-    case 71:
+    case rr_at::throw_:
       return get_throw();
-    case 72:
+    case rr_at::true_:
       return get_true();
-    case 73:
+    case rr_at::try_:
       return get_try();
-    case 74:
+    case rr_at::typedef_:
       return get_typedef();
-    case 75:
+    case rr_at::typeid_:
       return get_typeid();
-    case 76:
+    case rr_at::typename_:
       return get_typename();
-    case 77:
+    case rr_at::union__:
       return get_union();
-    case 78:
+    case rr_at::unsigned_:
       return get_unsigned();
-    case 79:
+    case rr_at::virtual_:
       return get_virtual();
-    case 80:
+    case rr_at::volatile__:
       return get_volatile();
-    case 81:
+    case rr_at::wchar_t_:
       return get_wchar_t();
-    case 82:
+    case rr_at::while_:
       return get_while();
-    case 83:
+    case rr_at::xor_:
       return get_xor();
-    case 84:
+    case rr_at::xor_eq_:
       return get_xor_eq();
-    case 85:
+    case rr_at::assert_:
       return get_assert();
-    case 86:
+    case rr_at::errno_:
       return get_errno();
-    case 87:
+    case rr_at::linux_:
       return get_linux();
-    case 88:
+    case rr_at::unix_:
       return get_unix();
-    case 89:
+    case rr_at::major_:
       return get_major();
-    case 90:
+    case rr_at::minor_:
       return get_minor();
-    case 91:
+    case rr_at::EOF_:
       return get_EOF();
-    case 92:
+    case rr_at::NULL_:
       return get_NULL();
-    case 93:
+    case rr_at::INFINITY_:
       return get_INFINITY();
-    case 94:
+    case rr_at::NAN_:
       return get_NAN();
-    case 95:
+    case rr_at::RAND_MAX_:
       return get_RAND_MAX();
-    case 96:
+    case rr_at::BUFSIZ_:
       return get_BUFSIZ();
-    case 97:
+    case rr_at::SIGINT_:
       return get_SIGINT();
-    case 98:
+    case rr_at::final:
       return get_final();
-    case 99:
+    case rr_at::override:
       return get_override();
-    case 100:
+    case rr_at::module:
       return get_module();
     default:
       return nullptr;

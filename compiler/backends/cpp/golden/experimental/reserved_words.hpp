@@ -388,2320 +388,2540 @@ struct register_ {
 };
 extern const ::rr::RecordType rr_type_register;
 
-extern const ::rr::Member rr_members_delete[101];
+/// Where each member is in the table.
+struct rr_at_delete {
+  enum : ::std::size_t {
+    alignas__,
+    alignof__,
+    and__,
+    and_eq__,
+    asm__,
+    auto__,
+    bitand__,
+    bitor__,
+    break__,
+    case__,
+    catch__,
+    char__,
+    char16_t_,
+    char32_t_,
+    char8_t_,
+    class__,
+    co_await_,
+    co_return_,
+    co_yield_,
+    compl_,
+    concept_,
+    const_,
+    const_cast_,
+    consteval_,
+    constexpr_,
+    constinit_,
+    continue_,
+    decltype_,
+    default_,
+    delete__,
+    do_,
+    dynamic_cast_,
+    else_,
+    explicit_,
+    export__,
+    extern_,
+    false_,
+    float_,
+    for_,
+    friend_,
+    goto_,
+    if_,
+    inline_,
+    int_,
+    long_,
+    mutable_,
+    namespace_,
+    new__,
+    noexcept_,
+    not_,
+    not_eq_,
+    nullptr_,
+    operator_,
+    or_,
+    or_eq_,
+    private_,
+    protected_,
+    public_,
+    register__,
+    reinterpret_cast_,
+    requires_,
+    return_,
+    short_,
+    signed_,
+    sizeof_,
+    static__,
+    static_assert_,
+    static_cast_,
+    switch_,
+    template__,
+    thread_local_,
+    throw_,
+    true_,
+    try_,
+    typedef_,
+    typeid_,
+    typename_,
+    union__,
+    unsigned_,
+    virtual_,
+    volatile__,
+    wchar_t_,
+    while_,
+    xor_,
+    xor_eq_,
+    assert_,
+    errno_,
+    linux_,
+    unix_,
+    major_,
+    minor_,
+    EOF_,
+    NULL_,
+    INFINITY_,
+    NAN_,
+    RAND_MAX_,
+    BUFSIZ_,
+    SIGINT_,
+    final,
+    override,
+    module,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_delete[rr_at_delete::rr_count];
 extern const ::rr::ObjectType rr_object_delete;
 
 /// A delete on another node.
 class deleteStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_delete;
+
  public:
   double get_alignas(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[0], options);
+    return rr_get<double>(rr_members_delete[rr_at::alignas__], options);
   }
   template <class Token>
   auto async_get_alignas(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[0], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::alignas__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_alignas(Token&& token) {
     return async_get_alignas(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_alignas(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[0], options, &value);
+    rr_set(rr_members_delete[rr_at::alignas__], options, &value);
   }
   template <class Token>
   auto async_set_alignas(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[0], options, ::std::forward<Token>(token), value);
+    return rr_async_set<double>(rr_members_delete[rr_at::alignas__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_alignas(double value, Token&& token) {
     return async_set_alignas(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_alignof(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[1], options);
+    return rr_get<double>(rr_members_delete[rr_at::alignof__], options);
   }
   template <class Token>
   auto async_get_alignof(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[1], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::alignof__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_alignof(Token&& token) {
     return async_get_alignof(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_alignof(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[1], options, &value);
+    rr_set(rr_members_delete[rr_at::alignof__], options, &value);
   }
   template <class Token>
   auto async_set_alignof(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[1], options, ::std::forward<Token>(token), value);
+    return rr_async_set<double>(rr_members_delete[rr_at::alignof__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_alignof(double value, Token&& token) {
     return async_set_alignof(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_and(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[2], options);
+    return rr_get<double>(rr_members_delete[rr_at::and__], options);
   }
   template <class Token>
   auto async_get_and(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[2], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::and__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_and(Token&& token) {
     return async_get_and(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_and(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[2], options, &value);
+    rr_set(rr_members_delete[rr_at::and__], options, &value);
   }
   template <class Token>
   auto async_set_and(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[2], options, ::std::forward<Token>(token), value);
+    return rr_async_set<double>(rr_members_delete[rr_at::and__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_and(double value, Token&& token) {
     return async_set_and(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_and_eq(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[3], options);
+    return rr_get<double>(rr_members_delete[rr_at::and_eq__], options);
   }
   template <class Token>
   auto async_get_and_eq(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[3], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::and_eq__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_and_eq(Token&& token) {
     return async_get_and_eq(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_and_eq(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[3], options, &value);
+    rr_set(rr_members_delete[rr_at::and_eq__], options, &value);
   }
   template <class Token>
   auto async_set_and_eq(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[3], options, ::std::forward<Token>(token), value);
+    return rr_async_set<double>(rr_members_delete[rr_at::and_eq__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_and_eq(double value, Token&& token) {
     return async_set_and_eq(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_asm(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[4], options);
+    return rr_get<double>(rr_members_delete[rr_at::asm__], options);
   }
   template <class Token>
   auto async_get_asm(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[4], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::asm__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_asm(Token&& token) {
     return async_get_asm(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_asm(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[4], options, &value);
+    rr_set(rr_members_delete[rr_at::asm__], options, &value);
   }
   template <class Token>
   auto async_set_asm(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[4], options, ::std::forward<Token>(token), value);
+    return rr_async_set<double>(rr_members_delete[rr_at::asm__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_asm(double value, Token&& token) {
     return async_set_asm(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_auto(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[5], options);
+    return rr_get<double>(rr_members_delete[rr_at::auto__], options);
   }
   template <class Token>
   auto async_get_auto(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[5], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::auto__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_auto(Token&& token) {
     return async_get_auto(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_auto(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[5], options, &value);
+    rr_set(rr_members_delete[rr_at::auto__], options, &value);
   }
   template <class Token>
   auto async_set_auto(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[5], options, ::std::forward<Token>(token), value);
+    return rr_async_set<double>(rr_members_delete[rr_at::auto__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_auto(double value, Token&& token) {
     return async_set_auto(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_bitand(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[6], options);
+    return rr_get<double>(rr_members_delete[rr_at::bitand__], options);
   }
   template <class Token>
   auto async_get_bitand(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[6], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::bitand__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_bitand(Token&& token) {
     return async_get_bitand(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_bitand(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[6], options, &value);
+    rr_set(rr_members_delete[rr_at::bitand__], options, &value);
   }
   template <class Token>
   auto async_set_bitand(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[6], options, ::std::forward<Token>(token), value);
+    return rr_async_set<double>(rr_members_delete[rr_at::bitand__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_bitand(double value, Token&& token) {
     return async_set_bitand(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_bitor(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[7], options);
+    return rr_get<double>(rr_members_delete[rr_at::bitor__], options);
   }
   template <class Token>
   auto async_get_bitor(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[7], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::bitor__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_bitor(Token&& token) {
     return async_get_bitor(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_bitor(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[7], options, &value);
+    rr_set(rr_members_delete[rr_at::bitor__], options, &value);
   }
   template <class Token>
   auto async_set_bitor(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[7], options, ::std::forward<Token>(token), value);
+    return rr_async_set<double>(rr_members_delete[rr_at::bitor__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_bitor(double value, Token&& token) {
     return async_set_bitor(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_break(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[8], options);
+    return rr_get<double>(rr_members_delete[rr_at::break__], options);
   }
   template <class Token>
   auto async_get_break(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[8], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::break__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_break(Token&& token) {
     return async_get_break(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_break(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[8], options, &value);
+    rr_set(rr_members_delete[rr_at::break__], options, &value);
   }
   template <class Token>
   auto async_set_break(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[8], options, ::std::forward<Token>(token), value);
+    return rr_async_set<double>(rr_members_delete[rr_at::break__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_break(double value, Token&& token) {
     return async_set_break(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_case(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[9], options);
+    return rr_get<double>(rr_members_delete[rr_at::case__], options);
   }
   template <class Token>
   auto async_get_case(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[9], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::case__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_case(Token&& token) {
     return async_get_case(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_case(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[9], options, &value);
+    rr_set(rr_members_delete[rr_at::case__], options, &value);
   }
   template <class Token>
   auto async_set_case(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[9], options, ::std::forward<Token>(token), value);
+    return rr_async_set<double>(rr_members_delete[rr_at::case__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_case(double value, Token&& token) {
     return async_set_case(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_catch(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[10], options);
+    return rr_get<double>(rr_members_delete[rr_at::catch__], options);
   }
   template <class Token>
   auto async_get_catch(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[10], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::catch__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_catch(Token&& token) {
     return async_get_catch(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_catch(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[10], options, &value);
+    rr_set(rr_members_delete[rr_at::catch__], options, &value);
   }
   template <class Token>
   auto async_set_catch(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[10], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::catch__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_catch(double value, Token&& token) {
     return async_set_catch(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_char(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[11], options);
+    return rr_get<double>(rr_members_delete[rr_at::char__], options);
   }
   template <class Token>
   auto async_get_char(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[11], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::char__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_char(Token&& token) {
     return async_get_char(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_char(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[11], options, &value);
+    rr_set(rr_members_delete[rr_at::char__], options, &value);
   }
   template <class Token>
   auto async_set_char(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[11], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::char__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_char(double value, Token&& token) {
     return async_set_char(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_char16_t(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[12], options);
+    return rr_get<double>(rr_members_delete[rr_at::char16_t_], options);
   }
   template <class Token>
   auto async_get_char16_t(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[12], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::char16_t_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_char16_t(Token&& token) {
     return async_get_char16_t(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_char16_t(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[12], options, &value);
+    rr_set(rr_members_delete[rr_at::char16_t_], options, &value);
   }
   template <class Token>
   auto async_set_char16_t(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[12], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::char16_t_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_char16_t(double value, Token&& token) {
     return async_set_char16_t(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_char32_t(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[13], options);
+    return rr_get<double>(rr_members_delete[rr_at::char32_t_], options);
   }
   template <class Token>
   auto async_get_char32_t(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[13], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::char32_t_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_char32_t(Token&& token) {
     return async_get_char32_t(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_char32_t(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[13], options, &value);
+    rr_set(rr_members_delete[rr_at::char32_t_], options, &value);
   }
   template <class Token>
   auto async_set_char32_t(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[13], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::char32_t_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_char32_t(double value, Token&& token) {
     return async_set_char32_t(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_char8_t(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[14], options);
+    return rr_get<double>(rr_members_delete[rr_at::char8_t_], options);
   }
   template <class Token>
   auto async_get_char8_t(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[14], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::char8_t_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_char8_t(Token&& token) {
     return async_get_char8_t(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_char8_t(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[14], options, &value);
+    rr_set(rr_members_delete[rr_at::char8_t_], options, &value);
   }
   template <class Token>
   auto async_set_char8_t(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[14], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::char8_t_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_char8_t(double value, Token&& token) {
     return async_set_char8_t(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_class(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[15], options);
+    return rr_get<double>(rr_members_delete[rr_at::class__], options);
   }
   template <class Token>
   auto async_get_class(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[15], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::class__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_class(Token&& token) {
     return async_get_class(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_class(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[15], options, &value);
+    rr_set(rr_members_delete[rr_at::class__], options, &value);
   }
   template <class Token>
   auto async_set_class(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[15], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::class__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_class(double value, Token&& token) {
     return async_set_class(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_co_await(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[16], options);
+    return rr_get<double>(rr_members_delete[rr_at::co_await_], options);
   }
   template <class Token>
   auto async_get_co_await(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[16], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::co_await_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_co_await(Token&& token) {
     return async_get_co_await(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_co_await(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[16], options, &value);
+    rr_set(rr_members_delete[rr_at::co_await_], options, &value);
   }
   template <class Token>
   auto async_set_co_await(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[16], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::co_await_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_co_await(double value, Token&& token) {
     return async_set_co_await(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_co_return(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[17], options);
+    return rr_get<double>(rr_members_delete[rr_at::co_return_], options);
   }
   template <class Token>
   auto async_get_co_return(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[17], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::co_return_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_co_return(Token&& token) {
     return async_get_co_return(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_co_return(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[17], options, &value);
+    rr_set(rr_members_delete[rr_at::co_return_], options, &value);
   }
   template <class Token>
   auto async_set_co_return(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[17], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::co_return_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_co_return(double value, Token&& token) {
     return async_set_co_return(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_co_yield(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[18], options);
+    return rr_get<double>(rr_members_delete[rr_at::co_yield_], options);
   }
   template <class Token>
   auto async_get_co_yield(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[18], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::co_yield_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_co_yield(Token&& token) {
     return async_get_co_yield(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_co_yield(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[18], options, &value);
+    rr_set(rr_members_delete[rr_at::co_yield_], options, &value);
   }
   template <class Token>
   auto async_set_co_yield(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[18], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::co_yield_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_co_yield(double value, Token&& token) {
     return async_set_co_yield(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_compl(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[19], options);
+    return rr_get<double>(rr_members_delete[rr_at::compl_], options);
   }
   template <class Token>
   auto async_get_compl(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[19], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::compl_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_compl(Token&& token) {
     return async_get_compl(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_compl(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[19], options, &value);
+    rr_set(rr_members_delete[rr_at::compl_], options, &value);
   }
   template <class Token>
   auto async_set_compl(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[19], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::compl_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_compl(double value, Token&& token) {
     return async_set_compl(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_concept(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[20], options);
+    return rr_get<double>(rr_members_delete[rr_at::concept_], options);
   }
   template <class Token>
   auto async_get_concept(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[20], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::concept_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_concept(Token&& token) {
     return async_get_concept(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_concept(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[20], options, &value);
+    rr_set(rr_members_delete[rr_at::concept_], options, &value);
   }
   template <class Token>
   auto async_set_concept(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[20], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::concept_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_concept(double value, Token&& token) {
     return async_set_concept(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_const(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[21], options);
+    return rr_get<double>(rr_members_delete[rr_at::const_], options);
   }
   template <class Token>
   auto async_get_const(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[21], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::const_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_const(Token&& token) {
     return async_get_const(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_const(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[21], options, &value);
+    rr_set(rr_members_delete[rr_at::const_], options, &value);
   }
   template <class Token>
   auto async_set_const(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[21], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::const_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_const(double value, Token&& token) {
     return async_set_const(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_const_cast(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[22], options);
+    return rr_get<double>(rr_members_delete[rr_at::const_cast_], options);
   }
   template <class Token>
   auto async_get_const_cast(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[22], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::const_cast_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_const_cast(Token&& token) {
     return async_get_const_cast(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_const_cast(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[22], options, &value);
+    rr_set(rr_members_delete[rr_at::const_cast_], options, &value);
   }
   template <class Token>
   auto async_set_const_cast(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[22], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::const_cast_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_const_cast(double value, Token&& token) {
     return async_set_const_cast(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_consteval(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[23], options);
+    return rr_get<double>(rr_members_delete[rr_at::consteval_], options);
   }
   template <class Token>
   auto async_get_consteval(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[23], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::consteval_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_consteval(Token&& token) {
     return async_get_consteval(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_consteval(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[23], options, &value);
+    rr_set(rr_members_delete[rr_at::consteval_], options, &value);
   }
   template <class Token>
   auto async_set_consteval(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[23], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::consteval_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_consteval(double value, Token&& token) {
     return async_set_consteval(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_constexpr(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[24], options);
+    return rr_get<double>(rr_members_delete[rr_at::constexpr_], options);
   }
   template <class Token>
   auto async_get_constexpr(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[24], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::constexpr_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_constexpr(Token&& token) {
     return async_get_constexpr(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_constexpr(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[24], options, &value);
+    rr_set(rr_members_delete[rr_at::constexpr_], options, &value);
   }
   template <class Token>
   auto async_set_constexpr(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[24], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::constexpr_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_constexpr(double value, Token&& token) {
     return async_set_constexpr(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_constinit(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[25], options);
+    return rr_get<double>(rr_members_delete[rr_at::constinit_], options);
   }
   template <class Token>
   auto async_get_constinit(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[25], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::constinit_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_constinit(Token&& token) {
     return async_get_constinit(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_constinit(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[25], options, &value);
+    rr_set(rr_members_delete[rr_at::constinit_], options, &value);
   }
   template <class Token>
   auto async_set_constinit(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[25], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::constinit_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_constinit(double value, Token&& token) {
     return async_set_constinit(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_continue(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[26], options);
+    return rr_get<double>(rr_members_delete[rr_at::continue_], options);
   }
   template <class Token>
   auto async_get_continue(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[26], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::continue_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_continue(Token&& token) {
     return async_get_continue(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_continue(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[26], options, &value);
+    rr_set(rr_members_delete[rr_at::continue_], options, &value);
   }
   template <class Token>
   auto async_set_continue(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[26], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::continue_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_continue(double value, Token&& token) {
     return async_set_continue(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_decltype(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[27], options);
+    return rr_get<double>(rr_members_delete[rr_at::decltype_], options);
   }
   template <class Token>
   auto async_get_decltype(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[27], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::decltype_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_decltype(Token&& token) {
     return async_get_decltype(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_decltype(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[27], options, &value);
+    rr_set(rr_members_delete[rr_at::decltype_], options, &value);
   }
   template <class Token>
   auto async_set_decltype(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[27], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::decltype_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_decltype(double value, Token&& token) {
     return async_set_decltype(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_default(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[28], options);
+    return rr_get<double>(rr_members_delete[rr_at::default_], options);
   }
   template <class Token>
   auto async_get_default(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[28], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::default_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_default(Token&& token) {
     return async_get_default(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_default(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[28], options, &value);
+    rr_set(rr_members_delete[rr_at::default_], options, &value);
   }
   template <class Token>
   auto async_set_default(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[28], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::default_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_default(double value, Token&& token) {
     return async_set_default(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_delete(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[29], options);
+    return rr_get<double>(rr_members_delete[rr_at::delete__], options);
   }
   template <class Token>
   auto async_get_delete(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[29], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::delete__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_delete(Token&& token) {
     return async_get_delete(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_delete(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[29], options, &value);
+    rr_set(rr_members_delete[rr_at::delete__], options, &value);
   }
   template <class Token>
   auto async_set_delete(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[29], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::delete__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_delete(double value, Token&& token) {
     return async_set_delete(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_do(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[30], options);
+    return rr_get<double>(rr_members_delete[rr_at::do_], options);
   }
   template <class Token>
   auto async_get_do(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[30], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::do_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_do(Token&& token) {
     return async_get_do(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_do(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[30], options, &value);
+    rr_set(rr_members_delete[rr_at::do_], options, &value);
   }
   template <class Token>
   auto async_set_do(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[30], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::do_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_do(double value, Token&& token) {
     return async_set_do(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_dynamic_cast(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[31], options);
+    return rr_get<double>(rr_members_delete[rr_at::dynamic_cast_], options);
   }
   template <class Token>
   auto async_get_dynamic_cast(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[31], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::dynamic_cast_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_dynamic_cast(Token&& token) {
     return async_get_dynamic_cast(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_dynamic_cast(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[31], options, &value);
+    rr_set(rr_members_delete[rr_at::dynamic_cast_], options, &value);
   }
   template <class Token>
   auto async_set_dynamic_cast(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[31], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::dynamic_cast_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_dynamic_cast(double value, Token&& token) {
     return async_set_dynamic_cast(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_else(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[32], options);
+    return rr_get<double>(rr_members_delete[rr_at::else_], options);
   }
   template <class Token>
   auto async_get_else(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[32], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::else_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_else(Token&& token) {
     return async_get_else(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_else(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[32], options, &value);
+    rr_set(rr_members_delete[rr_at::else_], options, &value);
   }
   template <class Token>
   auto async_set_else(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[32], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::else_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_else(double value, Token&& token) {
     return async_set_else(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_explicit(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[33], options);
+    return rr_get<double>(rr_members_delete[rr_at::explicit_], options);
   }
   template <class Token>
   auto async_get_explicit(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[33], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::explicit_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_explicit(Token&& token) {
     return async_get_explicit(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_explicit(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[33], options, &value);
+    rr_set(rr_members_delete[rr_at::explicit_], options, &value);
   }
   template <class Token>
   auto async_set_explicit(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[33], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::explicit_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_explicit(double value, Token&& token) {
     return async_set_explicit(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_export(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[34], options);
+    return rr_get<double>(rr_members_delete[rr_at::export__], options);
   }
   template <class Token>
   auto async_get_export(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[34], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::export__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_export(Token&& token) {
     return async_get_export(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_export(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[34], options, &value);
+    rr_set(rr_members_delete[rr_at::export__], options, &value);
   }
   template <class Token>
   auto async_set_export(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[34], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::export__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_export(double value, Token&& token) {
     return async_set_export(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_extern(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[35], options);
+    return rr_get<double>(rr_members_delete[rr_at::extern_], options);
   }
   template <class Token>
   auto async_get_extern(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[35], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::extern_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_extern(Token&& token) {
     return async_get_extern(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_extern(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[35], options, &value);
+    rr_set(rr_members_delete[rr_at::extern_], options, &value);
   }
   template <class Token>
   auto async_set_extern(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[35], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::extern_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_extern(double value, Token&& token) {
     return async_set_extern(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_false(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[36], options);
+    return rr_get<double>(rr_members_delete[rr_at::false_], options);
   }
   template <class Token>
   auto async_get_false(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[36], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::false_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_false(Token&& token) {
     return async_get_false(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_false(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[36], options, &value);
+    rr_set(rr_members_delete[rr_at::false_], options, &value);
   }
   template <class Token>
   auto async_set_false(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[36], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::false_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_false(double value, Token&& token) {
     return async_set_false(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_float(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[37], options);
+    return rr_get<double>(rr_members_delete[rr_at::float_], options);
   }
   template <class Token>
   auto async_get_float(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[37], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::float_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_float(Token&& token) {
     return async_get_float(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_float(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[37], options, &value);
+    rr_set(rr_members_delete[rr_at::float_], options, &value);
   }
   template <class Token>
   auto async_set_float(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[37], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::float_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_float(double value, Token&& token) {
     return async_set_float(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_for(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[38], options);
+    return rr_get<double>(rr_members_delete[rr_at::for_], options);
   }
   template <class Token>
   auto async_get_for(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[38], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::for_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_for(Token&& token) {
     return async_get_for(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_for(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[38], options, &value);
+    rr_set(rr_members_delete[rr_at::for_], options, &value);
   }
   template <class Token>
   auto async_set_for(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[38], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::for_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_for(double value, Token&& token) {
     return async_set_for(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_friend(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[39], options);
+    return rr_get<double>(rr_members_delete[rr_at::friend_], options);
   }
   template <class Token>
   auto async_get_friend(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[39], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::friend_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_friend(Token&& token) {
     return async_get_friend(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_friend(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[39], options, &value);
+    rr_set(rr_members_delete[rr_at::friend_], options, &value);
   }
   template <class Token>
   auto async_set_friend(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[39], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::friend_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_friend(double value, Token&& token) {
     return async_set_friend(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_goto(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[40], options);
+    return rr_get<double>(rr_members_delete[rr_at::goto_], options);
   }
   template <class Token>
   auto async_get_goto(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[40], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::goto_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_goto(Token&& token) {
     return async_get_goto(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_goto(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[40], options, &value);
+    rr_set(rr_members_delete[rr_at::goto_], options, &value);
   }
   template <class Token>
   auto async_set_goto(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[40], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::goto_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_goto(double value, Token&& token) {
     return async_set_goto(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_if(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[41], options);
+    return rr_get<double>(rr_members_delete[rr_at::if_], options);
   }
   template <class Token>
   auto async_get_if(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[41], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::if_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_if(Token&& token) {
     return async_get_if(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_if(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[41], options, &value);
+    rr_set(rr_members_delete[rr_at::if_], options, &value);
   }
   template <class Token>
   auto async_set_if(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[41], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::if_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_if(double value, Token&& token) {
     return async_set_if(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_inline(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[42], options);
+    return rr_get<double>(rr_members_delete[rr_at::inline_], options);
   }
   template <class Token>
   auto async_get_inline(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[42], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::inline_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_inline(Token&& token) {
     return async_get_inline(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_inline(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[42], options, &value);
+    rr_set(rr_members_delete[rr_at::inline_], options, &value);
   }
   template <class Token>
   auto async_set_inline(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[42], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::inline_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_inline(double value, Token&& token) {
     return async_set_inline(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_int(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[43], options);
+    return rr_get<double>(rr_members_delete[rr_at::int_], options);
   }
   template <class Token>
   auto async_get_int(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[43], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::int_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_int(Token&& token) {
     return async_get_int(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_int(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[43], options, &value);
+    rr_set(rr_members_delete[rr_at::int_], options, &value);
   }
   template <class Token>
   auto async_set_int(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[43], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::int_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_int(double value, Token&& token) {
     return async_set_int(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_long(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[44], options);
+    return rr_get<double>(rr_members_delete[rr_at::long_], options);
   }
   template <class Token>
   auto async_get_long(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[44], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::long_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_long(Token&& token) {
     return async_get_long(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_long(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[44], options, &value);
+    rr_set(rr_members_delete[rr_at::long_], options, &value);
   }
   template <class Token>
   auto async_set_long(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[44], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::long_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_long(double value, Token&& token) {
     return async_set_long(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_mutable(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[45], options);
+    return rr_get<double>(rr_members_delete[rr_at::mutable_], options);
   }
   template <class Token>
   auto async_get_mutable(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[45], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::mutable_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_mutable(Token&& token) {
     return async_get_mutable(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_mutable(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[45], options, &value);
+    rr_set(rr_members_delete[rr_at::mutable_], options, &value);
   }
   template <class Token>
   auto async_set_mutable(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[45], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::mutable_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_mutable(double value, Token&& token) {
     return async_set_mutable(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_namespace(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[46], options);
+    return rr_get<double>(rr_members_delete[rr_at::namespace_], options);
   }
   template <class Token>
   auto async_get_namespace(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[46], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::namespace_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_namespace(Token&& token) {
     return async_get_namespace(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_namespace(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[46], options, &value);
+    rr_set(rr_members_delete[rr_at::namespace_], options, &value);
   }
   template <class Token>
   auto async_set_namespace(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[46], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::namespace_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_namespace(double value, Token&& token) {
     return async_set_namespace(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_new(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[47], options);
+    return rr_get<double>(rr_members_delete[rr_at::new__], options);
   }
   template <class Token>
   auto async_get_new(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[47], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::new__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_new(Token&& token) {
     return async_get_new(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_new(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[47], options, &value);
+    rr_set(rr_members_delete[rr_at::new__], options, &value);
   }
   template <class Token>
   auto async_set_new(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[47], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::new__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_new(double value, Token&& token) {
     return async_set_new(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_noexcept(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[48], options);
+    return rr_get<double>(rr_members_delete[rr_at::noexcept_], options);
   }
   template <class Token>
   auto async_get_noexcept(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[48], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::noexcept_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_noexcept(Token&& token) {
     return async_get_noexcept(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_noexcept(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[48], options, &value);
+    rr_set(rr_members_delete[rr_at::noexcept_], options, &value);
   }
   template <class Token>
   auto async_set_noexcept(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[48], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::noexcept_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_noexcept(double value, Token&& token) {
     return async_set_noexcept(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_not(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[49], options);
+    return rr_get<double>(rr_members_delete[rr_at::not_], options);
   }
   template <class Token>
   auto async_get_not(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[49], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::not_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_not(Token&& token) {
     return async_get_not(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_not(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[49], options, &value);
+    rr_set(rr_members_delete[rr_at::not_], options, &value);
   }
   template <class Token>
   auto async_set_not(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[49], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::not_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_not(double value, Token&& token) {
     return async_set_not(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_not_eq(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[50], options);
+    return rr_get<double>(rr_members_delete[rr_at::not_eq_], options);
   }
   template <class Token>
   auto async_get_not_eq(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[50], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::not_eq_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_not_eq(Token&& token) {
     return async_get_not_eq(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_not_eq(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[50], options, &value);
+    rr_set(rr_members_delete[rr_at::not_eq_], options, &value);
   }
   template <class Token>
   auto async_set_not_eq(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[50], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::not_eq_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_not_eq(double value, Token&& token) {
     return async_set_not_eq(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_nullptr(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[51], options);
+    return rr_get<double>(rr_members_delete[rr_at::nullptr_], options);
   }
   template <class Token>
   auto async_get_nullptr(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[51], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::nullptr_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_nullptr(Token&& token) {
     return async_get_nullptr(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_nullptr(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[51], options, &value);
+    rr_set(rr_members_delete[rr_at::nullptr_], options, &value);
   }
   template <class Token>
   auto async_set_nullptr(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[51], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::nullptr_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_nullptr(double value, Token&& token) {
     return async_set_nullptr(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_operator(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[52], options);
+    return rr_get<double>(rr_members_delete[rr_at::operator_], options);
   }
   template <class Token>
   auto async_get_operator(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[52], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::operator_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_operator(Token&& token) {
     return async_get_operator(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_operator(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[52], options, &value);
+    rr_set(rr_members_delete[rr_at::operator_], options, &value);
   }
   template <class Token>
   auto async_set_operator(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[52], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::operator_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_operator(double value, Token&& token) {
     return async_set_operator(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_or(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[53], options);
+    return rr_get<double>(rr_members_delete[rr_at::or_], options);
   }
   template <class Token>
   auto async_get_or(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[53], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::or_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_or(Token&& token) {
     return async_get_or(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_or(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[53], options, &value);
+    rr_set(rr_members_delete[rr_at::or_], options, &value);
   }
   template <class Token>
   auto async_set_or(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[53], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::or_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_or(double value, Token&& token) {
     return async_set_or(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_or_eq(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[54], options);
+    return rr_get<double>(rr_members_delete[rr_at::or_eq_], options);
   }
   template <class Token>
   auto async_get_or_eq(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[54], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::or_eq_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_or_eq(Token&& token) {
     return async_get_or_eq(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_or_eq(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[54], options, &value);
+    rr_set(rr_members_delete[rr_at::or_eq_], options, &value);
   }
   template <class Token>
   auto async_set_or_eq(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[54], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::or_eq_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_or_eq(double value, Token&& token) {
     return async_set_or_eq(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_private(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[55], options);
+    return rr_get<double>(rr_members_delete[rr_at::private_], options);
   }
   template <class Token>
   auto async_get_private(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[55], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::private_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_private(Token&& token) {
     return async_get_private(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_private(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[55], options, &value);
+    rr_set(rr_members_delete[rr_at::private_], options, &value);
   }
   template <class Token>
   auto async_set_private(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[55], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::private_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_private(double value, Token&& token) {
     return async_set_private(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_protected(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[56], options);
+    return rr_get<double>(rr_members_delete[rr_at::protected_], options);
   }
   template <class Token>
   auto async_get_protected(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[56], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::protected_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_protected(Token&& token) {
     return async_get_protected(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_protected(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[56], options, &value);
+    rr_set(rr_members_delete[rr_at::protected_], options, &value);
   }
   template <class Token>
   auto async_set_protected(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[56], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::protected_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_protected(double value, Token&& token) {
     return async_set_protected(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_public(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[57], options);
+    return rr_get<double>(rr_members_delete[rr_at::public_], options);
   }
   template <class Token>
   auto async_get_public(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[57], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::public_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_public(Token&& token) {
     return async_get_public(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_public(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[57], options, &value);
+    rr_set(rr_members_delete[rr_at::public_], options, &value);
   }
   template <class Token>
   auto async_set_public(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[57], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::public_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_public(double value, Token&& token) {
     return async_set_public(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_register(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[58], options);
+    return rr_get<double>(rr_members_delete[rr_at::register__], options);
   }
   template <class Token>
   auto async_get_register(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[58], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::register__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_register(Token&& token) {
     return async_get_register(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_register(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[58], options, &value);
+    rr_set(rr_members_delete[rr_at::register__], options, &value);
   }
   template <class Token>
   auto async_set_register(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[58], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::register__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_register(double value, Token&& token) {
     return async_set_register(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_reinterpret_cast(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[59], options);
+    return rr_get<double>(rr_members_delete[rr_at::reinterpret_cast_], options);
   }
   template <class Token>
   auto async_get_reinterpret_cast(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[59], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::reinterpret_cast_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_reinterpret_cast(Token&& token) {
     return async_get_reinterpret_cast(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_reinterpret_cast(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[59], options, &value);
+    rr_set(rr_members_delete[rr_at::reinterpret_cast_], options, &value);
   }
   template <class Token>
   auto async_set_reinterpret_cast(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[59], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::reinterpret_cast_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_reinterpret_cast(double value, Token&& token) {
     return async_set_reinterpret_cast(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_requires(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[60], options);
+    return rr_get<double>(rr_members_delete[rr_at::requires_], options);
   }
   template <class Token>
   auto async_get_requires(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[60], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::requires_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_requires(Token&& token) {
     return async_get_requires(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_requires(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[60], options, &value);
+    rr_set(rr_members_delete[rr_at::requires_], options, &value);
   }
   template <class Token>
   auto async_set_requires(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[60], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::requires_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_requires(double value, Token&& token) {
     return async_set_requires(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_return(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[61], options);
+    return rr_get<double>(rr_members_delete[rr_at::return_], options);
   }
   template <class Token>
   auto async_get_return(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[61], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::return_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_return(Token&& token) {
     return async_get_return(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_return(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[61], options, &value);
+    rr_set(rr_members_delete[rr_at::return_], options, &value);
   }
   template <class Token>
   auto async_set_return(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[61], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::return_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_return(double value, Token&& token) {
     return async_set_return(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_short(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[62], options);
+    return rr_get<double>(rr_members_delete[rr_at::short_], options);
   }
   template <class Token>
   auto async_get_short(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[62], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::short_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_short(Token&& token) {
     return async_get_short(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_short(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[62], options, &value);
+    rr_set(rr_members_delete[rr_at::short_], options, &value);
   }
   template <class Token>
   auto async_set_short(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[62], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::short_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_short(double value, Token&& token) {
     return async_set_short(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_signed(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[63], options);
+    return rr_get<double>(rr_members_delete[rr_at::signed_], options);
   }
   template <class Token>
   auto async_get_signed(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[63], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::signed_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_signed(Token&& token) {
     return async_get_signed(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_signed(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[63], options, &value);
+    rr_set(rr_members_delete[rr_at::signed_], options, &value);
   }
   template <class Token>
   auto async_set_signed(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[63], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::signed_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_signed(double value, Token&& token) {
     return async_set_signed(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_sizeof(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[64], options);
+    return rr_get<double>(rr_members_delete[rr_at::sizeof_], options);
   }
   template <class Token>
   auto async_get_sizeof(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[64], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::sizeof_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_sizeof(Token&& token) {
     return async_get_sizeof(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_sizeof(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[64], options, &value);
+    rr_set(rr_members_delete[rr_at::sizeof_], options, &value);
   }
   template <class Token>
   auto async_set_sizeof(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[64], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::sizeof_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_sizeof(double value, Token&& token) {
     return async_set_sizeof(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_static(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[65], options);
+    return rr_get<double>(rr_members_delete[rr_at::static__], options);
   }
   template <class Token>
   auto async_get_static(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[65], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::static__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_static(Token&& token) {
     return async_get_static(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_static(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[65], options, &value);
+    rr_set(rr_members_delete[rr_at::static__], options, &value);
   }
   template <class Token>
   auto async_set_static(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[65], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::static__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_static(double value, Token&& token) {
     return async_set_static(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_static_assert(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[66], options);
+    return rr_get<double>(rr_members_delete[rr_at::static_assert_], options);
   }
   template <class Token>
   auto async_get_static_assert(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[66], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::static_assert_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_static_assert(Token&& token) {
     return async_get_static_assert(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_static_assert(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[66], options, &value);
+    rr_set(rr_members_delete[rr_at::static_assert_], options, &value);
   }
   template <class Token>
   auto async_set_static_assert(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[66], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::static_assert_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_static_assert(double value, Token&& token) {
     return async_set_static_assert(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_static_cast(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[67], options);
+    return rr_get<double>(rr_members_delete[rr_at::static_cast_], options);
   }
   template <class Token>
   auto async_get_static_cast(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[67], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::static_cast_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_static_cast(Token&& token) {
     return async_get_static_cast(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_static_cast(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[67], options, &value);
+    rr_set(rr_members_delete[rr_at::static_cast_], options, &value);
   }
   template <class Token>
   auto async_set_static_cast(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[67], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::static_cast_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_static_cast(double value, Token&& token) {
     return async_set_static_cast(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_switch(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[68], options);
+    return rr_get<double>(rr_members_delete[rr_at::switch_], options);
   }
   template <class Token>
   auto async_get_switch(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[68], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::switch_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_switch(Token&& token) {
     return async_get_switch(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_switch(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[68], options, &value);
+    rr_set(rr_members_delete[rr_at::switch_], options, &value);
   }
   template <class Token>
   auto async_set_switch(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[68], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::switch_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_switch(double value, Token&& token) {
     return async_set_switch(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_template(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[69], options);
+    return rr_get<double>(rr_members_delete[rr_at::template__], options);
   }
   template <class Token>
   auto async_get_template(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[69], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::template__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_template(Token&& token) {
     return async_get_template(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_template(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[69], options, &value);
+    rr_set(rr_members_delete[rr_at::template__], options, &value);
   }
   template <class Token>
   auto async_set_template(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[69], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::template__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_template(double value, Token&& token) {
     return async_set_template(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_thread_local(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[70], options);
+    return rr_get<double>(rr_members_delete[rr_at::thread_local_], options);
   }
   template <class Token>
   auto async_get_thread_local(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[70], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::thread_local_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_thread_local(Token&& token) {
     return async_get_thread_local(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_thread_local(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[70], options, &value);
+    rr_set(rr_members_delete[rr_at::thread_local_], options, &value);
   }
   template <class Token>
   auto async_set_thread_local(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[70], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::thread_local_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_thread_local(double value, Token&& token) {
     return async_set_thread_local(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_throw(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[71], options);
+    return rr_get<double>(rr_members_delete[rr_at::throw_], options);
   }
   template <class Token>
   auto async_get_throw(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[71], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::throw_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_throw(Token&& token) {
     return async_get_throw(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_throw(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[71], options, &value);
+    rr_set(rr_members_delete[rr_at::throw_], options, &value);
   }
   template <class Token>
   auto async_set_throw(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[71], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::throw_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_throw(double value, Token&& token) {
     return async_set_throw(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_true(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[72], options);
+    return rr_get<double>(rr_members_delete[rr_at::true_], options);
   }
   template <class Token>
   auto async_get_true(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[72], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::true_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_true(Token&& token) {
     return async_get_true(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_true(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[72], options, &value);
+    rr_set(rr_members_delete[rr_at::true_], options, &value);
   }
   template <class Token>
   auto async_set_true(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[72], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::true_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_true(double value, Token&& token) {
     return async_set_true(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_try(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[73], options);
+    return rr_get<double>(rr_members_delete[rr_at::try_], options);
   }
   template <class Token>
   auto async_get_try(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[73], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::try_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_try(Token&& token) {
     return async_get_try(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_try(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[73], options, &value);
+    rr_set(rr_members_delete[rr_at::try_], options, &value);
   }
   template <class Token>
   auto async_set_try(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[73], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::try_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_try(double value, Token&& token) {
     return async_set_try(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_typedef(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[74], options);
+    return rr_get<double>(rr_members_delete[rr_at::typedef_], options);
   }
   template <class Token>
   auto async_get_typedef(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[74], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::typedef_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_typedef(Token&& token) {
     return async_get_typedef(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_typedef(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[74], options, &value);
+    rr_set(rr_members_delete[rr_at::typedef_], options, &value);
   }
   template <class Token>
   auto async_set_typedef(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[74], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::typedef_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_typedef(double value, Token&& token) {
     return async_set_typedef(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_typeid(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[75], options);
+    return rr_get<double>(rr_members_delete[rr_at::typeid_], options);
   }
   template <class Token>
   auto async_get_typeid(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[75], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::typeid_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_typeid(Token&& token) {
     return async_get_typeid(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_typeid(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[75], options, &value);
+    rr_set(rr_members_delete[rr_at::typeid_], options, &value);
   }
   template <class Token>
   auto async_set_typeid(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[75], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::typeid_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_typeid(double value, Token&& token) {
     return async_set_typeid(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_typename(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[76], options);
+    return rr_get<double>(rr_members_delete[rr_at::typename_], options);
   }
   template <class Token>
   auto async_get_typename(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[76], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::typename_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_typename(Token&& token) {
     return async_get_typename(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_typename(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[76], options, &value);
+    rr_set(rr_members_delete[rr_at::typename_], options, &value);
   }
   template <class Token>
   auto async_set_typename(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[76], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::typename_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_typename(double value, Token&& token) {
     return async_set_typename(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_union(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[77], options);
+    return rr_get<double>(rr_members_delete[rr_at::union__], options);
   }
   template <class Token>
   auto async_get_union(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[77], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::union__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_union(Token&& token) {
     return async_get_union(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_union(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[77], options, &value);
+    rr_set(rr_members_delete[rr_at::union__], options, &value);
   }
   template <class Token>
   auto async_set_union(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[77], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::union__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_union(double value, Token&& token) {
     return async_set_union(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_unsigned(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[78], options);
+    return rr_get<double>(rr_members_delete[rr_at::unsigned_], options);
   }
   template <class Token>
   auto async_get_unsigned(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[78], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::unsigned_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_unsigned(Token&& token) {
     return async_get_unsigned(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_unsigned(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[78], options, &value);
+    rr_set(rr_members_delete[rr_at::unsigned_], options, &value);
   }
   template <class Token>
   auto async_set_unsigned(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[78], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::unsigned_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_unsigned(double value, Token&& token) {
     return async_set_unsigned(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_virtual(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[79], options);
+    return rr_get<double>(rr_members_delete[rr_at::virtual_], options);
   }
   template <class Token>
   auto async_get_virtual(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[79], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::virtual_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_virtual(Token&& token) {
     return async_get_virtual(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_virtual(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[79], options, &value);
+    rr_set(rr_members_delete[rr_at::virtual_], options, &value);
   }
   template <class Token>
   auto async_set_virtual(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[79], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::virtual_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_virtual(double value, Token&& token) {
     return async_set_virtual(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_volatile(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[80], options);
+    return rr_get<double>(rr_members_delete[rr_at::volatile__], options);
   }
   template <class Token>
   auto async_get_volatile(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[80], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::volatile__], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_volatile(Token&& token) {
     return async_get_volatile(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_volatile(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[80], options, &value);
+    rr_set(rr_members_delete[rr_at::volatile__], options, &value);
   }
   template <class Token>
   auto async_set_volatile(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[80], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::volatile__], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_volatile(double value, Token&& token) {
     return async_set_volatile(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_wchar_t(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[81], options);
+    return rr_get<double>(rr_members_delete[rr_at::wchar_t_], options);
   }
   template <class Token>
   auto async_get_wchar_t(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[81], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::wchar_t_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_wchar_t(Token&& token) {
     return async_get_wchar_t(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_wchar_t(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[81], options, &value);
+    rr_set(rr_members_delete[rr_at::wchar_t_], options, &value);
   }
   template <class Token>
   auto async_set_wchar_t(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[81], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::wchar_t_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_wchar_t(double value, Token&& token) {
     return async_set_wchar_t(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_while(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[82], options);
+    return rr_get<double>(rr_members_delete[rr_at::while_], options);
   }
   template <class Token>
   auto async_get_while(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[82], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::while_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_while(Token&& token) {
     return async_get_while(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_while(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[82], options, &value);
+    rr_set(rr_members_delete[rr_at::while_], options, &value);
   }
   template <class Token>
   auto async_set_while(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[82], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::while_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_while(double value, Token&& token) {
     return async_set_while(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_xor(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[83], options);
+    return rr_get<double>(rr_members_delete[rr_at::xor_], options);
   }
   template <class Token>
   auto async_get_xor(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[83], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::xor_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_xor(Token&& token) {
     return async_get_xor(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_xor(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[83], options, &value);
+    rr_set(rr_members_delete[rr_at::xor_], options, &value);
   }
   template <class Token>
   auto async_set_xor(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[83], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::xor_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_xor(double value, Token&& token) {
     return async_set_xor(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_xor_eq(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[84], options);
+    return rr_get<double>(rr_members_delete[rr_at::xor_eq_], options);
   }
   template <class Token>
   auto async_get_xor_eq(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[84], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::xor_eq_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_xor_eq(Token&& token) {
     return async_get_xor_eq(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_xor_eq(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[84], options, &value);
+    rr_set(rr_members_delete[rr_at::xor_eq_], options, &value);
   }
   template <class Token>
   auto async_set_xor_eq(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[84], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::xor_eq_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_xor_eq(double value, Token&& token) {
     return async_set_xor_eq(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_assert(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[85], options);
+    return rr_get<double>(rr_members_delete[rr_at::assert_], options);
   }
   template <class Token>
   auto async_get_assert(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[85], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::assert_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_assert(Token&& token) {
     return async_get_assert(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_assert(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[85], options, &value);
+    rr_set(rr_members_delete[rr_at::assert_], options, &value);
   }
   template <class Token>
   auto async_set_assert(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[85], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::assert_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_assert(double value, Token&& token) {
     return async_set_assert(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_errno(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[86], options);
+    return rr_get<double>(rr_members_delete[rr_at::errno_], options);
   }
   template <class Token>
   auto async_get_errno(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[86], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::errno_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_errno(Token&& token) {
     return async_get_errno(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_errno(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[86], options, &value);
+    rr_set(rr_members_delete[rr_at::errno_], options, &value);
   }
   template <class Token>
   auto async_set_errno(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[86], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::errno_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_errno(double value, Token&& token) {
     return async_set_errno(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_linux(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[87], options);
+    return rr_get<double>(rr_members_delete[rr_at::linux_], options);
   }
   template <class Token>
   auto async_get_linux(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[87], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::linux_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_linux(Token&& token) {
     return async_get_linux(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_linux(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[87], options, &value);
+    rr_set(rr_members_delete[rr_at::linux_], options, &value);
   }
   template <class Token>
   auto async_set_linux(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[87], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::linux_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_linux(double value, Token&& token) {
     return async_set_linux(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_unix(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[88], options);
+    return rr_get<double>(rr_members_delete[rr_at::unix_], options);
   }
   template <class Token>
   auto async_get_unix(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[88], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::unix_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_unix(Token&& token) {
     return async_get_unix(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_unix(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[88], options, &value);
+    rr_set(rr_members_delete[rr_at::unix_], options, &value);
   }
   template <class Token>
   auto async_set_unix(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[88], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::unix_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_unix(double value, Token&& token) {
     return async_set_unix(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_major(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[89], options);
+    return rr_get<double>(rr_members_delete[rr_at::major_], options);
   }
   template <class Token>
   auto async_get_major(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[89], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::major_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_major(Token&& token) {
     return async_get_major(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_major(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[89], options, &value);
+    rr_set(rr_members_delete[rr_at::major_], options, &value);
   }
   template <class Token>
   auto async_set_major(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[89], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::major_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_major(double value, Token&& token) {
     return async_set_major(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_minor(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[90], options);
+    return rr_get<double>(rr_members_delete[rr_at::minor_], options);
   }
   template <class Token>
   auto async_get_minor(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[90], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::minor_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_minor(Token&& token) {
     return async_get_minor(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_minor(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[90], options, &value);
+    rr_set(rr_members_delete[rr_at::minor_], options, &value);
   }
   template <class Token>
   auto async_set_minor(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[90], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::minor_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_minor(double value, Token&& token) {
     return async_set_minor(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_EOF(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[91], options);
+    return rr_get<double>(rr_members_delete[rr_at::EOF_], options);
   }
   template <class Token>
   auto async_get_EOF(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[91], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::EOF_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_EOF(Token&& token) {
     return async_get_EOF(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_EOF(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[91], options, &value);
+    rr_set(rr_members_delete[rr_at::EOF_], options, &value);
   }
   template <class Token>
   auto async_set_EOF(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[91], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::EOF_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_EOF(double value, Token&& token) {
     return async_set_EOF(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_NULL(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[92], options);
+    return rr_get<double>(rr_members_delete[rr_at::NULL_], options);
   }
   template <class Token>
   auto async_get_NULL(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[92], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::NULL_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_NULL(Token&& token) {
     return async_get_NULL(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_NULL(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[92], options, &value);
+    rr_set(rr_members_delete[rr_at::NULL_], options, &value);
   }
   template <class Token>
   auto async_set_NULL(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[92], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::NULL_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_NULL(double value, Token&& token) {
     return async_set_NULL(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_INFINITY(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[93], options);
+    return rr_get<double>(rr_members_delete[rr_at::INFINITY_], options);
   }
   template <class Token>
   auto async_get_INFINITY(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[93], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::INFINITY_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_INFINITY(Token&& token) {
     return async_get_INFINITY(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_INFINITY(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[93], options, &value);
+    rr_set(rr_members_delete[rr_at::INFINITY_], options, &value);
   }
   template <class Token>
   auto async_set_INFINITY(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[93], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::INFINITY_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_INFINITY(double value, Token&& token) {
     return async_set_INFINITY(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_NAN(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[94], options);
+    return rr_get<double>(rr_members_delete[rr_at::NAN_], options);
   }
   template <class Token>
   auto async_get_NAN(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[94], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::NAN_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_NAN(Token&& token) {
     return async_get_NAN(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_NAN(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[94], options, &value);
+    rr_set(rr_members_delete[rr_at::NAN_], options, &value);
   }
   template <class Token>
   auto async_set_NAN(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[94], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::NAN_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_NAN(double value, Token&& token) {
     return async_set_NAN(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_RAND_MAX(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[95], options);
+    return rr_get<double>(rr_members_delete[rr_at::RAND_MAX_], options);
   }
   template <class Token>
   auto async_get_RAND_MAX(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[95], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::RAND_MAX_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_RAND_MAX(Token&& token) {
     return async_get_RAND_MAX(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_RAND_MAX(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[95], options, &value);
+    rr_set(rr_members_delete[rr_at::RAND_MAX_], options, &value);
   }
   template <class Token>
   auto async_set_RAND_MAX(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[95], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::RAND_MAX_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_RAND_MAX(double value, Token&& token) {
     return async_set_RAND_MAX(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_BUFSIZ(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[96], options);
+    return rr_get<double>(rr_members_delete[rr_at::BUFSIZ_], options);
   }
   template <class Token>
   auto async_get_BUFSIZ(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[96], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::BUFSIZ_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_BUFSIZ(Token&& token) {
     return async_get_BUFSIZ(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_BUFSIZ(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[96], options, &value);
+    rr_set(rr_members_delete[rr_at::BUFSIZ_], options, &value);
   }
   template <class Token>
   auto async_set_BUFSIZ(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[96], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::BUFSIZ_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_BUFSIZ(double value, Token&& token) {
     return async_set_BUFSIZ(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_SIGINT(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[97], options);
+    return rr_get<double>(rr_members_delete[rr_at::SIGINT_], options);
   }
   template <class Token>
   auto async_get_SIGINT(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[97], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::SIGINT_], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_SIGINT(Token&& token) {
     return async_get_SIGINT(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_SIGINT(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[97], options, &value);
+    rr_set(rr_members_delete[rr_at::SIGINT_], options, &value);
   }
   template <class Token>
   auto async_set_SIGINT(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[97], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::SIGINT_], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_SIGINT(double value, Token&& token) {
     return async_set_SIGINT(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_final(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[98], options);
+    return rr_get<double>(rr_members_delete[rr_at::final], options);
   }
   template <class Token>
   auto async_get_final(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[98], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::final], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_final(Token&& token) {
     return async_get_final(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_final(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[98], options, &value);
+    rr_set(rr_members_delete[rr_at::final], options, &value);
   }
   template <class Token>
   auto async_set_final(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[98], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::final], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_final(double value, Token&& token) {
     return async_set_final(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_override(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[99], options);
+    return rr_get<double>(rr_members_delete[rr_at::override], options);
   }
   template <class Token>
   auto async_get_override(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[99], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::override], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_override(Token&& token) {
     return async_get_override(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_override(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[99], options, &value);
+    rr_set(rr_members_delete[rr_at::override], options, &value);
   }
   template <class Token>
   auto async_set_override(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[99], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::override], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_override(double value, Token&& token) {
     return async_set_override(value, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
   double get_module(const ::rr::CallOptions& options = {}) {
-    return rr_get<double>(rr_members_delete[100], options);
+    return rr_get<double>(rr_members_delete[rr_at::module], options);
   }
   template <class Token>
   auto async_get_module(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<double>(rr_members_delete[100], options, ::std::forward<Token>(token));
+    return rr_async_get<double>(rr_members_delete[rr_at::module], options,
+                                ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_module(Token&& token) {
     return async_get_module(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_module(double value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_delete[100], options, &value);
+    rr_set(rr_members_delete[rr_at::module], options, &value);
   }
   template <class Token>
   auto async_set_module(double value, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_set<double>(rr_members_delete[100], options, ::std::forward<Token>(token),
-                                value);
+    return rr_async_set<double>(rr_members_delete[rr_at::module], options,
+                                ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_module(double value, Token&& token) {
@@ -2712,6 +2932,8 @@ class deleteStub : public virtual ::rr::Stub {
 
 /// Serves one delete: derive from it and implement its members.
 class deleteSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_delete;
+
  public:
   virtual double get_alignas() = 0;
   virtual void set_alignas(double value) = 0;
@@ -3232,22 +3454,131 @@ class deleteDefault : public deleteSkeleton {
   ::rr::Stored<double> rr_value_module;
 };
 
-extern const ::rr::Member rr_members_new[101];
+/// Where each member is in the table.
+struct rr_at_new {
+  enum : ::std::size_t {
+    alignas__,
+    alignof__,
+    and__,
+    and_eq__,
+    asm__,
+    auto__,
+    bitand__,
+    bitor__,
+    break__,
+    case__,
+    catch__,
+    char__,
+    char16_t_,
+    char32_t_,
+    char8_t_,
+    class__,
+    co_await_,
+    co_return_,
+    co_yield_,
+    compl_,
+    concept_,
+    const_,
+    const_cast_,
+    consteval_,
+    constexpr_,
+    constinit_,
+    continue_,
+    decltype_,
+    default_,
+    delete__,
+    do_,
+    dynamic_cast_,
+    else_,
+    explicit_,
+    export__,
+    extern_,
+    false_,
+    float_,
+    for_,
+    friend_,
+    goto_,
+    if_,
+    inline_,
+    int_,
+    long_,
+    mutable_,
+    namespace_,
+    new__,
+    noexcept_,
+    not_,
+    not_eq_,
+    nullptr_,
+    operator_,
+    or_,
+    or_eq_,
+    private_,
+    protected_,
+    public_,
+    register__,
+    reinterpret_cast_,
+    requires_,
+    return_,
+    short_,
+    signed_,
+    sizeof_,
+    static__,
+    static_assert_,
+    static_cast_,
+    switch_,
+    template__,
+    thread_local_,
+    throw_,
+    true_,
+    try_,
+    typedef_,
+    typeid_,
+    typename_,
+    union__,
+    unsigned_,
+    virtual_,
+    volatile__,
+    wchar_t_,
+    while_,
+    xor_,
+    xor_eq_,
+    assert_,
+    errno_,
+    linux_,
+    unix_,
+    major_,
+    minor_,
+    EOF_,
+    NULL_,
+    INFINITY_,
+    NAN_,
+    RAND_MAX_,
+    BUFSIZ_,
+    SIGINT_,
+    final,
+    override,
+    module,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_new[rr_at_new::rr_count];
 extern const ::rr::ObjectType rr_object_new;
 
 /// A new on another node.
 class newStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_new;
+
  public:
   ::std::optional<::experimental::reserved_words::template_> alignas_(
       ::experimental::reserved_words::export_ bitor__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[0],
-                                                                               options, bitor__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::alignas__], options, bitor__);
   }
   template <class Token>
   auto async_alignas_(::experimental::reserved_words::export_ bitor__,
                       const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[0], options, ::std::forward<Token>(token), bitor__);
+        rr_members_new[rr_at::alignas__], options, ::std::forward<Token>(token), bitor__);
   }
   template <class Token>
   auto async_alignas_(::experimental::reserved_words::export_ bitor__, Token&& token) {
@@ -3255,14 +3586,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> alignof_(
       ::experimental::reserved_words::export_ break__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[1],
-                                                                               options, break__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::alignof__], options, break__);
   }
   template <class Token>
   auto async_alignof_(::experimental::reserved_words::export_ break__,
                       const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[1], options, ::std::forward<Token>(token), break__);
+        rr_members_new[rr_at::alignof__], options, ::std::forward<Token>(token), break__);
   }
   template <class Token>
   auto async_alignof_(::experimental::reserved_words::export_ break__, Token&& token) {
@@ -3270,14 +3601,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> and_(
       ::experimental::reserved_words::export_ case__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[2],
-                                                                               options, case__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::and__], options, case__);
   }
   template <class Token>
   auto async_and_(::experimental::reserved_words::export_ case__, const ::rr::CallOptions& options,
                   Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[2], options, ::std::forward<Token>(token), case__);
+        rr_members_new[rr_at::and__], options, ::std::forward<Token>(token), case__);
   }
   template <class Token>
   auto async_and_(::experimental::reserved_words::export_ case__, Token&& token) {
@@ -3285,14 +3616,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> and_eq_(
       ::experimental::reserved_words::export_ catch__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[3],
-                                                                               options, catch__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::and_eq__], options, catch__);
   }
   template <class Token>
   auto async_and_eq_(::experimental::reserved_words::export_ catch__,
                      const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[3], options, ::std::forward<Token>(token), catch__);
+        rr_members_new[rr_at::and_eq__], options, ::std::forward<Token>(token), catch__);
   }
   template <class Token>
   auto async_and_eq_(::experimental::reserved_words::export_ catch__, Token&& token) {
@@ -3300,14 +3631,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> asm_(
       ::experimental::reserved_words::export_ char__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[4],
-                                                                               options, char__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::asm__], options, char__);
   }
   template <class Token>
   auto async_asm_(::experimental::reserved_words::export_ char__, const ::rr::CallOptions& options,
                   Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[4], options, ::std::forward<Token>(token), char__);
+        rr_members_new[rr_at::asm__], options, ::std::forward<Token>(token), char__);
   }
   template <class Token>
   auto async_asm_(::experimental::reserved_words::export_ char__, Token&& token) {
@@ -3315,14 +3646,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> auto_(
       ::experimental::reserved_words::export_ char16_t_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[5],
-                                                                               options, char16_t_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::auto__], options, char16_t_);
   }
   template <class Token>
   auto async_auto_(::experimental::reserved_words::export_ char16_t_,
                    const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[5], options, ::std::forward<Token>(token), char16_t_);
+        rr_members_new[rr_at::auto__], options, ::std::forward<Token>(token), char16_t_);
   }
   template <class Token>
   auto async_auto_(::experimental::reserved_words::export_ char16_t_, Token&& token) {
@@ -3330,14 +3661,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> bitand_(
       ::experimental::reserved_words::export_ char32_t_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[6],
-                                                                               options, char32_t_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::bitand__], options, char32_t_);
   }
   template <class Token>
   auto async_bitand_(::experimental::reserved_words::export_ char32_t_,
                      const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[6], options, ::std::forward<Token>(token), char32_t_);
+        rr_members_new[rr_at::bitand__], options, ::std::forward<Token>(token), char32_t_);
   }
   template <class Token>
   auto async_bitand_(::experimental::reserved_words::export_ char32_t_, Token&& token) {
@@ -3345,14 +3676,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> bitor_(
       ::experimental::reserved_words::export_ char8_t_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[7],
-                                                                               options, char8_t_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::bitor__], options, char8_t_);
   }
   template <class Token>
   auto async_bitor_(::experimental::reserved_words::export_ char8_t_,
                     const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[7], options, ::std::forward<Token>(token), char8_t_);
+        rr_members_new[rr_at::bitor__], options, ::std::forward<Token>(token), char8_t_);
   }
   template <class Token>
   auto async_bitor_(::experimental::reserved_words::export_ char8_t_, Token&& token) {
@@ -3360,14 +3691,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> break_(
       ::experimental::reserved_words::export_ class__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[8],
-                                                                               options, class__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::break__], options, class__);
   }
   template <class Token>
   auto async_break_(::experimental::reserved_words::export_ class__,
                     const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[8], options, ::std::forward<Token>(token), class__);
+        rr_members_new[rr_at::break__], options, ::std::forward<Token>(token), class__);
   }
   template <class Token>
   auto async_break_(::experimental::reserved_words::export_ class__, Token&& token) {
@@ -3375,14 +3706,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> case_(
       ::experimental::reserved_words::export_ co_await_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[9],
-                                                                               options, co_await_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::case__], options, co_await_);
   }
   template <class Token>
   auto async_case_(::experimental::reserved_words::export_ co_await_,
                    const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[9], options, ::std::forward<Token>(token), co_await_);
+        rr_members_new[rr_at::case__], options, ::std::forward<Token>(token), co_await_);
   }
   template <class Token>
   auto async_case_(::experimental::reserved_words::export_ co_await_, Token&& token) {
@@ -3390,14 +3721,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> catch_(
       ::experimental::reserved_words::export_ co_return_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[10],
-                                                                               options, co_return_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::catch__], options, co_return_);
   }
   template <class Token>
   auto async_catch_(::experimental::reserved_words::export_ co_return_,
                     const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[10], options, ::std::forward<Token>(token), co_return_);
+        rr_members_new[rr_at::catch__], options, ::std::forward<Token>(token), co_return_);
   }
   template <class Token>
   auto async_catch_(::experimental::reserved_words::export_ co_return_, Token&& token) {
@@ -3405,14 +3736,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> char_(
       ::experimental::reserved_words::export_ co_yield_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[11],
-                                                                               options, co_yield_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::char__], options, co_yield_);
   }
   template <class Token>
   auto async_char_(::experimental::reserved_words::export_ co_yield_,
                    const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[11], options, ::std::forward<Token>(token), co_yield_);
+        rr_members_new[rr_at::char__], options, ::std::forward<Token>(token), co_yield_);
   }
   template <class Token>
   auto async_char_(::experimental::reserved_words::export_ co_yield_, Token&& token) {
@@ -3420,14 +3751,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> char16_t_(
       ::experimental::reserved_words::export_ compl_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[12],
-                                                                               options, compl_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::char16_t_], options, compl_);
   }
   template <class Token>
   auto async_char16_t_(::experimental::reserved_words::export_ compl_,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[12], options, ::std::forward<Token>(token), compl_);
+        rr_members_new[rr_at::char16_t_], options, ::std::forward<Token>(token), compl_);
   }
   template <class Token>
   auto async_char16_t_(::experimental::reserved_words::export_ compl_, Token&& token) {
@@ -3435,14 +3766,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> char32_t_(
       ::experimental::reserved_words::export_ concept_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[13],
-                                                                               options, concept_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::char32_t_], options, concept_);
   }
   template <class Token>
   auto async_char32_t_(::experimental::reserved_words::export_ concept_,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[13], options, ::std::forward<Token>(token), concept_);
+        rr_members_new[rr_at::char32_t_], options, ::std::forward<Token>(token), concept_);
   }
   template <class Token>
   auto async_char32_t_(::experimental::reserved_words::export_ concept_, Token&& token) {
@@ -3450,14 +3781,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> char8_t_(
       ::experimental::reserved_words::export_ const_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[14],
-                                                                               options, const_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::char8_t_], options, const_);
   }
   template <class Token>
   auto async_char8_t_(::experimental::reserved_words::export_ const_,
                       const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[14], options, ::std::forward<Token>(token), const_);
+        rr_members_new[rr_at::char8_t_], options, ::std::forward<Token>(token), const_);
   }
   template <class Token>
   auto async_char8_t_(::experimental::reserved_words::export_ const_, Token&& token) {
@@ -3466,13 +3797,13 @@ class newStub : public virtual ::rr::Stub {
   ::std::optional<::experimental::reserved_words::template_> class_(
       ::experimental::reserved_words::export_ const_cast_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[15], options, const_cast_);
+        rr_members_new[rr_at::class__], options, const_cast_);
   }
   template <class Token>
   auto async_class_(::experimental::reserved_words::export_ const_cast_,
                     const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[15], options, ::std::forward<Token>(token), const_cast_);
+        rr_members_new[rr_at::class__], options, ::std::forward<Token>(token), const_cast_);
   }
   template <class Token>
   auto async_class_(::experimental::reserved_words::export_ const_cast_, Token&& token) {
@@ -3480,14 +3811,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> co_await_(
       ::experimental::reserved_words::export_ consteval_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[16],
-                                                                               options, consteval_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::co_await_], options, consteval_);
   }
   template <class Token>
   auto async_co_await_(::experimental::reserved_words::export_ consteval_,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[16], options, ::std::forward<Token>(token), consteval_);
+        rr_members_new[rr_at::co_await_], options, ::std::forward<Token>(token), consteval_);
   }
   template <class Token>
   auto async_co_await_(::experimental::reserved_words::export_ consteval_, Token&& token) {
@@ -3495,14 +3826,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> co_return_(
       ::experimental::reserved_words::export_ constexpr_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[17],
-                                                                               options, constexpr_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::co_return_], options, constexpr_);
   }
   template <class Token>
   auto async_co_return_(::experimental::reserved_words::export_ constexpr_,
                         const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[17], options, ::std::forward<Token>(token), constexpr_);
+        rr_members_new[rr_at::co_return_], options, ::std::forward<Token>(token), constexpr_);
   }
   template <class Token>
   auto async_co_return_(::experimental::reserved_words::export_ constexpr_, Token&& token) {
@@ -3510,14 +3841,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> co_yield_(
       ::experimental::reserved_words::export_ constinit_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[18],
-                                                                               options, constinit_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::co_yield_], options, constinit_);
   }
   template <class Token>
   auto async_co_yield_(::experimental::reserved_words::export_ constinit_,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[18], options, ::std::forward<Token>(token), constinit_);
+        rr_members_new[rr_at::co_yield_], options, ::std::forward<Token>(token), constinit_);
   }
   template <class Token>
   auto async_co_yield_(::experimental::reserved_words::export_ constinit_, Token&& token) {
@@ -3525,14 +3856,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> compl_(
       ::experimental::reserved_words::export_ continue_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[19],
-                                                                               options, continue_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::compl_], options, continue_);
   }
   template <class Token>
   auto async_compl_(::experimental::reserved_words::export_ continue_,
                     const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[19], options, ::std::forward<Token>(token), continue_);
+        rr_members_new[rr_at::compl_], options, ::std::forward<Token>(token), continue_);
   }
   template <class Token>
   auto async_compl_(::experimental::reserved_words::export_ continue_, Token&& token) {
@@ -3540,14 +3871,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> concept_(
       ::experimental::reserved_words::export_ decltype_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[20],
-                                                                               options, decltype_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::concept_], options, decltype_);
   }
   template <class Token>
   auto async_concept_(::experimental::reserved_words::export_ decltype_,
                       const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[20], options, ::std::forward<Token>(token), decltype_);
+        rr_members_new[rr_at::concept_], options, ::std::forward<Token>(token), decltype_);
   }
   template <class Token>
   auto async_concept_(::experimental::reserved_words::export_ decltype_, Token&& token) {
@@ -3555,14 +3886,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> const_(
       ::experimental::reserved_words::export_ default_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[21],
-                                                                               options, default_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::const_], options, default_);
   }
   template <class Token>
   auto async_const_(::experimental::reserved_words::export_ default_,
                     const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[21], options, ::std::forward<Token>(token), default_);
+        rr_members_new[rr_at::const_], options, ::std::forward<Token>(token), default_);
   }
   template <class Token>
   auto async_const_(::experimental::reserved_words::export_ default_, Token&& token) {
@@ -3570,14 +3901,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> const_cast_(
       ::experimental::reserved_words::export_ delete__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[22],
-                                                                               options, delete__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::const_cast_], options, delete__);
   }
   template <class Token>
   auto async_const_cast_(::experimental::reserved_words::export_ delete__,
                          const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[22], options, ::std::forward<Token>(token), delete__);
+        rr_members_new[rr_at::const_cast_], options, ::std::forward<Token>(token), delete__);
   }
   template <class Token>
   auto async_const_cast_(::experimental::reserved_words::export_ delete__, Token&& token) {
@@ -3585,14 +3916,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> consteval_(
       ::experimental::reserved_words::export_ do_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[23],
-                                                                               options, do_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::consteval_], options, do_);
   }
   template <class Token>
   auto async_consteval_(::experimental::reserved_words::export_ do_,
                         const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[23], options, ::std::forward<Token>(token), do_);
+        rr_members_new[rr_at::consteval_], options, ::std::forward<Token>(token), do_);
   }
   template <class Token>
   auto async_consteval_(::experimental::reserved_words::export_ do_, Token&& token) {
@@ -3602,13 +3933,13 @@ class newStub : public virtual ::rr::Stub {
       ::experimental::reserved_words::export_ dynamic_cast_,
       const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[24], options, dynamic_cast_);
+        rr_members_new[rr_at::constexpr_], options, dynamic_cast_);
   }
   template <class Token>
   auto async_constexpr_(::experimental::reserved_words::export_ dynamic_cast_,
                         const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[24], options, ::std::forward<Token>(token), dynamic_cast_);
+        rr_members_new[rr_at::constexpr_], options, ::std::forward<Token>(token), dynamic_cast_);
   }
   template <class Token>
   auto async_constexpr_(::experimental::reserved_words::export_ dynamic_cast_, Token&& token) {
@@ -3616,14 +3947,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> constinit_(
       ::experimental::reserved_words::export_ else_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[25],
-                                                                               options, else_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::constinit_], options, else_);
   }
   template <class Token>
   auto async_constinit_(::experimental::reserved_words::export_ else_,
                         const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[25], options, ::std::forward<Token>(token), else_);
+        rr_members_new[rr_at::constinit_], options, ::std::forward<Token>(token), else_);
   }
   template <class Token>
   auto async_constinit_(::experimental::reserved_words::export_ else_, Token&& token) {
@@ -3631,14 +3962,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> continue_(
       ::experimental::reserved_words::export_ explicit_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[26],
-                                                                               options, explicit_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::continue_], options, explicit_);
   }
   template <class Token>
   auto async_continue_(::experimental::reserved_words::export_ explicit_,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[26], options, ::std::forward<Token>(token), explicit_);
+        rr_members_new[rr_at::continue_], options, ::std::forward<Token>(token), explicit_);
   }
   template <class Token>
   auto async_continue_(::experimental::reserved_words::export_ explicit_, Token&& token) {
@@ -3646,14 +3977,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> decltype_(
       ::experimental::reserved_words::export_ export__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[27],
-                                                                               options, export__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::decltype_], options, export__);
   }
   template <class Token>
   auto async_decltype_(::experimental::reserved_words::export_ export__,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[27], options, ::std::forward<Token>(token), export__);
+        rr_members_new[rr_at::decltype_], options, ::std::forward<Token>(token), export__);
   }
   template <class Token>
   auto async_decltype_(::experimental::reserved_words::export_ export__, Token&& token) {
@@ -3661,14 +3992,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> default_(
       ::experimental::reserved_words::export_ extern_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[28],
-                                                                               options, extern_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::default_], options, extern_);
   }
   template <class Token>
   auto async_default_(::experimental::reserved_words::export_ extern_,
                       const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[28], options, ::std::forward<Token>(token), extern_);
+        rr_members_new[rr_at::default_], options, ::std::forward<Token>(token), extern_);
   }
   template <class Token>
   auto async_default_(::experimental::reserved_words::export_ extern_, Token&& token) {
@@ -3676,14 +4007,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> delete_(
       ::experimental::reserved_words::export_ false_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[29],
-                                                                               options, false_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::delete__], options, false_);
   }
   template <class Token>
   auto async_delete_(::experimental::reserved_words::export_ false_,
                      const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[29], options, ::std::forward<Token>(token), false_);
+        rr_members_new[rr_at::delete__], options, ::std::forward<Token>(token), false_);
   }
   template <class Token>
   auto async_delete_(::experimental::reserved_words::export_ false_, Token&& token) {
@@ -3691,14 +4022,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> do_(
       ::experimental::reserved_words::export_ float_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[30],
-                                                                               options, float_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::do_], options, float_);
   }
   template <class Token>
   auto async_do_(::experimental::reserved_words::export_ float_, const ::rr::CallOptions& options,
                  Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[30], options, ::std::forward<Token>(token), float_);
+        rr_members_new[rr_at::do_], options, ::std::forward<Token>(token), float_);
   }
   template <class Token>
   auto async_do_(::experimental::reserved_words::export_ float_, Token&& token) {
@@ -3706,14 +4037,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> dynamic_cast_(
       ::experimental::reserved_words::export_ for_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[31],
-                                                                               options, for_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::dynamic_cast_], options, for_);
   }
   template <class Token>
   auto async_dynamic_cast_(::experimental::reserved_words::export_ for_,
                            const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[31], options, ::std::forward<Token>(token), for_);
+        rr_members_new[rr_at::dynamic_cast_], options, ::std::forward<Token>(token), for_);
   }
   template <class Token>
   auto async_dynamic_cast_(::experimental::reserved_words::export_ for_, Token&& token) {
@@ -3721,14 +4052,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> else_(
       ::experimental::reserved_words::export_ friend_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[32],
-                                                                               options, friend_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::else_], options, friend_);
   }
   template <class Token>
   auto async_else_(::experimental::reserved_words::export_ friend_,
                    const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[32], options, ::std::forward<Token>(token), friend_);
+        rr_members_new[rr_at::else_], options, ::std::forward<Token>(token), friend_);
   }
   template <class Token>
   auto async_else_(::experimental::reserved_words::export_ friend_, Token&& token) {
@@ -3736,14 +4067,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> explicit_(
       ::experimental::reserved_words::export_ goto_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[33],
-                                                                               options, goto_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::explicit_], options, goto_);
   }
   template <class Token>
   auto async_explicit_(::experimental::reserved_words::export_ goto_,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[33], options, ::std::forward<Token>(token), goto_);
+        rr_members_new[rr_at::explicit_], options, ::std::forward<Token>(token), goto_);
   }
   template <class Token>
   auto async_explicit_(::experimental::reserved_words::export_ goto_, Token&& token) {
@@ -3751,14 +4082,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> export_(
       ::experimental::reserved_words::export_ if_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[34],
-                                                                               options, if_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::export__], options, if_);
   }
   template <class Token>
   auto async_export_(::experimental::reserved_words::export_ if_, const ::rr::CallOptions& options,
                      Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[34], options, ::std::forward<Token>(token), if_);
+        rr_members_new[rr_at::export__], options, ::std::forward<Token>(token), if_);
   }
   template <class Token>
   auto async_export_(::experimental::reserved_words::export_ if_, Token&& token) {
@@ -3766,14 +4097,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> extern_(
       ::experimental::reserved_words::export_ inline_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[35],
-                                                                               options, inline_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::extern_], options, inline_);
   }
   template <class Token>
   auto async_extern_(::experimental::reserved_words::export_ inline_,
                      const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[35], options, ::std::forward<Token>(token), inline_);
+        rr_members_new[rr_at::extern_], options, ::std::forward<Token>(token), inline_);
   }
   template <class Token>
   auto async_extern_(::experimental::reserved_words::export_ inline_, Token&& token) {
@@ -3781,14 +4112,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> false_(
       ::experimental::reserved_words::export_ int_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[36],
-                                                                               options, int_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::false_], options, int_);
   }
   template <class Token>
   auto async_false_(::experimental::reserved_words::export_ int_, const ::rr::CallOptions& options,
                     Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[36], options, ::std::forward<Token>(token), int_);
+        rr_members_new[rr_at::false_], options, ::std::forward<Token>(token), int_);
   }
   template <class Token>
   auto async_false_(::experimental::reserved_words::export_ int_, Token&& token) {
@@ -3796,14 +4127,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> float_(
       ::experimental::reserved_words::export_ long_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[37],
-                                                                               options, long_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::float_], options, long_);
   }
   template <class Token>
   auto async_float_(::experimental::reserved_words::export_ long_, const ::rr::CallOptions& options,
                     Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[37], options, ::std::forward<Token>(token), long_);
+        rr_members_new[rr_at::float_], options, ::std::forward<Token>(token), long_);
   }
   template <class Token>
   auto async_float_(::experimental::reserved_words::export_ long_, Token&& token) {
@@ -3811,14 +4142,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> for_(
       ::experimental::reserved_words::export_ mutable_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[38],
-                                                                               options, mutable_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::for_], options, mutable_);
   }
   template <class Token>
   auto async_for_(::experimental::reserved_words::export_ mutable_,
                   const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[38], options, ::std::forward<Token>(token), mutable_);
+        rr_members_new[rr_at::for_], options, ::std::forward<Token>(token), mutable_);
   }
   template <class Token>
   auto async_for_(::experimental::reserved_words::export_ mutable_, Token&& token) {
@@ -3826,14 +4157,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> friend_(
       ::experimental::reserved_words::export_ namespace_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[39],
-                                                                               options, namespace_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::friend_], options, namespace_);
   }
   template <class Token>
   auto async_friend_(::experimental::reserved_words::export_ namespace_,
                      const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[39], options, ::std::forward<Token>(token), namespace_);
+        rr_members_new[rr_at::friend_], options, ::std::forward<Token>(token), namespace_);
   }
   template <class Token>
   auto async_friend_(::experimental::reserved_words::export_ namespace_, Token&& token) {
@@ -3841,14 +4172,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> goto_(
       ::experimental::reserved_words::export_ new__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[40],
-                                                                               options, new__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::goto_], options, new__);
   }
   template <class Token>
   auto async_goto_(::experimental::reserved_words::export_ new__, const ::rr::CallOptions& options,
                    Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[40], options, ::std::forward<Token>(token), new__);
+        rr_members_new[rr_at::goto_], options, ::std::forward<Token>(token), new__);
   }
   template <class Token>
   auto async_goto_(::experimental::reserved_words::export_ new__, Token&& token) {
@@ -3856,14 +4187,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> if_(
       ::experimental::reserved_words::export_ noexcept_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[41],
-                                                                               options, noexcept_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::if_], options, noexcept_);
   }
   template <class Token>
   auto async_if_(::experimental::reserved_words::export_ noexcept_,
                  const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[41], options, ::std::forward<Token>(token), noexcept_);
+        rr_members_new[rr_at::if_], options, ::std::forward<Token>(token), noexcept_);
   }
   template <class Token>
   auto async_if_(::experimental::reserved_words::export_ noexcept_, Token&& token) {
@@ -3871,14 +4202,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> inline_(
       ::experimental::reserved_words::export_ not_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[42],
-                                                                               options, not_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::inline_], options, not_);
   }
   template <class Token>
   auto async_inline_(::experimental::reserved_words::export_ not_, const ::rr::CallOptions& options,
                      Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[42], options, ::std::forward<Token>(token), not_);
+        rr_members_new[rr_at::inline_], options, ::std::forward<Token>(token), not_);
   }
   template <class Token>
   auto async_inline_(::experimental::reserved_words::export_ not_, Token&& token) {
@@ -3886,14 +4217,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> int_(
       ::experimental::reserved_words::export_ not_eq_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[43],
-                                                                               options, not_eq_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::int_], options, not_eq_);
   }
   template <class Token>
   auto async_int_(::experimental::reserved_words::export_ not_eq_, const ::rr::CallOptions& options,
                   Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[43], options, ::std::forward<Token>(token), not_eq_);
+        rr_members_new[rr_at::int_], options, ::std::forward<Token>(token), not_eq_);
   }
   template <class Token>
   auto async_int_(::experimental::reserved_words::export_ not_eq_, Token&& token) {
@@ -3901,14 +4232,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> long_(
       ::experimental::reserved_words::export_ nullptr_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[44],
-                                                                               options, nullptr_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::long_], options, nullptr_);
   }
   template <class Token>
   auto async_long_(::experimental::reserved_words::export_ nullptr_,
                    const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[44], options, ::std::forward<Token>(token), nullptr_);
+        rr_members_new[rr_at::long_], options, ::std::forward<Token>(token), nullptr_);
   }
   template <class Token>
   auto async_long_(::experimental::reserved_words::export_ nullptr_, Token&& token) {
@@ -3916,14 +4247,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> mutable_(
       ::experimental::reserved_words::export_ operator_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[45],
-                                                                               options, operator_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::mutable_], options, operator_);
   }
   template <class Token>
   auto async_mutable_(::experimental::reserved_words::export_ operator_,
                       const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[45], options, ::std::forward<Token>(token), operator_);
+        rr_members_new[rr_at::mutable_], options, ::std::forward<Token>(token), operator_);
   }
   template <class Token>
   auto async_mutable_(::experimental::reserved_words::export_ operator_, Token&& token) {
@@ -3931,14 +4262,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> namespace_(
       ::experimental::reserved_words::export_ or_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[46],
-                                                                               options, or_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::namespace_], options, or_);
   }
   template <class Token>
   auto async_namespace_(::experimental::reserved_words::export_ or_,
                         const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[46], options, ::std::forward<Token>(token), or_);
+        rr_members_new[rr_at::namespace_], options, ::std::forward<Token>(token), or_);
   }
   template <class Token>
   auto async_namespace_(::experimental::reserved_words::export_ or_, Token&& token) {
@@ -3946,14 +4277,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> new_(
       ::experimental::reserved_words::export_ or_eq_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[47],
-                                                                               options, or_eq_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::new__], options, or_eq_);
   }
   template <class Token>
   auto async_new_(::experimental::reserved_words::export_ or_eq_, const ::rr::CallOptions& options,
                   Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[47], options, ::std::forward<Token>(token), or_eq_);
+        rr_members_new[rr_at::new__], options, ::std::forward<Token>(token), or_eq_);
   }
   template <class Token>
   auto async_new_(::experimental::reserved_words::export_ or_eq_, Token&& token) {
@@ -3961,14 +4292,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> noexcept_(
       ::experimental::reserved_words::export_ private_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[48],
-                                                                               options, private_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::noexcept_], options, private_);
   }
   template <class Token>
   auto async_noexcept_(::experimental::reserved_words::export_ private_,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[48], options, ::std::forward<Token>(token), private_);
+        rr_members_new[rr_at::noexcept_], options, ::std::forward<Token>(token), private_);
   }
   template <class Token>
   auto async_noexcept_(::experimental::reserved_words::export_ private_, Token&& token) {
@@ -3976,14 +4307,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> not_(
       ::experimental::reserved_words::export_ protected_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[49],
-                                                                               options, protected_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::not_], options, protected_);
   }
   template <class Token>
   auto async_not_(::experimental::reserved_words::export_ protected_,
                   const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[49], options, ::std::forward<Token>(token), protected_);
+        rr_members_new[rr_at::not_], options, ::std::forward<Token>(token), protected_);
   }
   template <class Token>
   auto async_not_(::experimental::reserved_words::export_ protected_, Token&& token) {
@@ -3991,14 +4322,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> not_eq_(
       ::experimental::reserved_words::export_ public_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[50],
-                                                                               options, public_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::not_eq_], options, public_);
   }
   template <class Token>
   auto async_not_eq_(::experimental::reserved_words::export_ public_,
                      const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[50], options, ::std::forward<Token>(token), public_);
+        rr_members_new[rr_at::not_eq_], options, ::std::forward<Token>(token), public_);
   }
   template <class Token>
   auto async_not_eq_(::experimental::reserved_words::export_ public_, Token&& token) {
@@ -4006,14 +4337,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> nullptr_(
       ::experimental::reserved_words::export_ register__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[51],
-                                                                               options, register__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::nullptr_], options, register__);
   }
   template <class Token>
   auto async_nullptr_(::experimental::reserved_words::export_ register__,
                       const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[51], options, ::std::forward<Token>(token), register__);
+        rr_members_new[rr_at::nullptr_], options, ::std::forward<Token>(token), register__);
   }
   template <class Token>
   auto async_nullptr_(::experimental::reserved_words::export_ register__, Token&& token) {
@@ -4023,13 +4354,13 @@ class newStub : public virtual ::rr::Stub {
       ::experimental::reserved_words::export_ reinterpret_cast_,
       const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[52], options, reinterpret_cast_);
+        rr_members_new[rr_at::operator_], options, reinterpret_cast_);
   }
   template <class Token>
   auto async_operator_(::experimental::reserved_words::export_ reinterpret_cast_,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[52], options, ::std::forward<Token>(token), reinterpret_cast_);
+        rr_members_new[rr_at::operator_], options, ::std::forward<Token>(token), reinterpret_cast_);
   }
   template <class Token>
   auto async_operator_(::experimental::reserved_words::export_ reinterpret_cast_, Token&& token) {
@@ -4037,14 +4368,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> or_(
       ::experimental::reserved_words::export_ requires_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[53],
-                                                                               options, requires_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::or_], options, requires_);
   }
   template <class Token>
   auto async_or_(::experimental::reserved_words::export_ requires_,
                  const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[53], options, ::std::forward<Token>(token), requires_);
+        rr_members_new[rr_at::or_], options, ::std::forward<Token>(token), requires_);
   }
   template <class Token>
   auto async_or_(::experimental::reserved_words::export_ requires_, Token&& token) {
@@ -4052,14 +4383,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> or_eq_(
       ::experimental::reserved_words::export_ return_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[54],
-                                                                               options, return_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::or_eq_], options, return_);
   }
   template <class Token>
   auto async_or_eq_(::experimental::reserved_words::export_ return_,
                     const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[54], options, ::std::forward<Token>(token), return_);
+        rr_members_new[rr_at::or_eq_], options, ::std::forward<Token>(token), return_);
   }
   template <class Token>
   auto async_or_eq_(::experimental::reserved_words::export_ return_, Token&& token) {
@@ -4067,14 +4398,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> private_(
       ::experimental::reserved_words::export_ short_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[55],
-                                                                               options, short_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::private_], options, short_);
   }
   template <class Token>
   auto async_private_(::experimental::reserved_words::export_ short_,
                       const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[55], options, ::std::forward<Token>(token), short_);
+        rr_members_new[rr_at::private_], options, ::std::forward<Token>(token), short_);
   }
   template <class Token>
   auto async_private_(::experimental::reserved_words::export_ short_, Token&& token) {
@@ -4082,14 +4413,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> protected_(
       ::experimental::reserved_words::export_ signed_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[56],
-                                                                               options, signed_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::protected_], options, signed_);
   }
   template <class Token>
   auto async_protected_(::experimental::reserved_words::export_ signed_,
                         const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[56], options, ::std::forward<Token>(token), signed_);
+        rr_members_new[rr_at::protected_], options, ::std::forward<Token>(token), signed_);
   }
   template <class Token>
   auto async_protected_(::experimental::reserved_words::export_ signed_, Token&& token) {
@@ -4097,14 +4428,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> public_(
       ::experimental::reserved_words::export_ sizeof_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[57],
-                                                                               options, sizeof_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::public_], options, sizeof_);
   }
   template <class Token>
   auto async_public_(::experimental::reserved_words::export_ sizeof_,
                      const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[57], options, ::std::forward<Token>(token), sizeof_);
+        rr_members_new[rr_at::public_], options, ::std::forward<Token>(token), sizeof_);
   }
   template <class Token>
   auto async_public_(::experimental::reserved_words::export_ sizeof_, Token&& token) {
@@ -4112,14 +4443,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> register_(
       ::experimental::reserved_words::export_ static__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[58],
-                                                                               options, static__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::register__], options, static__);
   }
   template <class Token>
   auto async_register_(::experimental::reserved_words::export_ static__,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[58], options, ::std::forward<Token>(token), static__);
+        rr_members_new[rr_at::register__], options, ::std::forward<Token>(token), static__);
   }
   template <class Token>
   auto async_register_(::experimental::reserved_words::export_ static__, Token&& token) {
@@ -4129,13 +4460,14 @@ class newStub : public virtual ::rr::Stub {
       ::experimental::reserved_words::export_ static_assert_,
       const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[59], options, static_assert_);
+        rr_members_new[rr_at::reinterpret_cast_], options, static_assert_);
   }
   template <class Token>
   auto async_reinterpret_cast_(::experimental::reserved_words::export_ static_assert_,
                                const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[59], options, ::std::forward<Token>(token), static_assert_);
+        rr_members_new[rr_at::reinterpret_cast_], options, ::std::forward<Token>(token),
+        static_assert_);
   }
   template <class Token>
   auto async_reinterpret_cast_(::experimental::reserved_words::export_ static_assert_,
@@ -4146,13 +4478,13 @@ class newStub : public virtual ::rr::Stub {
   ::std::optional<::experimental::reserved_words::template_> requires_(
       ::experimental::reserved_words::export_ static_cast_, const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[60], options, static_cast_);
+        rr_members_new[rr_at::requires_], options, static_cast_);
   }
   template <class Token>
   auto async_requires_(::experimental::reserved_words::export_ static_cast_,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[60], options, ::std::forward<Token>(token), static_cast_);
+        rr_members_new[rr_at::requires_], options, ::std::forward<Token>(token), static_cast_);
   }
   template <class Token>
   auto async_requires_(::experimental::reserved_words::export_ static_cast_, Token&& token) {
@@ -4160,14 +4492,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> return_(
       ::experimental::reserved_words::export_ switch_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[61],
-                                                                               options, switch_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::return_], options, switch_);
   }
   template <class Token>
   auto async_return_(::experimental::reserved_words::export_ switch_,
                      const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[61], options, ::std::forward<Token>(token), switch_);
+        rr_members_new[rr_at::return_], options, ::std::forward<Token>(token), switch_);
   }
   template <class Token>
   auto async_return_(::experimental::reserved_words::export_ switch_, Token&& token) {
@@ -4175,14 +4507,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> short_(
       ::experimental::reserved_words::export_ template__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[62],
-                                                                               options, template__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::short_], options, template__);
   }
   template <class Token>
   auto async_short_(::experimental::reserved_words::export_ template__,
                     const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[62], options, ::std::forward<Token>(token), template__);
+        rr_members_new[rr_at::short_], options, ::std::forward<Token>(token), template__);
   }
   template <class Token>
   auto async_short_(::experimental::reserved_words::export_ template__, Token&& token) {
@@ -4192,13 +4524,13 @@ class newStub : public virtual ::rr::Stub {
       ::experimental::reserved_words::export_ thread_local_,
       const ::rr::CallOptions& options = {}) {
     return rr_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[63], options, thread_local_);
+        rr_members_new[rr_at::signed_], options, thread_local_);
   }
   template <class Token>
   auto async_signed_(::experimental::reserved_words::export_ thread_local_,
                      const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[63], options, ::std::forward<Token>(token), thread_local_);
+        rr_members_new[rr_at::signed_], options, ::std::forward<Token>(token), thread_local_);
   }
   template <class Token>
   auto async_signed_(::experimental::reserved_words::export_ thread_local_, Token&& token) {
@@ -4206,14 +4538,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> sizeof_(
       ::experimental::reserved_words::export_ throw_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[64],
-                                                                               options, throw_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::sizeof_], options, throw_);
   }
   template <class Token>
   auto async_sizeof_(::experimental::reserved_words::export_ throw_,
                      const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[64], options, ::std::forward<Token>(token), throw_);
+        rr_members_new[rr_at::sizeof_], options, ::std::forward<Token>(token), throw_);
   }
   template <class Token>
   auto async_sizeof_(::experimental::reserved_words::export_ throw_, Token&& token) {
@@ -4221,14 +4553,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> static_(
       ::experimental::reserved_words::export_ true_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[65],
-                                                                               options, true_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::static__], options, true_);
   }
   template <class Token>
   auto async_static_(::experimental::reserved_words::export_ true_,
                      const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[65], options, ::std::forward<Token>(token), true_);
+        rr_members_new[rr_at::static__], options, ::std::forward<Token>(token), true_);
   }
   template <class Token>
   auto async_static_(::experimental::reserved_words::export_ true_, Token&& token) {
@@ -4236,14 +4568,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> static_assert_(
       ::experimental::reserved_words::export_ try_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[66],
-                                                                               options, try_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::static_assert_], options, try_);
   }
   template <class Token>
   auto async_static_assert_(::experimental::reserved_words::export_ try_,
                             const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[66], options, ::std::forward<Token>(token), try_);
+        rr_members_new[rr_at::static_assert_], options, ::std::forward<Token>(token), try_);
   }
   template <class Token>
   auto async_static_assert_(::experimental::reserved_words::export_ try_, Token&& token) {
@@ -4251,14 +4583,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> static_cast_(
       ::experimental::reserved_words::export_ typedef_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[67],
-                                                                               options, typedef_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::static_cast_], options, typedef_);
   }
   template <class Token>
   auto async_static_cast_(::experimental::reserved_words::export_ typedef_,
                           const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[67], options, ::std::forward<Token>(token), typedef_);
+        rr_members_new[rr_at::static_cast_], options, ::std::forward<Token>(token), typedef_);
   }
   template <class Token>
   auto async_static_cast_(::experimental::reserved_words::export_ typedef_, Token&& token) {
@@ -4266,14 +4598,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> switch_(
       ::experimental::reserved_words::export_ typeid_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[68],
-                                                                               options, typeid_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::switch_], options, typeid_);
   }
   template <class Token>
   auto async_switch_(::experimental::reserved_words::export_ typeid_,
                      const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[68], options, ::std::forward<Token>(token), typeid_);
+        rr_members_new[rr_at::switch_], options, ::std::forward<Token>(token), typeid_);
   }
   template <class Token>
   auto async_switch_(::experimental::reserved_words::export_ typeid_, Token&& token) {
@@ -4281,14 +4613,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> template_(
       ::experimental::reserved_words::export_ typename_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[69],
-                                                                               options, typename_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::template__], options, typename_);
   }
   template <class Token>
   auto async_template_(::experimental::reserved_words::export_ typename_,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[69], options, ::std::forward<Token>(token), typename_);
+        rr_members_new[rr_at::template__], options, ::std::forward<Token>(token), typename_);
   }
   template <class Token>
   auto async_template_(::experimental::reserved_words::export_ typename_, Token&& token) {
@@ -4296,14 +4628,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> thread_local_(
       ::experimental::reserved_words::export_ union__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[70],
-                                                                               options, union__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::thread_local_], options, union__);
   }
   template <class Token>
   auto async_thread_local_(::experimental::reserved_words::export_ union__,
                            const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[70], options, ::std::forward<Token>(token), union__);
+        rr_members_new[rr_at::thread_local_], options, ::std::forward<Token>(token), union__);
   }
   template <class Token>
   auto async_thread_local_(::experimental::reserved_words::export_ union__, Token&& token) {
@@ -4311,14 +4643,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> throw_(
       ::experimental::reserved_words::export_ unsigned_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[71],
-                                                                               options, unsigned_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::throw_], options, unsigned_);
   }
   template <class Token>
   auto async_throw_(::experimental::reserved_words::export_ unsigned_,
                     const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[71], options, ::std::forward<Token>(token), unsigned_);
+        rr_members_new[rr_at::throw_], options, ::std::forward<Token>(token), unsigned_);
   }
   template <class Token>
   auto async_throw_(::experimental::reserved_words::export_ unsigned_, Token&& token) {
@@ -4326,14 +4658,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> true_(
       ::experimental::reserved_words::export_ virtual_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[72],
-                                                                               options, virtual_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::true_], options, virtual_);
   }
   template <class Token>
   auto async_true_(::experimental::reserved_words::export_ virtual_,
                    const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[72], options, ::std::forward<Token>(token), virtual_);
+        rr_members_new[rr_at::true_], options, ::std::forward<Token>(token), virtual_);
   }
   template <class Token>
   auto async_true_(::experimental::reserved_words::export_ virtual_, Token&& token) {
@@ -4341,14 +4673,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> try_(
       ::experimental::reserved_words::export_ volatile__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[73],
-                                                                               options, volatile__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::try_], options, volatile__);
   }
   template <class Token>
   auto async_try_(::experimental::reserved_words::export_ volatile__,
                   const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[73], options, ::std::forward<Token>(token), volatile__);
+        rr_members_new[rr_at::try_], options, ::std::forward<Token>(token), volatile__);
   }
   template <class Token>
   auto async_try_(::experimental::reserved_words::export_ volatile__, Token&& token) {
@@ -4356,14 +4688,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> typedef_(
       ::experimental::reserved_words::export_ wchar_t_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[74],
-                                                                               options, wchar_t_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::typedef_], options, wchar_t_);
   }
   template <class Token>
   auto async_typedef_(::experimental::reserved_words::export_ wchar_t_,
                       const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[74], options, ::std::forward<Token>(token), wchar_t_);
+        rr_members_new[rr_at::typedef_], options, ::std::forward<Token>(token), wchar_t_);
   }
   template <class Token>
   auto async_typedef_(::experimental::reserved_words::export_ wchar_t_, Token&& token) {
@@ -4371,14 +4703,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> typeid_(
       ::experimental::reserved_words::export_ while_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[75],
-                                                                               options, while_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::typeid_], options, while_);
   }
   template <class Token>
   auto async_typeid_(::experimental::reserved_words::export_ while_,
                      const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[75], options, ::std::forward<Token>(token), while_);
+        rr_members_new[rr_at::typeid_], options, ::std::forward<Token>(token), while_);
   }
   template <class Token>
   auto async_typeid_(::experimental::reserved_words::export_ while_, Token&& token) {
@@ -4386,14 +4718,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> typename_(
       ::experimental::reserved_words::export_ xor_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[76],
-                                                                               options, xor_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::typename_], options, xor_);
   }
   template <class Token>
   auto async_typename_(::experimental::reserved_words::export_ xor_,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[76], options, ::std::forward<Token>(token), xor_);
+        rr_members_new[rr_at::typename_], options, ::std::forward<Token>(token), xor_);
   }
   template <class Token>
   auto async_typename_(::experimental::reserved_words::export_ xor_, Token&& token) {
@@ -4401,14 +4733,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> union_(
       ::experimental::reserved_words::export_ xor_eq_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[77],
-                                                                               options, xor_eq_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::union__], options, xor_eq_);
   }
   template <class Token>
   auto async_union_(::experimental::reserved_words::export_ xor_eq_,
                     const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[77], options, ::std::forward<Token>(token), xor_eq_);
+        rr_members_new[rr_at::union__], options, ::std::forward<Token>(token), xor_eq_);
   }
   template <class Token>
   auto async_union_(::experimental::reserved_words::export_ xor_eq_, Token&& token) {
@@ -4416,14 +4748,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> unsigned_(
       ::experimental::reserved_words::export_ assert_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[78],
-                                                                               options, assert_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::unsigned_], options, assert_);
   }
   template <class Token>
   auto async_unsigned_(::experimental::reserved_words::export_ assert_,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[78], options, ::std::forward<Token>(token), assert_);
+        rr_members_new[rr_at::unsigned_], options, ::std::forward<Token>(token), assert_);
   }
   template <class Token>
   auto async_unsigned_(::experimental::reserved_words::export_ assert_, Token&& token) {
@@ -4431,14 +4763,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> virtual_(
       ::experimental::reserved_words::export_ errno_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[79],
-                                                                               options, errno_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::virtual_], options, errno_);
   }
   template <class Token>
   auto async_virtual_(::experimental::reserved_words::export_ errno_,
                       const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[79], options, ::std::forward<Token>(token), errno_);
+        rr_members_new[rr_at::virtual_], options, ::std::forward<Token>(token), errno_);
   }
   template <class Token>
   auto async_virtual_(::experimental::reserved_words::export_ errno_, Token&& token) {
@@ -4446,14 +4778,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> volatile_(
       ::experimental::reserved_words::export_ linux_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[80],
-                                                                               options, linux_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::volatile__], options, linux_);
   }
   template <class Token>
   auto async_volatile_(::experimental::reserved_words::export_ linux_,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[80], options, ::std::forward<Token>(token), linux_);
+        rr_members_new[rr_at::volatile__], options, ::std::forward<Token>(token), linux_);
   }
   template <class Token>
   auto async_volatile_(::experimental::reserved_words::export_ linux_, Token&& token) {
@@ -4461,14 +4793,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> wchar_t_(
       ::experimental::reserved_words::export_ unix_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[81],
-                                                                               options, unix_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::wchar_t_], options, unix_);
   }
   template <class Token>
   auto async_wchar_t_(::experimental::reserved_words::export_ unix_,
                       const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[81], options, ::std::forward<Token>(token), unix_);
+        rr_members_new[rr_at::wchar_t_], options, ::std::forward<Token>(token), unix_);
   }
   template <class Token>
   auto async_wchar_t_(::experimental::reserved_words::export_ unix_, Token&& token) {
@@ -4476,14 +4808,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> while_(
       ::experimental::reserved_words::export_ major_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[82],
-                                                                               options, major_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::while_], options, major_);
   }
   template <class Token>
   auto async_while_(::experimental::reserved_words::export_ major_,
                     const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[82], options, ::std::forward<Token>(token), major_);
+        rr_members_new[rr_at::while_], options, ::std::forward<Token>(token), major_);
   }
   template <class Token>
   auto async_while_(::experimental::reserved_words::export_ major_, Token&& token) {
@@ -4491,14 +4823,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> xor_(
       ::experimental::reserved_words::export_ minor_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[83],
-                                                                               options, minor_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::xor_], options, minor_);
   }
   template <class Token>
   auto async_xor_(::experimental::reserved_words::export_ minor_, const ::rr::CallOptions& options,
                   Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[83], options, ::std::forward<Token>(token), minor_);
+        rr_members_new[rr_at::xor_], options, ::std::forward<Token>(token), minor_);
   }
   template <class Token>
   auto async_xor_(::experimental::reserved_words::export_ minor_, Token&& token) {
@@ -4506,14 +4838,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> xor_eq_(
       ::experimental::reserved_words::export_ EOF_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[84],
-                                                                               options, EOF_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::xor_eq_], options, EOF_);
   }
   template <class Token>
   auto async_xor_eq_(::experimental::reserved_words::export_ EOF_, const ::rr::CallOptions& options,
                      Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[84], options, ::std::forward<Token>(token), EOF_);
+        rr_members_new[rr_at::xor_eq_], options, ::std::forward<Token>(token), EOF_);
   }
   template <class Token>
   auto async_xor_eq_(::experimental::reserved_words::export_ EOF_, Token&& token) {
@@ -4521,14 +4853,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> assert_(
       ::experimental::reserved_words::export_ NULL_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[85],
-                                                                               options, NULL_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::assert_], options, NULL_);
   }
   template <class Token>
   auto async_assert_(::experimental::reserved_words::export_ NULL_,
                      const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[85], options, ::std::forward<Token>(token), NULL_);
+        rr_members_new[rr_at::assert_], options, ::std::forward<Token>(token), NULL_);
   }
   template <class Token>
   auto async_assert_(::experimental::reserved_words::export_ NULL_, Token&& token) {
@@ -4536,14 +4868,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> errno_(
       ::experimental::reserved_words::export_ INFINITY_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[86],
-                                                                               options, INFINITY_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::errno_], options, INFINITY_);
   }
   template <class Token>
   auto async_errno_(::experimental::reserved_words::export_ INFINITY_,
                     const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[86], options, ::std::forward<Token>(token), INFINITY_);
+        rr_members_new[rr_at::errno_], options, ::std::forward<Token>(token), INFINITY_);
   }
   template <class Token>
   auto async_errno_(::experimental::reserved_words::export_ INFINITY_, Token&& token) {
@@ -4551,14 +4883,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> linux_(
       ::experimental::reserved_words::export_ NAN_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[87],
-                                                                               options, NAN_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::linux_], options, NAN_);
   }
   template <class Token>
   auto async_linux_(::experimental::reserved_words::export_ NAN_, const ::rr::CallOptions& options,
                     Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[87], options, ::std::forward<Token>(token), NAN_);
+        rr_members_new[rr_at::linux_], options, ::std::forward<Token>(token), NAN_);
   }
   template <class Token>
   auto async_linux_(::experimental::reserved_words::export_ NAN_, Token&& token) {
@@ -4566,14 +4898,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> unix_(
       ::experimental::reserved_words::export_ RAND_MAX_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[88],
-                                                                               options, RAND_MAX_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::unix_], options, RAND_MAX_);
   }
   template <class Token>
   auto async_unix_(::experimental::reserved_words::export_ RAND_MAX_,
                    const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[88], options, ::std::forward<Token>(token), RAND_MAX_);
+        rr_members_new[rr_at::unix_], options, ::std::forward<Token>(token), RAND_MAX_);
   }
   template <class Token>
   auto async_unix_(::experimental::reserved_words::export_ RAND_MAX_, Token&& token) {
@@ -4581,14 +4913,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> major_(
       ::experimental::reserved_words::export_ BUFSIZ_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[89],
-                                                                               options, BUFSIZ_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::major_], options, BUFSIZ_);
   }
   template <class Token>
   auto async_major_(::experimental::reserved_words::export_ BUFSIZ_,
                     const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[89], options, ::std::forward<Token>(token), BUFSIZ_);
+        rr_members_new[rr_at::major_], options, ::std::forward<Token>(token), BUFSIZ_);
   }
   template <class Token>
   auto async_major_(::experimental::reserved_words::export_ BUFSIZ_, Token&& token) {
@@ -4596,14 +4928,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> minor_(
       ::experimental::reserved_words::export_ SIGINT_, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[90],
-                                                                               options, SIGINT_);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::minor_], options, SIGINT_);
   }
   template <class Token>
   auto async_minor_(::experimental::reserved_words::export_ SIGINT_,
                     const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[90], options, ::std::forward<Token>(token), SIGINT_);
+        rr_members_new[rr_at::minor_], options, ::std::forward<Token>(token), SIGINT_);
   }
   template <class Token>
   auto async_minor_(::experimental::reserved_words::export_ SIGINT_, Token&& token) {
@@ -4611,14 +4943,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> EOF_(
       ::experimental::reserved_words::export_ final, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[91],
-                                                                               options, final);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::EOF_], options, final);
   }
   template <class Token>
   auto async_EOF_(::experimental::reserved_words::export_ final, const ::rr::CallOptions& options,
                   Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[91], options, ::std::forward<Token>(token), final);
+        rr_members_new[rr_at::EOF_], options, ::std::forward<Token>(token), final);
   }
   template <class Token>
   auto async_EOF_(::experimental::reserved_words::export_ final, Token&& token) {
@@ -4626,14 +4958,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> NULL_(
       ::experimental::reserved_words::export_ override, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[92],
-                                                                               options, override);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::NULL_], options, override);
   }
   template <class Token>
   auto async_NULL_(::experimental::reserved_words::export_ override,
                    const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[92], options, ::std::forward<Token>(token), override);
+        rr_members_new[rr_at::NULL_], options, ::std::forward<Token>(token), override);
   }
   template <class Token>
   auto async_NULL_(::experimental::reserved_words::export_ override, Token&& token) {
@@ -4641,14 +4973,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> INFINITY_(
       ::experimental::reserved_words::export_ module, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[93],
-                                                                               options, module);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::INFINITY_], options, module);
   }
   template <class Token>
   auto async_INFINITY_(::experimental::reserved_words::export_ module,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[93], options, ::std::forward<Token>(token), module);
+        rr_members_new[rr_at::INFINITY_], options, ::std::forward<Token>(token), module);
   }
   template <class Token>
   auto async_INFINITY_(::experimental::reserved_words::export_ module, Token&& token) {
@@ -4656,14 +4988,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> NAN_(
       ::experimental::reserved_words::export_ alignas__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[94],
-                                                                               options, alignas__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::NAN_], options, alignas__);
   }
   template <class Token>
   auto async_NAN_(::experimental::reserved_words::export_ alignas__,
                   const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[94], options, ::std::forward<Token>(token), alignas__);
+        rr_members_new[rr_at::NAN_], options, ::std::forward<Token>(token), alignas__);
   }
   template <class Token>
   auto async_NAN_(::experimental::reserved_words::export_ alignas__, Token&& token) {
@@ -4671,14 +5003,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> RAND_MAX_(
       ::experimental::reserved_words::export_ alignof__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[95],
-                                                                               options, alignof__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::RAND_MAX_], options, alignof__);
   }
   template <class Token>
   auto async_RAND_MAX_(::experimental::reserved_words::export_ alignof__,
                        const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[95], options, ::std::forward<Token>(token), alignof__);
+        rr_members_new[rr_at::RAND_MAX_], options, ::std::forward<Token>(token), alignof__);
   }
   template <class Token>
   auto async_RAND_MAX_(::experimental::reserved_words::export_ alignof__, Token&& token) {
@@ -4686,14 +5018,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> BUFSIZ_(
       ::experimental::reserved_words::export_ and__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[96],
-                                                                               options, and__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::BUFSIZ_], options, and__);
   }
   template <class Token>
   auto async_BUFSIZ_(::experimental::reserved_words::export_ and__,
                      const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[96], options, ::std::forward<Token>(token), and__);
+        rr_members_new[rr_at::BUFSIZ_], options, ::std::forward<Token>(token), and__);
   }
   template <class Token>
   auto async_BUFSIZ_(::experimental::reserved_words::export_ and__, Token&& token) {
@@ -4701,14 +5033,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> SIGINT_(
       ::experimental::reserved_words::export_ and_eq__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[97],
-                                                                               options, and_eq__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::SIGINT_], options, and_eq__);
   }
   template <class Token>
   auto async_SIGINT_(::experimental::reserved_words::export_ and_eq__,
                      const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[97], options, ::std::forward<Token>(token), and_eq__);
+        rr_members_new[rr_at::SIGINT_], options, ::std::forward<Token>(token), and_eq__);
   }
   template <class Token>
   auto async_SIGINT_(::experimental::reserved_words::export_ and_eq__, Token&& token) {
@@ -4716,14 +5048,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> final(
       ::experimental::reserved_words::export_ asm__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[98],
-                                                                               options, asm__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::final], options, asm__);
   }
   template <class Token>
   auto async_final(::experimental::reserved_words::export_ asm__, const ::rr::CallOptions& options,
                    Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[98], options, ::std::forward<Token>(token), asm__);
+        rr_members_new[rr_at::final], options, ::std::forward<Token>(token), asm__);
   }
   template <class Token>
   auto async_final(::experimental::reserved_words::export_ asm__, Token&& token) {
@@ -4731,14 +5063,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> override(
       ::experimental::reserved_words::export_ auto__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[99],
-                                                                               options, auto__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::override], options, auto__);
   }
   template <class Token>
   auto async_override(::experimental::reserved_words::export_ auto__,
                       const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[99], options, ::std::forward<Token>(token), auto__);
+        rr_members_new[rr_at::override], options, ::std::forward<Token>(token), auto__);
   }
   template <class Token>
   auto async_override(::experimental::reserved_words::export_ auto__, Token&& token) {
@@ -4746,14 +5078,14 @@ class newStub : public virtual ::rr::Stub {
   }
   ::std::optional<::experimental::reserved_words::template_> module(
       ::experimental::reserved_words::export_ bitand__, const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::optional<::experimental::reserved_words::template_>>(rr_members_new[100],
-                                                                               options, bitand__);
+    return rr_call<::std::optional<::experimental::reserved_words::template_>>(
+        rr_members_new[rr_at::module], options, bitand__);
   }
   template <class Token>
   auto async_module(::experimental::reserved_words::export_ bitand__,
                     const ::rr::CallOptions& options, Token&& token) {
     return rr_async_call<::std::optional<::experimental::reserved_words::template_>>(
-        rr_members_new[100], options, ::std::forward<Token>(token), bitand__);
+        rr_members_new[rr_at::module], options, ::std::forward<Token>(token), bitand__);
   }
   template <class Token>
   auto async_module(::experimental::reserved_words::export_ bitand__, Token&& token) {
@@ -4764,6 +5096,8 @@ class newStub : public virtual ::rr::Stub {
 
 /// Serves one new: derive from it and implement its members.
 class newSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_new;
+
  public:
   virtual ::std::optional<::experimental::reserved_words::template_> alignas_(
       ::experimental::reserved_words::export_ bitor__) = 0;
@@ -5887,56 +6221,166 @@ class newDefault : public newSkeleton {
   }
 };
 
-extern const ::rr::Member rr_members_class[101];
+/// Where each member is in the table.
+struct rr_at_class {
+  enum : ::std::size_t {
+    alignas__,
+    alignof__,
+    and__,
+    and_eq__,
+    asm__,
+    auto__,
+    bitand__,
+    bitor__,
+    break__,
+    case__,
+    catch__,
+    char__,
+    char16_t_,
+    char32_t_,
+    char8_t_,
+    class__,
+    co_await_,
+    co_return_,
+    co_yield_,
+    compl_,
+    concept_,
+    const_,
+    const_cast_,
+    consteval_,
+    constexpr_,
+    constinit_,
+    continue_,
+    decltype_,
+    default_,
+    delete__,
+    do_,
+    dynamic_cast_,
+    else_,
+    explicit_,
+    export__,
+    extern_,
+    false_,
+    float_,
+    for_,
+    friend_,
+    goto_,
+    if_,
+    inline_,
+    int_,
+    long_,
+    mutable_,
+    namespace_,
+    new__,
+    noexcept_,
+    not_,
+    not_eq_,
+    nullptr_,
+    operator_,
+    or_,
+    or_eq_,
+    private_,
+    protected_,
+    public_,
+    register__,
+    reinterpret_cast_,
+    requires_,
+    return_,
+    short_,
+    signed_,
+    sizeof_,
+    static__,
+    static_assert_,
+    static_cast_,
+    switch_,
+    template__,
+    thread_local_,
+    throw_,
+    true_,
+    try_,
+    typedef_,
+    typeid_,
+    typename_,
+    union__,
+    unsigned_,
+    virtual_,
+    volatile__,
+    wchar_t_,
+    while_,
+    xor_,
+    xor_eq_,
+    assert_,
+    errno_,
+    linux_,
+    unix_,
+    major_,
+    minor_,
+    EOF_,
+    NULL_,
+    INFINITY_,
+    NAN_,
+    RAND_MAX_,
+    BUFSIZ_,
+    SIGINT_,
+    final,
+    override,
+    module,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_class[rr_at_class::rr_count];
 extern const ::rr::ObjectType rr_object_class;
 
 /// A class on another node.
 class classStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_class;
+
  public:
-  ::rr::Event<double> alignas_() { return {*this, rr_members_class[0]}; }
-  ::rr::Event<double> alignof_() { return {*this, rr_members_class[1]}; }
-  ::rr::Event<double> and_() { return {*this, rr_members_class[2]}; }
-  ::rr::Event<double> and_eq_() { return {*this, rr_members_class[3]}; }
-  ::rr::Event<double> asm_() { return {*this, rr_members_class[4]}; }
-  ::rr::Event<double> auto_() { return {*this, rr_members_class[5]}; }
-  ::rr::Event<double> bitand_() { return {*this, rr_members_class[6]}; }
-  ::rr::Event<double> bitor_() { return {*this, rr_members_class[7]}; }
-  ::rr::Event<double> break_() { return {*this, rr_members_class[8]}; }
-  ::rr::Event<double> case_() { return {*this, rr_members_class[9]}; }
-  ::rr::Event<double> catch_() { return {*this, rr_members_class[10]}; }
-  ::rr::Event<double> char_() { return {*this, rr_members_class[11]}; }
-  ::rr::Event<double> char16_t_() { return {*this, rr_members_class[12]}; }
-  ::rr::Event<double> char32_t_() { return {*this, rr_members_class[13]}; }
-  ::rr::Event<double> char8_t_() { return {*this, rr_members_class[14]}; }
-  ::rr::Event<double> class_() { return {*this, rr_members_class[15]}; }
-  ::rr::Event<double> co_await_() { return {*this, rr_members_class[16]}; }
-  ::rr::Event<double> co_return_() { return {*this, rr_members_class[17]}; }
-  ::rr::Event<double> co_yield_() { return {*this, rr_members_class[18]}; }
-  ::rr::Event<double> compl_() { return {*this, rr_members_class[19]}; }
-  ::rr::Event<double> concept_() { return {*this, rr_members_class[20]}; }
-  ::rr::Event<double> const_() { return {*this, rr_members_class[21]}; }
-  ::rr::Event<double> const_cast_() { return {*this, rr_members_class[22]}; }
-  ::rr::Event<double> consteval_() { return {*this, rr_members_class[23]}; }
-  ::rr::Event<double> constexpr_() { return {*this, rr_members_class[24]}; }
-  ::rr::Event<double> constinit_() { return {*this, rr_members_class[25]}; }
-  ::rr::Event<double> continue_() { return {*this, rr_members_class[26]}; }
-  ::rr::Event<double> decltype_() { return {*this, rr_members_class[27]}; }
-  ::rr::Event<double> default_() { return {*this, rr_members_class[28]}; }
-  ::rr::Event<double> delete_() { return {*this, rr_members_class[29]}; }
-  ::rr::Event<double> do_() { return {*this, rr_members_class[30]}; }
-  ::rr::Event<double> dynamic_cast_() { return {*this, rr_members_class[31]}; }
-  ::rr::Event<double> else_() { return {*this, rr_members_class[32]}; }
-  ::rr::Event<double> explicit_() { return {*this, rr_members_class[33]}; }
-  ::rr::Event<double> export_() { return {*this, rr_members_class[34]}; }
-  ::rr::Event<double> extern_() { return {*this, rr_members_class[35]}; }
-  ::rr::Event<double> false_() { return {*this, rr_members_class[36]}; }
-  ::rr::Event<double> float_() { return {*this, rr_members_class[37]}; }
-  ::rr::Event<double> for_() { return {*this, rr_members_class[38]}; }
-  ::rr::Event<double> friend_() { return {*this, rr_members_class[39]}; }
+  ::rr::Event<double> alignas_() { return {*this, rr_members_class[rr_at::alignas__]}; }
+  ::rr::Event<double> alignof_() { return {*this, rr_members_class[rr_at::alignof__]}; }
+  ::rr::Event<double> and_() { return {*this, rr_members_class[rr_at::and__]}; }
+  ::rr::Event<double> and_eq_() { return {*this, rr_members_class[rr_at::and_eq__]}; }
+  ::rr::Event<double> asm_() { return {*this, rr_members_class[rr_at::asm__]}; }
+  ::rr::Event<double> auto_() { return {*this, rr_members_class[rr_at::auto__]}; }
+  ::rr::Event<double> bitand_() { return {*this, rr_members_class[rr_at::bitand__]}; }
+  ::rr::Event<double> bitor_() { return {*this, rr_members_class[rr_at::bitor__]}; }
+  ::rr::Event<double> break_() { return {*this, rr_members_class[rr_at::break__]}; }
+  ::rr::Event<double> case_() { return {*this, rr_members_class[rr_at::case__]}; }
+  ::rr::Event<double> catch_() { return {*this, rr_members_class[rr_at::catch__]}; }
+  ::rr::Event<double> char_() { return {*this, rr_members_class[rr_at::char__]}; }
+  ::rr::Event<double> char16_t_() { return {*this, rr_members_class[rr_at::char16_t_]}; }
+  ::rr::Event<double> char32_t_() { return {*this, rr_members_class[rr_at::char32_t_]}; }
+  ::rr::Event<double> char8_t_() { return {*this, rr_members_class[rr_at::char8_t_]}; }
+  ::rr::Event<double> class_() { return {*this, rr_members_class[rr_at::class__]}; }
+  ::rr::Event<double> co_await_() { return {*this, rr_members_class[rr_at::co_await_]}; }
+  ::rr::Event<double> co_return_() { return {*this, rr_members_class[rr_at::co_return_]}; }
+  ::rr::Event<double> co_yield_() { return {*this, rr_members_class[rr_at::co_yield_]}; }
+  ::rr::Event<double> compl_() { return {*this, rr_members_class[rr_at::compl_]}; }
+  ::rr::Event<double> concept_() { return {*this, rr_members_class[rr_at::concept_]}; }
+  ::rr::Event<double> const_() { return {*this, rr_members_class[rr_at::const_]}; }
+  ::rr::Event<double> const_cast_() { return {*this, rr_members_class[rr_at::const_cast_]}; }
+  ::rr::Event<double> consteval_() { return {*this, rr_members_class[rr_at::consteval_]}; }
+  ::rr::Event<double> constexpr_() { return {*this, rr_members_class[rr_at::constexpr_]}; }
+  ::rr::Event<double> constinit_() { return {*this, rr_members_class[rr_at::constinit_]}; }
+  ::rr::Event<double> continue_() { return {*this, rr_members_class[rr_at::continue_]}; }
+  ::rr::Event<double> decltype_() { return {*this, rr_members_class[rr_at::decltype_]}; }
+  ::rr::Event<double> default_() { return {*this, rr_members_class[rr_at::default_]}; }
+  ::rr::Event<double> delete_() { return {*this, rr_members_class[rr_at::delete__]}; }
+  ::rr::Event<double> do_() { return {*this, rr_members_class[rr_at::do_]}; }
+  ::rr::Event<double> dynamic_cast_() { return {*this, rr_members_class[rr_at::dynamic_cast_]}; }
+  ::rr::Event<double> else_() { return {*this, rr_members_class[rr_at::else_]}; }
+  ::rr::Event<double> explicit_() { return {*this, rr_members_class[rr_at::explicit_]}; }
+  ::rr::Event<double> export_() { return {*this, rr_members_class[rr_at::export__]}; }
+  ::rr::Event<double> extern_() { return {*this, rr_members_class[rr_at::extern_]}; }
+  ::rr::Event<double> false_() { return {*this, rr_members_class[rr_at::false_]}; }
+  ::rr::Event<double> float_() { return {*this, rr_members_class[rr_at::float_]}; }
+  ::rr::Event<double> for_() { return {*this, rr_members_class[rr_at::for_]}; }
+  ::rr::Event<double> friend_() { return {*this, rr_members_class[rr_at::friend_]}; }
   ::std::shared_ptr<newStub> get_goto(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_goto(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[40], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::goto_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_goto(Token&& token) {
@@ -5945,7 +6389,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_if(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_if(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[41], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::if_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_if(Token&& token) {
@@ -5954,7 +6399,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_inline(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_inline(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[42], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::inline_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_inline(Token&& token) {
@@ -5963,7 +6409,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_int(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_int(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[43], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::int_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_int(Token&& token) {
@@ -5972,7 +6419,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_long(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_long(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[44], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::long_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_long(Token&& token) {
@@ -5981,7 +6429,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_mutable(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_mutable(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[45], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::mutable_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_mutable(Token&& token) {
@@ -5990,7 +6439,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_namespace(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_namespace(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[46], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::namespace_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_namespace(Token&& token) {
@@ -5999,7 +6449,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_new(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_new(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[47], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::new__], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_new(Token&& token) {
@@ -6008,7 +6459,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_noexcept(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_noexcept(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[48], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::noexcept_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_noexcept(Token&& token) {
@@ -6017,7 +6469,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_not(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_not(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[49], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::not_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_not(Token&& token) {
@@ -6026,7 +6479,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_not_eq(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_not_eq(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[50], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::not_eq_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_not_eq(Token&& token) {
@@ -6035,7 +6489,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_nullptr(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_nullptr(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[51], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::nullptr_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_nullptr(Token&& token) {
@@ -6044,7 +6499,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_operator(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_operator(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[52], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::operator_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_operator(Token&& token) {
@@ -6053,7 +6509,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_or(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_or(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[53], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::or_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_or(Token&& token) {
@@ -6062,7 +6519,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_or_eq(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_or_eq(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[54], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::or_eq_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_or_eq(Token&& token) {
@@ -6071,7 +6529,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_private(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_private(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[55], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::private_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_private(Token&& token) {
@@ -6080,7 +6539,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_protected(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_protected(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[56], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::protected_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_protected(Token&& token) {
@@ -6089,7 +6549,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_public(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_public(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[57], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::public_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_public(Token&& token) {
@@ -6098,7 +6559,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_register(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_register(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[58], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::register__], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_register(Token&& token) {
@@ -6107,7 +6569,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_reinterpret_cast(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_reinterpret_cast(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[59], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::reinterpret_cast_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_reinterpret_cast(Token&& token) {
@@ -6116,7 +6579,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_requires(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_requires(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[60], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::requires_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_requires(Token&& token) {
@@ -6125,7 +6589,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_return(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_return(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[61], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::return_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_return(Token&& token) {
@@ -6134,7 +6599,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_short(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_short(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[62], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::short_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_short(Token&& token) {
@@ -6143,7 +6609,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_signed(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_signed(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[63], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::signed_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_signed(Token&& token) {
@@ -6152,7 +6619,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_sizeof(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_sizeof(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[64], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::sizeof_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_sizeof(Token&& token) {
@@ -6161,7 +6629,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_static(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_static(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[65], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::static__], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_static(Token&& token) {
@@ -6170,7 +6639,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_static_assert(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_static_assert(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[66], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::static_assert_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_static_assert(Token&& token) {
@@ -6179,7 +6649,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_static_cast(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_static_cast(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[67], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::static_cast_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_static_cast(Token&& token) {
@@ -6188,7 +6659,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_switch(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_switch(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[68], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::switch_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_switch(Token&& token) {
@@ -6197,7 +6669,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_template(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_template(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[69], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::template__], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_template(Token&& token) {
@@ -6206,7 +6679,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_thread_local(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_thread_local(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[70], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::thread_local_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_thread_local(Token&& token) {
@@ -6215,7 +6689,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_throw(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_throw(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[71], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::throw_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_throw(Token&& token) {
@@ -6224,7 +6699,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_true(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_true(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[72], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::true_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_true(Token&& token) {
@@ -6233,7 +6709,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_try(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_try(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[73], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::try_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_try(Token&& token) {
@@ -6242,7 +6719,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_typedef(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_typedef(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[74], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::typedef_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_typedef(Token&& token) {
@@ -6251,7 +6729,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_typeid(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_typeid(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[75], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::typeid_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_typeid(Token&& token) {
@@ -6260,7 +6739,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_typename(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_typename(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[76], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::typename_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_typename(Token&& token) {
@@ -6269,7 +6749,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_union(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_union(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[77], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::union__], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_union(Token&& token) {
@@ -6278,7 +6759,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_unsigned(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_unsigned(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[78], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::unsigned_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_unsigned(Token&& token) {
@@ -6287,7 +6769,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_virtual(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_virtual(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[79], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::virtual_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_virtual(Token&& token) {
@@ -6296,7 +6779,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_volatile(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_volatile(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[80], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::volatile__], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_volatile(Token&& token) {
@@ -6305,7 +6789,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_wchar_t(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_wchar_t(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[81], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::wchar_t_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_wchar_t(Token&& token) {
@@ -6314,7 +6799,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_while(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_while(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[82], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::while_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_while(Token&& token) {
@@ -6323,7 +6809,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_xor(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_xor(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[83], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::xor_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_xor(Token&& token) {
@@ -6332,7 +6819,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_xor_eq(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_xor_eq(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[84], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::xor_eq_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_xor_eq(Token&& token) {
@@ -6341,7 +6829,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_assert(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_assert(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[85], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::assert_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_assert(Token&& token) {
@@ -6350,7 +6839,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_errno(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_errno(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[86], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::errno_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_errno(Token&& token) {
@@ -6359,7 +6849,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_linux(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_linux(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[87], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::linux_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_linux(Token&& token) {
@@ -6368,7 +6859,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_unix(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_unix(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[88], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::unix_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_unix(Token&& token) {
@@ -6377,7 +6869,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_major(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_major(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[89], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::major_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_major(Token&& token) {
@@ -6386,7 +6879,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_minor(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_minor(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[90], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::minor_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_minor(Token&& token) {
@@ -6395,7 +6889,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_EOF(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_EOF(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[91], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::EOF_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_EOF(Token&& token) {
@@ -6404,7 +6899,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_NULL(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_NULL(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[92], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::NULL_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_NULL(Token&& token) {
@@ -6413,7 +6909,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_INFINITY(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_INFINITY(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[93], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::INFINITY_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_INFINITY(Token&& token) {
@@ -6422,7 +6919,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_NAN(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_NAN(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[94], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::NAN_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_NAN(Token&& token) {
@@ -6431,7 +6929,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_RAND_MAX(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_RAND_MAX(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[95], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::RAND_MAX_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_RAND_MAX(Token&& token) {
@@ -6440,7 +6939,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_BUFSIZ(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_BUFSIZ(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[96], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::BUFSIZ_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_BUFSIZ(Token&& token) {
@@ -6449,7 +6949,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_SIGINT(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_SIGINT(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[97], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::SIGINT_], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_SIGINT(Token&& token) {
@@ -6458,7 +6959,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_final(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_final(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[98], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::final], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_final(Token&& token) {
@@ -6467,7 +6969,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_override(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_override(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[99], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::override], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_override(Token&& token) {
@@ -6476,7 +6979,8 @@ class classStub : public virtual ::rr::Stub {
   ::std::shared_ptr<newStub> get_module(const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_module(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<newStub>(rr_members_class[100], options, ::std::forward<Token>(token));
+    return rr_async_find<newStub>(rr_members_class[rr_at::module], options,
+                                  ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_module(Token&& token) {
@@ -6487,49 +6991,93 @@ class classStub : public virtual ::rr::Stub {
 
 /// Serves one class: derive from it and implement its members.
 class classSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_class;
+
  public:
-  void alignas_(double alignas__) const { rr_fire_event(rr_members_class[0], alignas__); }
-  void alignof_(double alignof__) const { rr_fire_event(rr_members_class[1], alignof__); }
-  void and_(double and__) const { rr_fire_event(rr_members_class[2], and__); }
-  void and_eq_(double and_eq__) const { rr_fire_event(rr_members_class[3], and_eq__); }
-  void asm_(double asm__) const { rr_fire_event(rr_members_class[4], asm__); }
-  void auto_(double auto__) const { rr_fire_event(rr_members_class[5], auto__); }
-  void bitand_(double bitand__) const { rr_fire_event(rr_members_class[6], bitand__); }
-  void bitor_(double bitor__) const { rr_fire_event(rr_members_class[7], bitor__); }
-  void break_(double break__) const { rr_fire_event(rr_members_class[8], break__); }
-  void case_(double case__) const { rr_fire_event(rr_members_class[9], case__); }
-  void catch_(double catch__) const { rr_fire_event(rr_members_class[10], catch__); }
-  void char_(double char__) const { rr_fire_event(rr_members_class[11], char__); }
-  void char16_t_(double char16_t_) const { rr_fire_event(rr_members_class[12], char16_t_); }
-  void char32_t_(double char32_t_) const { rr_fire_event(rr_members_class[13], char32_t_); }
-  void char8_t_(double char8_t_) const { rr_fire_event(rr_members_class[14], char8_t_); }
-  void class_(double class__) const { rr_fire_event(rr_members_class[15], class__); }
-  void co_await_(double co_await_) const { rr_fire_event(rr_members_class[16], co_await_); }
-  void co_return_(double co_return_) const { rr_fire_event(rr_members_class[17], co_return_); }
-  void co_yield_(double co_yield_) const { rr_fire_event(rr_members_class[18], co_yield_); }
-  void compl_(double compl_) const { rr_fire_event(rr_members_class[19], compl_); }
-  void concept_(double concept_) const { rr_fire_event(rr_members_class[20], concept_); }
-  void const_(double const_) const { rr_fire_event(rr_members_class[21], const_); }
-  void const_cast_(double const_cast_) const { rr_fire_event(rr_members_class[22], const_cast_); }
-  void consteval_(double consteval_) const { rr_fire_event(rr_members_class[23], consteval_); }
-  void constexpr_(double constexpr_) const { rr_fire_event(rr_members_class[24], constexpr_); }
-  void constinit_(double constinit_) const { rr_fire_event(rr_members_class[25], constinit_); }
-  void continue_(double continue_) const { rr_fire_event(rr_members_class[26], continue_); }
-  void decltype_(double decltype_) const { rr_fire_event(rr_members_class[27], decltype_); }
-  void default_(double default_) const { rr_fire_event(rr_members_class[28], default_); }
-  void delete_(double delete__) const { rr_fire_event(rr_members_class[29], delete__); }
-  void do_(double do_) const { rr_fire_event(rr_members_class[30], do_); }
-  void dynamic_cast_(double dynamic_cast_) const {
-    rr_fire_event(rr_members_class[31], dynamic_cast_);
+  void alignas_(double alignas__) const {
+    rr_fire_event(rr_members_class[rr_at::alignas__], alignas__);
   }
-  void else_(double else_) const { rr_fire_event(rr_members_class[32], else_); }
-  void explicit_(double explicit_) const { rr_fire_event(rr_members_class[33], explicit_); }
-  void export_(double export__) const { rr_fire_event(rr_members_class[34], export__); }
-  void extern_(double extern_) const { rr_fire_event(rr_members_class[35], extern_); }
-  void false_(double false_) const { rr_fire_event(rr_members_class[36], false_); }
-  void float_(double float_) const { rr_fire_event(rr_members_class[37], float_); }
-  void for_(double for_) const { rr_fire_event(rr_members_class[38], for_); }
-  void friend_(double friend_) const { rr_fire_event(rr_members_class[39], friend_); }
+  void alignof_(double alignof__) const {
+    rr_fire_event(rr_members_class[rr_at::alignof__], alignof__);
+  }
+  void and_(double and__) const { rr_fire_event(rr_members_class[rr_at::and__], and__); }
+  void and_eq_(double and_eq__) const {
+    rr_fire_event(rr_members_class[rr_at::and_eq__], and_eq__);
+  }
+  void asm_(double asm__) const { rr_fire_event(rr_members_class[rr_at::asm__], asm__); }
+  void auto_(double auto__) const { rr_fire_event(rr_members_class[rr_at::auto__], auto__); }
+  void bitand_(double bitand__) const {
+    rr_fire_event(rr_members_class[rr_at::bitand__], bitand__);
+  }
+  void bitor_(double bitor__) const { rr_fire_event(rr_members_class[rr_at::bitor__], bitor__); }
+  void break_(double break__) const { rr_fire_event(rr_members_class[rr_at::break__], break__); }
+  void case_(double case__) const { rr_fire_event(rr_members_class[rr_at::case__], case__); }
+  void catch_(double catch__) const { rr_fire_event(rr_members_class[rr_at::catch__], catch__); }
+  void char_(double char__) const { rr_fire_event(rr_members_class[rr_at::char__], char__); }
+  void char16_t_(double char16_t_) const {
+    rr_fire_event(rr_members_class[rr_at::char16_t_], char16_t_);
+  }
+  void char32_t_(double char32_t_) const {
+    rr_fire_event(rr_members_class[rr_at::char32_t_], char32_t_);
+  }
+  void char8_t_(double char8_t_) const {
+    rr_fire_event(rr_members_class[rr_at::char8_t_], char8_t_);
+  }
+  void class_(double class__) const { rr_fire_event(rr_members_class[rr_at::class__], class__); }
+  void co_await_(double co_await_) const {
+    rr_fire_event(rr_members_class[rr_at::co_await_], co_await_);
+  }
+  void co_return_(double co_return_) const {
+    rr_fire_event(rr_members_class[rr_at::co_return_], co_return_);
+  }
+  void co_yield_(double co_yield_) const {
+    rr_fire_event(rr_members_class[rr_at::co_yield_], co_yield_);
+  }
+  void compl_(double compl_) const { rr_fire_event(rr_members_class[rr_at::compl_], compl_); }
+  void concept_(double concept_) const {
+    rr_fire_event(rr_members_class[rr_at::concept_], concept_);
+  }
+  void const_(double const_) const { rr_fire_event(rr_members_class[rr_at::const_], const_); }
+  void const_cast_(double const_cast_) const {
+    rr_fire_event(rr_members_class[rr_at::const_cast_], const_cast_);
+  }
+  void consteval_(double consteval_) const {
+    rr_fire_event(rr_members_class[rr_at::consteval_], consteval_);
+  }
+  void constexpr_(double constexpr_) const {
+    rr_fire_event(rr_members_class[rr_at::constexpr_], constexpr_);
+  }
+  void constinit_(double constinit_) const {
+    rr_fire_event(rr_members_class[rr_at::constinit_], constinit_);
+  }
+  void continue_(double continue_) const {
+    rr_fire_event(rr_members_class[rr_at::continue_], continue_);
+  }
+  void decltype_(double decltype_) const {
+    rr_fire_event(rr_members_class[rr_at::decltype_], decltype_);
+  }
+  void default_(double default_) const {
+    rr_fire_event(rr_members_class[rr_at::default_], default_);
+  }
+  void delete_(double delete__) const {
+    rr_fire_event(rr_members_class[rr_at::delete__], delete__);
+  }
+  void do_(double do_) const { rr_fire_event(rr_members_class[rr_at::do_], do_); }
+  void dynamic_cast_(double dynamic_cast_) const {
+    rr_fire_event(rr_members_class[rr_at::dynamic_cast_], dynamic_cast_);
+  }
+  void else_(double else_) const { rr_fire_event(rr_members_class[rr_at::else_], else_); }
+  void explicit_(double explicit_) const {
+    rr_fire_event(rr_members_class[rr_at::explicit_], explicit_);
+  }
+  void export_(double export__) const {
+    rr_fire_event(rr_members_class[rr_at::export__], export__);
+  }
+  void extern_(double extern_) const { rr_fire_event(rr_members_class[rr_at::extern_], extern_); }
+  void false_(double false_) const { rr_fire_event(rr_members_class[rr_at::false_], false_); }
+  void float_(double float_) const { rr_fire_event(rr_members_class[rr_at::float_], float_); }
+  void for_(double for_) const { rr_fire_event(rr_members_class[rr_at::for_], for_); }
+  void friend_(double friend_) const { rr_fire_event(rr_members_class[rr_at::friend_], friend_); }
   virtual ::std::shared_ptr<newSkeleton> get_goto() = 0;
   virtual ::std::shared_ptr<newSkeleton> get_if() = 0;
   virtual ::std::shared_ptr<newSkeleton> get_inline() = 0;

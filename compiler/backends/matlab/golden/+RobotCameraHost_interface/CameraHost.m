@@ -39,10 +39,10 @@ classdef CameraHost < RobotRaconteurStub
             rr_async(obj, 'async_get_robcamera', {index}, handler, varargin);
         end
         function value = get.RobotCameraCount(obj)
-            value = rrmex('member', obj, 2);
+            value = rrmex('member', obj, 'RobotCameraCount');
         end
         function set.RobotCameraCount(obj, value)
-            rrmex('member', obj, 2, value);
+            rrmex('member', obj, 'RobotCameraCount', value);
         end
         function value = get_RobotCameraCount(obj)
             %get_RobotCameraCount The same as object.RobotCameraCount.
@@ -61,10 +61,10 @@ classdef CameraHost < RobotRaconteurStub
             rr_async(obj, 'async_set_RobotCameraCount', {value}, handler, varargin);
         end
         function value = get.RobotDeviceCount(obj)
-            value = rrmex('member', obj, 3);
+            value = rrmex('member', obj, 'RobotDeviceCount');
         end
         function set.RobotDeviceCount(obj, value)
-            rrmex('member', obj, 3, value);
+            rrmex('member', obj, 'RobotDeviceCount', value);
         end
         function value = get_RobotDeviceCount(obj)
             %get_RobotDeviceCount The same as object.RobotDeviceCount.

@@ -20,10 +20,10 @@ classdef RobotDevice < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.Name(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'Name');
         end
         function set.Name(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'Name', value);
         end
         function value = get_Name(obj)
             %get_Name The same as object.Name.
@@ -43,7 +43,7 @@ classdef RobotDevice < RobotRaconteurStub
         end
         function result = GetProperty(obj, name)
             %GETPROPERTY function double[] GetProperty(string name)
-            result = rrmex('member', obj, 1, name);
+            result = rrmex('member', obj, 'GetProperty', name);
         end
         function async_GetProperty(obj, name, handler, varargin)
             %async_GetProperty As GetProperty, but calls handler(param, value, err) in a later Poll.
@@ -51,7 +51,7 @@ classdef RobotDevice < RobotRaconteurStub
         end
         function result = SetProperty(obj, name, val)
             %SETPROPERTY function int32 SetProperty(string name, double[] val)
-            result = rrmex('member', obj, 2, name, val);
+            result = rrmex('member', obj, 'SetProperty', name, val);
         end
         function async_SetProperty(obj, name, val, handler, varargin)
             %async_SetProperty As SetProperty, but calls handler(param, value, err) in a later Poll.

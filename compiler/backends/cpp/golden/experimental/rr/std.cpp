@@ -63,14 +63,14 @@ const ::rr::ObjectType& NodeStub::rr_object_type() const { return rr_object_Node
 
 ::std::shared_ptr<NodeStub> NodeStub::get_array(::std::int32_t index,
                                                 const ::rr::CallOptions& options) {
-  return rr_find_as<NodeStub>(rr_members_Node[4], options, index);
+  return rr_find_as<NodeStub>(rr_members_Node[rr_at::array], options, index);
 }
 
 const ::rr::ObjectType& NodeSkeleton::rr_object_type() const { return rr_object_Node; }
 
 void NodeSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_request) {
   switch (rr_member) {
-    case 0: {  // property Error
+    case rr_at::Error: {
       if (rr_request.is_set()) {
         ::std::optional<optional> value{};
         rr_request.read_value(&value);
@@ -80,7 +80,7 @@ void NodeSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reques
       const auto value = get_Error();
       return rr_request.answer(&value);
     }
-    case 1: {  // property shared_ptr
+    case rr_at::shared_ptr: {
       if (rr_request.is_set()) {
         ::std::optional<::std::vector<::std::string>> value{};
         rr_request.read_value(&value);
@@ -90,7 +90,7 @@ void NodeSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reques
       const auto value = get_shared_ptr();
       return rr_request.answer(&value);
     }
-    case 2: {  // function move
+    case rr_at::move: {
       ::std::optional<optional> std{};
       ::std::int32_t size_t = 0;
       rr_request.read(std, size_t);
@@ -104,7 +104,7 @@ void NodeSkeleton::rr_dispatch(::std::size_t rr_member, ::rr::Request& rr_reques
 ::std::shared_ptr<::rr::Skeleton> NodeSkeleton::rr_child(::std::size_t rr_member,
                                                          const ::rr::ObjectIndex& rr_index) {
   switch (rr_member) {
-    case 4:
+    case rr_at::array:
       return get_array(rr_index.number);
     default:
       return nullptr;

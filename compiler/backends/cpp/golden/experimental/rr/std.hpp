@@ -40,18 +40,31 @@ struct optional {
 };
 extern const ::rr::RecordType rr_type_optional;
 
-extern const ::rr::Member rr_members_Node[5];
+/// Where each member is in the table.
+struct rr_at_Node {
+  enum : ::std::size_t {
+    Error,
+    shared_ptr,
+    move,
+    swap,
+    array,
+    rr_count
+  };
+};
+extern const ::rr::Member rr_members_Node[rr_at_Node::rr_count];
 extern const ::rr::ObjectType rr_object_Node;
 
 /// A Node on another node.
 class NodeStub : public virtual ::rr::Stub {
+  using rr_at = rr_at_Node;
+
  public:
   ::std::optional<optional> get_Error(const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::optional<optional>>(rr_members_Node[0], options);
+    return rr_get<::std::optional<optional>>(rr_members_Node[rr_at::Error], options);
   }
   template <class Token>
   auto async_get_Error(const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_get<::std::optional<optional>>(rr_members_Node[0], options,
+    return rr_async_get<::std::optional<optional>>(rr_members_Node[rr_at::Error], options,
                                                    ::std::forward<Token>(token));
   }
   template <class Token>
@@ -59,12 +72,12 @@ class NodeStub : public virtual ::rr::Stub {
     return async_get_Error(::rr::CallOptions(), ::std::forward<Token>(token));
   }
   void set_Error(const ::std::optional<optional>& value, const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Node[0], options, &value);
+    rr_set(rr_members_Node[rr_at::Error], options, &value);
   }
   template <class Token>
   auto async_set_Error(const ::std::optional<optional>& value, const ::rr::CallOptions& options,
                        Token&& token) {
-    return rr_async_set<::std::optional<optional>>(rr_members_Node[0], options,
+    return rr_async_set<::std::optional<optional>>(rr_members_Node[rr_at::Error], options,
                                                    ::std::forward<Token>(token), value);
   }
   template <class Token>
@@ -73,12 +86,13 @@ class NodeStub : public virtual ::rr::Stub {
   }
   ::std::optional<::std::vector<::std::string>> get_shared_ptr(
       const ::rr::CallOptions& options = {}) {
-    return rr_get<::std::optional<::std::vector<::std::string>>>(rr_members_Node[1], options);
+    return rr_get<::std::optional<::std::vector<::std::string>>>(rr_members_Node[rr_at::shared_ptr],
+                                                                 options);
   }
   template <class Token>
   auto async_get_shared_ptr(const ::rr::CallOptions& options, Token&& token) {
     return rr_async_get<::std::optional<::std::vector<::std::string>>>(
-        rr_members_Node[1], options, ::std::forward<Token>(token));
+        rr_members_Node[rr_at::shared_ptr], options, ::std::forward<Token>(token));
   }
   template <class Token>
   auto async_get_shared_ptr(Token&& token) {
@@ -86,13 +100,13 @@ class NodeStub : public virtual ::rr::Stub {
   }
   void set_shared_ptr(const ::std::optional<::std::vector<::std::string>>& value,
                       const ::rr::CallOptions& options = {}) {
-    rr_set(rr_members_Node[1], options, &value);
+    rr_set(rr_members_Node[rr_at::shared_ptr], options, &value);
   }
   template <class Token>
   auto async_set_shared_ptr(const ::std::optional<::std::vector<::std::string>>& value,
                             const ::rr::CallOptions& options, Token&& token) {
     return rr_async_set<::std::optional<::std::vector<::std::string>>>(
-        rr_members_Node[1], options, ::std::forward<Token>(token), value);
+        rr_members_Node[rr_at::shared_ptr], options, ::std::forward<Token>(token), value);
   }
   template <class Token>
   auto async_set_shared_ptr(const ::std::optional<::std::vector<::std::string>>& value,
@@ -101,25 +115,25 @@ class NodeStub : public virtual ::rr::Stub {
   }
   ::std::int32_t move(const ::std::optional<optional>& std, ::std::int32_t size_t,
                       const ::rr::CallOptions& options = {}) {
-    return rr_call<::std::int32_t>(rr_members_Node[2], options, std, size_t);
+    return rr_call<::std::int32_t>(rr_members_Node[rr_at::move], options, std, size_t);
   }
   template <class Token>
   auto async_move(const ::std::optional<optional>& std, ::std::int32_t size_t,
                   const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_call<::std::int32_t>(rr_members_Node[2], options, ::std::forward<Token>(token),
-                                         std, size_t);
+    return rr_async_call<::std::int32_t>(rr_members_Node[rr_at::move], options,
+                                         ::std::forward<Token>(token), std, size_t);
   }
   template <class Token>
   auto async_move(const ::std::optional<optional>& std, ::std::int32_t size_t, Token&& token) {
     return async_move(std, size_t, ::rr::CallOptions(), ::std::forward<Token>(token));
   }
-  ::rr::Event<::std::int32_t> swap() { return {*this, rr_members_Node[3]}; }
+  ::rr::Event<::std::int32_t> swap() { return {*this, rr_members_Node[rr_at::swap]}; }
   ::std::shared_ptr<NodeStub> get_array(::std::int32_t index,
                                         const ::rr::CallOptions& options = {});
   template <class Token>
   auto async_get_array(::std::int32_t index, const ::rr::CallOptions& options, Token&& token) {
-    return rr_async_find<NodeStub>(rr_members_Node[4], options, ::std::forward<Token>(token),
-                                   index);
+    return rr_async_find<NodeStub>(rr_members_Node[rr_at::array], options,
+                                   ::std::forward<Token>(token), index);
   }
   template <class Token>
   auto async_get_array(::std::int32_t index, Token&& token) {
@@ -130,6 +144,8 @@ class NodeStub : public virtual ::rr::Stub {
 
 /// Serves one Node: derive from it and implement its members.
 class NodeSkeleton : public virtual ::rr::Skeleton {
+  using rr_at = rr_at_Node;
+
  public:
   virtual ::std::optional<optional> get_Error() = 0;
   virtual void set_Error(const ::std::optional<optional>& value) = 0;
@@ -140,7 +156,7 @@ class NodeSkeleton : public virtual ::rr::Skeleton {
                           ::rr::Answer<::std::int32_t> answer) {
     answer(move(std, size_t));
   }
-  void swap(::std::int32_t std) const { rr_fire_event(rr_members_Node[3], std); }
+  void swap(::std::int32_t std) const { rr_fire_event(rr_members_Node[rr_at::swap], std); }
   virtual ::std::shared_ptr<NodeSkeleton> get_array(::std::int32_t index) = 0;
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
   void rr_dispatch(::std::size_t member, ::rr::Request& request) override;

@@ -25,10 +25,10 @@ classdef Store < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.exact(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'exact');
         end
         function set.exact(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'exact', value);
         end
         function value = get_exact(obj)
             %get_exact The same as object.exact.
@@ -47,10 +47,10 @@ classdef Store < RobotRaconteurStub
             rr_async(obj, 'async_set_exact', {value}, handler, varargin);
         end
         function value = get.at_the_edge(obj)
-            value = rrmex('member', obj, 1);
+            value = rrmex('member', obj, 'at_the_edge');
         end
         function set.at_the_edge(obj, value)
-            rrmex('member', obj, 1, value);
+            rrmex('member', obj, 'at_the_edge', value);
         end
         function value = get_at_the_edge(obj)
             %get_at_the_edge The same as object.at_the_edge.
@@ -69,10 +69,10 @@ classdef Store < RobotRaconteurStub
             rr_async(obj, 'async_set_at_the_edge', {value}, handler, varargin);
         end
         function value = get.beyond_it(obj)
-            value = rrmex('member', obj, 2);
+            value = rrmex('member', obj, 'beyond_it');
         end
         function set.beyond_it(obj, value)
-            rrmex('member', obj, 2, value);
+            rrmex('member', obj, 'beyond_it', value);
         end
         function value = get_beyond_it(obj)
             %get_beyond_it The same as object.beyond_it.
@@ -92,7 +92,7 @@ classdef Store < RobotRaconteurStub
         end
         function result = depth(obj, raw)
             %DEPTH function single[640,480] depth(uint16[70000-] raw)
-            result = rrmex('member', obj, 3, raw);
+            result = rrmex('member', obj, 'depth', raw);
         end
         function async_depth(obj, raw, handler, varargin)
             %async_depth As depth, but calls handler(param, value, err) in a later Poll.

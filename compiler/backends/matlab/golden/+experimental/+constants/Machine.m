@@ -22,10 +22,10 @@ classdef Machine < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.setting(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'setting');
         end
         function set.setting(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'setting', value);
         end
         function value = get_setting(obj)
             %get_setting The same as object.setting.

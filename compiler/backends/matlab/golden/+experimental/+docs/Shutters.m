@@ -26,10 +26,10 @@ classdef Shutters < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.count(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'count');
         end
         function set.count(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'count', value);
         end
         function value = get_count(obj)
             %get_count The same as object.count.
@@ -46,7 +46,7 @@ classdef Shutters < RobotRaconteurStub
         function result = move(obj, number, position)
             %MOVE Moves one shutter and answers when it is there. `*/` and /* are text.
             %   function Place move(int32 number, double position)
-            result = rrmex('member', obj, 1, number, position);
+            result = rrmex('member', obj, 'move', number, position);
         end
         function async_move(obj, number, position, handler, varargin)
             %async_move As move, but calls handler(param, value, err) in a later Poll.

@@ -25,10 +25,10 @@ classdef Machine < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.state(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'state');
         end
         function set.state(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'state', value);
         end
         function value = get_state(obj)
             %get_state The same as object.state.
@@ -47,10 +47,10 @@ classdef Machine < RobotRaconteurStub
             rr_async(obj, 'async_set_state', {value}, handler, varargin);
         end
         function value = get.history(obj)
-            value = rrmex('member', obj, 1);
+            value = rrmex('member', obj, 'history');
         end
         function set.history(obj, value)
-            rrmex('member', obj, 1, value);
+            rrmex('member', obj, 'history', value);
         end
         function value = get_history(obj)
             %get_history The same as object.history.
@@ -69,10 +69,10 @@ classdef Machine < RobotRaconteurStub
             rr_async(obj, 'async_set_history', {value}, handler, varargin);
         end
         function value = get.parts(obj)
-            value = rrmex('member', obj, 2);
+            value = rrmex('member', obj, 'parts');
         end
         function set.parts(obj, value)
-            rrmex('member', obj, 2, value);
+            rrmex('member', obj, 'parts', value);
         end
         function value = get_parts(obj)
             %get_parts The same as object.parts.
@@ -92,7 +92,7 @@ classdef Machine < RobotRaconteurStub
         end
         function result = limit(obj, state)
             %LIMIT function Limits limit(State state)
-            result = rrmex('member', obj, 3, state);
+            result = rrmex('member', obj, 'limit', state);
         end
         function async_limit(obj, state, handler, varargin)
             %async_limit As limit, but calls handler(param, value, err) in a later Poll.

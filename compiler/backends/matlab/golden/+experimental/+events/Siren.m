@@ -21,7 +21,7 @@ classdef Siren < RobotRaconteurStub
         end
         function test(obj)
             %TEST function void test()
-            rrmex('member', obj, 2);
+            rrmex('member', obj, 'test');
         end
         function async_test(obj, handler, varargin)
             %async_test As test, but calls handler(param, value, err) in a later Poll.

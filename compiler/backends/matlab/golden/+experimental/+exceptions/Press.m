@@ -15,7 +15,7 @@ classdef Press < RobotRaconteurStub
         end
         function close(obj)
             %CLOSE function void close()
-            rrmex('member', obj, 0);
+            rrmex('member', obj, 'close');
         end
         function async_close(obj, handler, varargin)
             %async_close As close, but calls handler(param, value, err) in a later Poll.

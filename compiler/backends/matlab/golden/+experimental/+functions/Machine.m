@@ -21,7 +21,7 @@ classdef Machine < RobotRaconteurStub
         end
         function stop(obj)
             %STOP function void stop()
-            rrmex('member', obj, 0);
+            rrmex('member', obj, 'stop');
         end
         function async_stop(obj, handler, varargin)
             %async_stop As stop, but calls handler(param, value, err) in a later Poll.
@@ -29,7 +29,7 @@ classdef Machine < RobotRaconteurStub
         end
         function result = speed(obj)
             %SPEED function double speed()
-            result = rrmex('member', obj, 1);
+            result = rrmex('member', obj, 'speed');
         end
         function async_speed(obj, handler, varargin)
             %async_speed As speed, but calls handler(param, value, err) in a later Poll.
@@ -37,7 +37,7 @@ classdef Machine < RobotRaconteurStub
         end
         function move_to(obj, pan, tilt)
             %MOVE_TO function void move_to(double pan, double tilt)
-            rrmex('member', obj, 2, pan, tilt);
+            rrmex('member', obj, 'move_to', pan, tilt);
         end
         function async_move_to(obj, pan, tilt, handler, varargin)
             %async_move_to As move_to, but calls handler(param, value, err) in a later Poll.
@@ -45,7 +45,7 @@ classdef Machine < RobotRaconteurStub
         end
         function result = join(obj, first, second, others)
             %JOIN function string join(string first, string second, string{list} others)
-            result = rrmex('member', obj, 3, first, second, others);
+            result = rrmex('member', obj, 'join', first, second, others);
         end
         function async_join(obj, first, second, others, handler, varargin)
             %async_join As join, but calls handler(param, value, err) in a later Poll.
@@ -53,7 +53,7 @@ classdef Machine < RobotRaconteurStub
         end
         function result = inspect(obj, previous, picture)
             %INSPECT function Report inspect(Report previous, uint8[] picture)
-            result = rrmex('member', obj, 4, previous, picture);
+            result = rrmex('member', obj, 'inspect', previous, picture);
         end
         function async_inspect(obj, previous, picture, handler, varargin)
             %async_inspect As inspect, but calls handler(param, value, err) in a later Poll.
@@ -61,7 +61,7 @@ classdef Machine < RobotRaconteurStub
         end
         function result = filter(obj, samples, weights, normalize)
             %FILTER function double[] filter(double[] samples, double[3] weights, bool normalize) [urgent]
-            result = rrmex('member', obj, 5, samples, weights, normalize);
+            result = rrmex('member', obj, 'filter', samples, weights, normalize);
         end
         function async_filter(obj, samples, weights, normalize, handler, varargin)
             %async_filter As filter, but calls handler(param, value, err) in a later Poll.
@@ -70,7 +70,7 @@ classdef Machine < RobotRaconteurStub
         function result = a_function_whose_name_is_rather_long(obj, a_first_parameter_with_a_long_name, another_parameter_with_a_long_name)
             %A_FUNCTION_WHOSE_NAME_IS_RATHER_LONG function varvalue{string} a_function_whose_name_is_rather_long(varvalue
             %   a_first_parameter_with_a_long_name, varvalue{list} another_parameter_with_a_long_name)
-            result = rrmex('member', obj, 6, a_first_parameter_with_a_long_name, another_parameter_with_a_long_name);
+            result = rrmex('member', obj, 'a_function_whose_name_is_rather_long', a_first_parameter_with_a_long_name, another_parameter_with_a_long_name);
         end
         function async_a_function_whose_name_is_rather_long(obj, a_first_parameter_with_a_long_name, another_parameter_with_a_long_name, handler, varargin)
             %async_a_function_whose_name_is_rather_long As a_function_whose_name_is_rather_long, but calls handler(param, value, err) in a later Poll.

@@ -23,10 +23,10 @@ classdef Device < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.name(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'name');
         end
         function set.name(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'name', value);
         end
         function value = get_name(obj)
             %get_name The same as object.name.
@@ -42,7 +42,7 @@ classdef Device < RobotRaconteurStub
         end
         function reset(obj)
             %RESET function void reset()
-            rrmex('member', obj, 2);
+            rrmex('member', obj, 'reset');
         end
         function async_reset(obj, handler, varargin)
             %async_reset As reset, but calls handler(param, value, err) in a later Poll.

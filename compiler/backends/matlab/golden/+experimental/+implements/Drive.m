@@ -33,10 +33,10 @@ classdef Drive < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.name(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'name');
         end
         function set.name(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'name', value);
         end
         function value = get_name(obj)
             %get_name The same as object.name.
@@ -52,17 +52,17 @@ classdef Drive < RobotRaconteurStub
         end
         function reset(obj)
             %RESET function void reset()
-            rrmex('member', obj, 2);
+            rrmex('member', obj, 'reset');
         end
         function async_reset(obj, handler, varargin)
             %async_reset As reset, but calls handler(param, value, err) in a later Poll.
             rr_async(obj, 'async_reset', {}, handler, varargin);
         end
         function value = get.on(obj)
-            value = rrmex('member', obj, 3);
+            value = rrmex('member', obj, 'on');
         end
         function set.on(obj, value)
-            rrmex('member', obj, 3, value);
+            rrmex('member', obj, 'on', value);
         end
         function value = get_on(obj)
             %get_on The same as object.on.
@@ -81,10 +81,10 @@ classdef Drive < RobotRaconteurStub
             rr_async(obj, 'async_set_on', {value}, handler, varargin);
         end
         function value = get.angle(obj)
-            value = rrmex('member', obj, 4);
+            value = rrmex('member', obj, 'angle');
         end
         function set.angle(obj, value)
-            rrmex('member', obj, 4, value);
+            rrmex('member', obj, 'angle', value);
         end
         function value = get_angle(obj)
             %get_angle The same as object.angle.
@@ -103,10 +103,10 @@ classdef Drive < RobotRaconteurStub
             rr_async(obj, 'async_set_angle', {value}, handler, varargin);
         end
         function value = get.torque(obj)
-            value = rrmex('member', obj, 5);
+            value = rrmex('member', obj, 'torque');
         end
         function set.torque(obj, value)
-            rrmex('member', obj, 5, value);
+            rrmex('member', obj, 'torque', value);
         end
         function value = get_torque(obj)
             %get_torque The same as object.torque.

@@ -22,10 +22,10 @@ classdef Named < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.name(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'name');
         end
         function set.name(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'name', value);
         end
         function value = get_name(obj)
             %get_name The same as object.name.

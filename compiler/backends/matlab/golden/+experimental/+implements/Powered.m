@@ -25,10 +25,10 @@ classdef Powered < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.name(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'name');
         end
         function set.name(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'name', value);
         end
         function value = get_name(obj)
             %get_name The same as object.name.
@@ -43,10 +43,10 @@ classdef Powered < RobotRaconteurStub
             rr_async(obj, 'async_set_name', {value}, handler, varargin);
         end
         function value = get.on(obj)
-            value = rrmex('member', obj, 2);
+            value = rrmex('member', obj, 'on');
         end
         function set.on(obj, value)
-            rrmex('member', obj, 2, value);
+            rrmex('member', obj, 'on', value);
         end
         function value = get_on(obj)
             %get_on The same as object.on.

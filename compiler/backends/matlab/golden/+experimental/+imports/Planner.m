@@ -22,10 +22,10 @@ classdef Planner < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.plan(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'plan');
         end
         function set.plan(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'plan', value);
         end
         function value = get_plan(obj)
             %get_plan The same as object.plan.
@@ -44,10 +44,10 @@ classdef Planner < RobotRaconteurStub
             rr_async(obj, 'async_set_plan', {value}, handler, varargin);
         end
         function value = get.picture(obj)
-            value = rrmex('member', obj, 1);
+            value = rrmex('member', obj, 'picture');
         end
         function set.picture(obj, value)
-            rrmex('member', obj, 1, value);
+            rrmex('member', obj, 'picture', value);
         end
         function value = get_picture(obj)
             %get_picture The same as object.picture.
@@ -67,7 +67,7 @@ classdef Planner < RobotRaconteurStub
         end
         function result = solve(obj, start, approach, state)
             %SOLVE function Pose[] solve(Pose start, Direction approach, State state)
-            result = rrmex('member', obj, 2, start, approach, state);
+            result = rrmex('member', obj, 'solve', start, approach, state);
         end
         function async_solve(obj, start, approach, state, handler, varargin)
             %async_solve As solve, but calls handler(param, value, err) in a later Poll.

@@ -40,10 +40,10 @@ classdef spmd_ < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.spmd_(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'spmd');
         end
         function set.spmd_(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'spmd', value);
         end
         function value = get_spmd(obj)
             %get_spmd The same as object.spmd_.
@@ -62,10 +62,10 @@ classdef spmd_ < RobotRaconteurStub
             rr_async(obj, 'async_set_spmd', {value}, handler, varargin);
         end
         function value = get.if_(obj)
-            value = rrmex('member', obj, 1);
+            value = rrmex('member', obj, 'if');
         end
         function set.if_(obj, value)
-            rrmex('member', obj, 1, value);
+            rrmex('member', obj, 'if', value);
         end
         function value = get_if(obj)
             %get_if The same as object.if_.
@@ -84,10 +84,10 @@ classdef spmd_ < RobotRaconteurStub
             rr_async(obj, 'async_set_if', {value}, handler, varargin);
         end
         function value = get.numel_(obj)
-            value = rrmex('member', obj, 2);
+            value = rrmex('member', obj, 'numel');
         end
         function set.numel_(obj, value)
-            rrmex('member', obj, 2, value);
+            rrmex('member', obj, 'numel', value);
         end
         function value = get_numel(obj)
             %get_numel The same as object.numel_.
@@ -107,7 +107,7 @@ classdef spmd_ < RobotRaconteurStub
         end
         function result = until_(obj, obj_, while_, result_, varargin_)
             %UNTIL_ function double until(double obj, double while, string result, double varargin)
-            result = rrmex('member', obj, 3, obj_, while_, result_, varargin_);
+            result = rrmex('member', obj, 'until', obj_, while_, result_, varargin_);
         end
         function async_until(obj, obj_, while_, result_, varargin_, handler, varargin)
             %async_until As until_, but calls handler(param, value, err) in a later Poll.
@@ -115,7 +115,7 @@ classdef spmd_ < RobotRaconteurStub
         end
         function delete_(obj)
             %DELETE_ function void delete()
-            rrmex('member', obj, 4);
+            rrmex('member', obj, 'delete');
         end
         function async_delete(obj, handler, varargin)
             %async_delete As delete_, but calls handler(param, value, err) in a later Poll.

@@ -39,10 +39,10 @@ classdef Memories < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.label(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'label');
         end
         function set.label(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'label', value);
         end
         function value = get_label(obj)
             %get_label The same as object.label.

@@ -87,10 +87,10 @@ classdef Station < RobotRaconteurStub
             rr_async(obj, 'async_count', {limit}, handler, varargin);
         end
         function value = get.label(obj)
-            value = rrmex('member', obj, 5);
+            value = rrmex('member', obj, 'label');
         end
         function set.label(obj, value)
-            rrmex('member', obj, 5, value);
+            rrmex('member', obj, 'label', value);
         end
         function value = get_label(obj)
             %get_label The same as object.label.

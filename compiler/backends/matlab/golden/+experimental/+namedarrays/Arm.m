@@ -37,10 +37,10 @@ classdef Arm < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.pose(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'pose');
         end
         function set.pose(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'pose', value);
         end
         function value = get_pose(obj)
             %get_pose The same as object.pose.
@@ -59,10 +59,10 @@ classdef Arm < RobotRaconteurStub
             rr_async(obj, 'async_set_pose', {value}, handler, varargin);
         end
         function value = get.path(obj)
-            value = rrmex('member', obj, 1);
+            value = rrmex('member', obj, 'path');
         end
         function set.path(obj, value)
-            rrmex('member', obj, 1, value);
+            rrmex('member', obj, 'path', value);
         end
         function value = get_path(obj)
             %get_path The same as object.path.
@@ -81,10 +81,10 @@ classdef Arm < RobotRaconteurStub
             rr_async(obj, 'async_set_path', {value}, handler, varargin);
         end
         function value = get.corners(obj)
-            value = rrmex('member', obj, 2);
+            value = rrmex('member', obj, 'corners');
         end
         function set.corners(obj, value)
-            rrmex('member', obj, 2, value);
+            rrmex('member', obj, 'corners', value);
         end
         function value = get_corners(obj)
             %get_corners The same as object.corners.
@@ -103,10 +103,10 @@ classdef Arm < RobotRaconteurStub
             rr_async(obj, 'async_set_corners', {value}, handler, varargin);
         end
         function value = get.contacts(obj)
-            value = rrmex('member', obj, 3);
+            value = rrmex('member', obj, 'contacts');
         end
         function set.contacts(obj, value)
-            rrmex('member', obj, 3, value);
+            rrmex('member', obj, 'contacts', value);
         end
         function value = get_contacts(obj)
             %get_contacts The same as object.contacts.
@@ -125,10 +125,10 @@ classdef Arm < RobotRaconteurStub
             rr_async(obj, 'async_set_contacts', {value}, handler, varargin);
         end
         function value = get.picture(obj)
-            value = rrmex('member', obj, 4);
+            value = rrmex('member', obj, 'picture');
         end
         function set.picture(obj, value)
-            rrmex('member', obj, 4, value);
+            rrmex('member', obj, 'picture', value);
         end
         function value = get_picture(obj)
             %get_picture The same as object.picture.
@@ -147,10 +147,10 @@ classdef Arm < RobotRaconteurStub
             rr_async(obj, 'async_set_picture', {value}, handler, varargin);
         end
         function value = get.thumbnail(obj)
-            value = rrmex('member', obj, 5);
+            value = rrmex('member', obj, 'thumbnail');
         end
         function set.thumbnail(obj, value)
-            rrmex('member', obj, 5, value);
+            rrmex('member', obj, 'thumbnail', value);
         end
         function value = get_thumbnail(obj)
             %get_thumbnail The same as object.thumbnail.
@@ -169,10 +169,10 @@ classdef Arm < RobotRaconteurStub
             rr_async(obj, 'async_set_thumbnail', {value}, handler, varargin);
         end
         function value = get.places(obj)
-            value = rrmex('member', obj, 6);
+            value = rrmex('member', obj, 'places');
         end
         function set.places(obj, value)
-            rrmex('member', obj, 6, value);
+            rrmex('member', obj, 'places', value);
         end
         function value = get_places(obj)
             %get_places The same as object.places.
@@ -192,7 +192,7 @@ classdef Arm < RobotRaconteurStub
         end
         function result = cross(obj, a, b)
             %CROSS function Vector3 cross(Vector3 a, Vector3 b)
-            result = rrmex('member', obj, 7, a, b);
+            result = rrmex('member', obj, 'cross', a, b);
         end
         function async_cross(obj, a, b, handler, varargin)
             %async_cross As cross, but calls handler(param, value, err) in a later Poll.

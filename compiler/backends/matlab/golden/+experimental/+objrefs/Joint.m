@@ -18,10 +18,10 @@ classdef Joint < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.angle(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'angle');
         end
         function set.angle(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'angle', value);
         end
         function value = get_angle(obj)
             %get_angle The same as object.angle.

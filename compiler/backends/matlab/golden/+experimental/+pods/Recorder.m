@@ -31,10 +31,10 @@ classdef Recorder < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.last(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'last');
         end
         function set.last(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'last', value);
         end
         function value = get_last(obj)
             %get_last The same as object.last.
@@ -53,10 +53,10 @@ classdef Recorder < RobotRaconteurStub
             rr_async(obj, 'async_set_last', {value}, handler, varargin);
         end
         function value = get.history(obj)
-            value = rrmex('member', obj, 1);
+            value = rrmex('member', obj, 'history');
         end
         function set.history(obj, value)
-            rrmex('member', obj, 1, value);
+            rrmex('member', obj, 'history', value);
         end
         function value = get_history(obj)
             %get_history The same as object.history.
@@ -75,10 +75,10 @@ classdef Recorder < RobotRaconteurStub
             rr_async(obj, 'async_set_history', {value}, handler, varargin);
         end
         function value = get.bursts(obj)
-            value = rrmex('member', obj, 2);
+            value = rrmex('member', obj, 'bursts');
         end
         function set.bursts(obj, value)
-            rrmex('member', obj, 2, value);
+            rrmex('member', obj, 'bursts', value);
         end
         function value = get_bursts(obj)
             %get_bursts The same as object.bursts.
@@ -97,10 +97,10 @@ classdef Recorder < RobotRaconteurStub
             rr_async(obj, 'async_set_bursts', {value}, handler, varargin);
         end
         function value = get.matrix(obj)
-            value = rrmex('member', obj, 3);
+            value = rrmex('member', obj, 'matrix');
         end
         function set.matrix(obj, value)
-            rrmex('member', obj, 3, value);
+            rrmex('member', obj, 'matrix', value);
         end
         function value = get_matrix(obj)
             %get_matrix The same as object.matrix.
@@ -119,10 +119,10 @@ classdef Recorder < RobotRaconteurStub
             rr_async(obj, 'async_set_matrix', {value}, handler, varargin);
         end
         function value = get.marked(obj)
-            value = rrmex('member', obj, 4);
+            value = rrmex('member', obj, 'marked');
         end
         function set.marked(obj, value)
-            rrmex('member', obj, 4, value);
+            rrmex('member', obj, 'marked', value);
         end
         function value = get_marked(obj)
             %get_marked The same as object.marked.
@@ -142,7 +142,7 @@ classdef Recorder < RobotRaconteurStub
         end
         function result = record(obj, from, until_)
             %RECORD function Burst record(Sample from, Sample[] until)
-            result = rrmex('member', obj, 5, from, until_);
+            result = rrmex('member', obj, 'record', from, until_);
         end
         function async_record(obj, from, until_, handler, varargin)
             %async_record As record, but calls handler(param, value, err) in a later Poll.

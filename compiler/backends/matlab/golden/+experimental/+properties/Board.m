@@ -78,10 +78,10 @@ classdef Board < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.gain(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'gain');
         end
         function set.gain(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'gain', value);
         end
         function value = get_gain(obj)
             %get_gain The same as object.gain.
@@ -100,10 +100,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_gain', {value}, handler, varargin);
         end
         function value = get.enabled(obj)
-            value = rrmex('member', obj, 1);
+            value = rrmex('member', obj, 'enabled');
         end
         function set.enabled(obj, value)
-            rrmex('member', obj, 1, value);
+            rrmex('member', obj, 'enabled', value);
         end
         function value = get_enabled(obj)
             %get_enabled The same as object.enabled.
@@ -122,10 +122,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_enabled', {value}, handler, varargin);
         end
         function value = get.label(obj)
-            value = rrmex('member', obj, 2);
+            value = rrmex('member', obj, 'label');
         end
         function set.label(obj, value)
-            rrmex('member', obj, 2, value);
+            rrmex('member', obj, 'label', value);
         end
         function value = get_label(obj)
             %get_label The same as object.label.
@@ -144,10 +144,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_label', {value}, handler, varargin);
         end
         function value = get.response(obj)
-            value = rrmex('member', obj, 3);
+            value = rrmex('member', obj, 'response');
         end
         function set.response(obj, value)
-            rrmex('member', obj, 3, value);
+            rrmex('member', obj, 'response', value);
         end
         function value = get_response(obj)
             %get_response The same as object.response.
@@ -166,10 +166,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_response', {value}, handler, varargin);
         end
         function value = get.mode(obj)
-            value = rrmex('member', obj, 4);
+            value = rrmex('member', obj, 'mode');
         end
         function set.mode(obj, value)
-            rrmex('member', obj, 4, value);
+            rrmex('member', obj, 'mode', value);
         end
         function value = get_mode(obj)
             %get_mode The same as object.mode.
@@ -188,10 +188,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_mode', {value}, handler, varargin);
         end
         function value = get.samples(obj)
-            value = rrmex('member', obj, 5);
+            value = rrmex('member', obj, 'samples');
         end
         function set.samples(obj, value)
-            rrmex('member', obj, 5, value);
+            rrmex('member', obj, 'samples', value);
         end
         function value = get_samples(obj)
             %get_samples The same as object.samples.
@@ -210,10 +210,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_samples', {value}, handler, varargin);
         end
         function value = get.address(obj)
-            value = rrmex('member', obj, 6);
+            value = rrmex('member', obj, 'address');
         end
         function set.address(obj, value)
-            rrmex('member', obj, 6, value);
+            rrmex('member', obj, 'address', value);
         end
         function value = get_address(obj)
             %get_address The same as object.address.
@@ -232,10 +232,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_address', {value}, handler, varargin);
         end
         function value = get.steps(obj)
-            value = rrmex('member', obj, 7);
+            value = rrmex('member', obj, 'steps');
         end
         function set.steps(obj, value)
-            rrmex('member', obj, 7, value);
+            rrmex('member', obj, 'steps', value);
         end
         function value = get_steps(obj)
             %get_steps The same as object.steps.
@@ -254,10 +254,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_steps', {value}, handler, varargin);
         end
         function value = get.image(obj)
-            value = rrmex('member', obj, 8);
+            value = rrmex('member', obj, 'image');
         end
         function set.image(obj, value)
-            rrmex('member', obj, 8, value);
+            rrmex('member', obj, 'image', value);
         end
         function value = get_image(obj)
             %get_image The same as object.image.
@@ -276,10 +276,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_image', {value}, handler, varargin);
         end
         function value = get.rotation(obj)
-            value = rrmex('member', obj, 9);
+            value = rrmex('member', obj, 'rotation');
         end
         function set.rotation(obj, value)
-            rrmex('member', obj, 9, value);
+            rrmex('member', obj, 'rotation', value);
         end
         function value = get_rotation(obj)
             %get_rotation The same as object.rotation.
@@ -298,10 +298,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_rotation', {value}, handler, varargin);
         end
         function value = get.names(obj)
-            value = rrmex('member', obj, 10);
+            value = rrmex('member', obj, 'names');
         end
         function set.names(obj, value)
-            rrmex('member', obj, 10, value);
+            rrmex('member', obj, 'names', value);
         end
         function value = get_names(obj)
             %get_names The same as object.names.
@@ -320,10 +320,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_names', {value}, handler, varargin);
         end
         function value = get.by_number(obj)
-            value = rrmex('member', obj, 11);
+            value = rrmex('member', obj, 'by_number');
         end
         function set.by_number(obj, value)
-            rrmex('member', obj, 11, value);
+            rrmex('member', obj, 'by_number', value);
         end
         function value = get_by_number(obj)
             %get_by_number The same as object.by_number.
@@ -342,10 +342,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_by_number', {value}, handler, varargin);
         end
         function value = get.by_name(obj)
-            value = rrmex('member', obj, 12);
+            value = rrmex('member', obj, 'by_name');
         end
         function set.by_name(obj, value)
-            rrmex('member', obj, 12, value);
+            rrmex('member', obj, 'by_name', value);
         end
         function value = get_by_name(obj)
             %get_by_name The same as object.by_name.
@@ -364,10 +364,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_by_name', {value}, handler, varargin);
         end
         function value = get.anything(obj)
-            value = rrmex('member', obj, 13);
+            value = rrmex('member', obj, 'anything');
         end
         function set.anything(obj, value)
-            rrmex('member', obj, 13, value);
+            rrmex('member', obj, 'anything', value);
         end
         function value = get_anything(obj)
             %get_anything The same as object.anything.
@@ -386,10 +386,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_anything', {value}, handler, varargin);
         end
         function value = get.settings(obj)
-            value = rrmex('member', obj, 14);
+            value = rrmex('member', obj, 'settings');
         end
         function set.settings(obj, value)
-            rrmex('member', obj, 14, value);
+            rrmex('member', obj, 'settings', value);
         end
         function value = get_settings(obj)
             %get_settings The same as object.settings.
@@ -408,10 +408,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_settings', {value}, handler, varargin);
         end
         function value = get.serial_number(obj)
-            value = rrmex('member', obj, 15);
+            value = rrmex('member', obj, 'serial_number');
         end
         function set.serial_number(obj, value)
-            rrmex('member', obj, 15, value);
+            rrmex('member', obj, 'serial_number', value);
         end
         function value = get_serial_number(obj)
             %get_serial_number The same as object.serial_number.
@@ -426,10 +426,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_serial_number', {value}, handler, varargin);
         end
         function value = get.password(obj)
-            value = rrmex('member', obj, 16);
+            value = rrmex('member', obj, 'password');
         end
         function set.password(obj, value)
-            rrmex('member', obj, 16, value);
+            rrmex('member', obj, 'password', value);
         end
         function set_password(obj, value)
             %set_password The same as object.password = value.
@@ -444,10 +444,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_password', {value}, handler, varargin);
         end
         function value = get.shared(obj)
-            value = rrmex('member', obj, 17);
+            value = rrmex('member', obj, 'shared');
         end
         function set.shared(obj, value)
-            rrmex('member', obj, 17, value);
+            rrmex('member', obj, 'shared', value);
         end
         function value = get_shared(obj)
             %get_shared The same as object.shared.
@@ -466,10 +466,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_shared', {value}, handler, varargin);
         end
         function value = get.page(obj)
-            value = rrmex('member', obj, 18);
+            value = rrmex('member', obj, 'page');
         end
         function set.page(obj, value)
-            rrmex('member', obj, 18, value);
+            rrmex('member', obj, 'page', value);
         end
         function value = get_page(obj)
             %get_page The same as object.page.
@@ -488,10 +488,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_page', {value}, handler, varargin);
         end
         function value = get.notes(obj)
-            value = rrmex('member', obj, 19);
+            value = rrmex('member', obj, 'notes');
         end
         function set.notes(obj, value)
-            rrmex('member', obj, 19, value);
+            rrmex('member', obj, 'notes', value);
         end
         function value = get_notes(obj)
             %get_notes The same as object.notes.
@@ -510,10 +510,10 @@ classdef Board < RobotRaconteurStub
             rr_async(obj, 'async_set_notes', {value}, handler, varargin);
         end
         function value = get.view(obj)
-            value = rrmex('member', obj, 20);
+            value = rrmex('member', obj, 'view');
         end
         function set.view(obj, value)
-            rrmex('member', obj, 20, value);
+            rrmex('member', obj, 'view', value);
         end
         function value = get_view(obj)
             %get_view The same as object.view.

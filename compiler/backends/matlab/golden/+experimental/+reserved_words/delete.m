@@ -318,10 +318,10 @@ classdef delete < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.alignas(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'alignas');
         end
         function set.alignas(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'alignas', value);
         end
         function value = get_alignas(obj)
             %get_alignas The same as object.alignas.
@@ -340,10 +340,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_alignas', {value}, handler, varargin);
         end
         function value = get.alignof(obj)
-            value = rrmex('member', obj, 1);
+            value = rrmex('member', obj, 'alignof');
         end
         function set.alignof(obj, value)
-            rrmex('member', obj, 1, value);
+            rrmex('member', obj, 'alignof', value);
         end
         function value = get_alignof(obj)
             %get_alignof The same as object.alignof.
@@ -362,10 +362,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_alignof', {value}, handler, varargin);
         end
         function value = get.and(obj)
-            value = rrmex('member', obj, 2);
+            value = rrmex('member', obj, 'and');
         end
         function set.and(obj, value)
-            rrmex('member', obj, 2, value);
+            rrmex('member', obj, 'and', value);
         end
         function value = get_and(obj)
             %get_and The same as object.and.
@@ -384,10 +384,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_and', {value}, handler, varargin);
         end
         function value = get.and_eq(obj)
-            value = rrmex('member', obj, 3);
+            value = rrmex('member', obj, 'and_eq');
         end
         function set.and_eq(obj, value)
-            rrmex('member', obj, 3, value);
+            rrmex('member', obj, 'and_eq', value);
         end
         function value = get_and_eq(obj)
             %get_and_eq The same as object.and_eq.
@@ -406,10 +406,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_and_eq', {value}, handler, varargin);
         end
         function value = get.asm(obj)
-            value = rrmex('member', obj, 4);
+            value = rrmex('member', obj, 'asm');
         end
         function set.asm(obj, value)
-            rrmex('member', obj, 4, value);
+            rrmex('member', obj, 'asm', value);
         end
         function value = get_asm(obj)
             %get_asm The same as object.asm.
@@ -428,10 +428,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_asm', {value}, handler, varargin);
         end
         function value = get.auto(obj)
-            value = rrmex('member', obj, 5);
+            value = rrmex('member', obj, 'auto');
         end
         function set.auto(obj, value)
-            rrmex('member', obj, 5, value);
+            rrmex('member', obj, 'auto', value);
         end
         function value = get_auto(obj)
             %get_auto The same as object.auto.
@@ -450,10 +450,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_auto', {value}, handler, varargin);
         end
         function value = get.bitand(obj)
-            value = rrmex('member', obj, 6);
+            value = rrmex('member', obj, 'bitand');
         end
         function set.bitand(obj, value)
-            rrmex('member', obj, 6, value);
+            rrmex('member', obj, 'bitand', value);
         end
         function value = get_bitand(obj)
             %get_bitand The same as object.bitand.
@@ -472,10 +472,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_bitand', {value}, handler, varargin);
         end
         function value = get.bitor(obj)
-            value = rrmex('member', obj, 7);
+            value = rrmex('member', obj, 'bitor');
         end
         function set.bitor(obj, value)
-            rrmex('member', obj, 7, value);
+            rrmex('member', obj, 'bitor', value);
         end
         function value = get_bitor(obj)
             %get_bitor The same as object.bitor.
@@ -494,10 +494,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_bitor', {value}, handler, varargin);
         end
         function value = get.break_(obj)
-            value = rrmex('member', obj, 8);
+            value = rrmex('member', obj, 'break');
         end
         function set.break_(obj, value)
-            rrmex('member', obj, 8, value);
+            rrmex('member', obj, 'break', value);
         end
         function value = get_break(obj)
             %get_break The same as object.break_.
@@ -516,10 +516,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_break', {value}, handler, varargin);
         end
         function value = get.case_(obj)
-            value = rrmex('member', obj, 9);
+            value = rrmex('member', obj, 'case');
         end
         function set.case_(obj, value)
-            rrmex('member', obj, 9, value);
+            rrmex('member', obj, 'case', value);
         end
         function value = get_case(obj)
             %get_case The same as object.case_.
@@ -538,10 +538,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_case', {value}, handler, varargin);
         end
         function value = get.catch_(obj)
-            value = rrmex('member', obj, 10);
+            value = rrmex('member', obj, 'catch');
         end
         function set.catch_(obj, value)
-            rrmex('member', obj, 10, value);
+            rrmex('member', obj, 'catch', value);
         end
         function value = get_catch(obj)
             %get_catch The same as object.catch_.
@@ -560,10 +560,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_catch', {value}, handler, varargin);
         end
         function value = get.char(obj)
-            value = rrmex('member', obj, 11);
+            value = rrmex('member', obj, 'char');
         end
         function set.char(obj, value)
-            rrmex('member', obj, 11, value);
+            rrmex('member', obj, 'char', value);
         end
         function value = get_char(obj)
             %get_char The same as object.char.
@@ -582,10 +582,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_char', {value}, handler, varargin);
         end
         function value = get.char16_t(obj)
-            value = rrmex('member', obj, 12);
+            value = rrmex('member', obj, 'char16_t');
         end
         function set.char16_t(obj, value)
-            rrmex('member', obj, 12, value);
+            rrmex('member', obj, 'char16_t', value);
         end
         function value = get_char16_t(obj)
             %get_char16_t The same as object.char16_t.
@@ -604,10 +604,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_char16_t', {value}, handler, varargin);
         end
         function value = get.char32_t(obj)
-            value = rrmex('member', obj, 13);
+            value = rrmex('member', obj, 'char32_t');
         end
         function set.char32_t(obj, value)
-            rrmex('member', obj, 13, value);
+            rrmex('member', obj, 'char32_t', value);
         end
         function value = get_char32_t(obj)
             %get_char32_t The same as object.char32_t.
@@ -626,10 +626,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_char32_t', {value}, handler, varargin);
         end
         function value = get.char8_t(obj)
-            value = rrmex('member', obj, 14);
+            value = rrmex('member', obj, 'char8_t');
         end
         function set.char8_t(obj, value)
-            rrmex('member', obj, 14, value);
+            rrmex('member', obj, 'char8_t', value);
         end
         function value = get_char8_t(obj)
             %get_char8_t The same as object.char8_t.
@@ -648,10 +648,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_char8_t', {value}, handler, varargin);
         end
         function value = get.class(obj)
-            value = rrmex('member', obj, 15);
+            value = rrmex('member', obj, 'class');
         end
         function set.class(obj, value)
-            rrmex('member', obj, 15, value);
+            rrmex('member', obj, 'class', value);
         end
         function value = get_class(obj)
             %get_class The same as object.class.
@@ -670,10 +670,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_class', {value}, handler, varargin);
         end
         function value = get.co_await(obj)
-            value = rrmex('member', obj, 16);
+            value = rrmex('member', obj, 'co_await');
         end
         function set.co_await(obj, value)
-            rrmex('member', obj, 16, value);
+            rrmex('member', obj, 'co_await', value);
         end
         function value = get_co_await(obj)
             %get_co_await The same as object.co_await.
@@ -692,10 +692,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_co_await', {value}, handler, varargin);
         end
         function value = get.co_return(obj)
-            value = rrmex('member', obj, 17);
+            value = rrmex('member', obj, 'co_return');
         end
         function set.co_return(obj, value)
-            rrmex('member', obj, 17, value);
+            rrmex('member', obj, 'co_return', value);
         end
         function value = get_co_return(obj)
             %get_co_return The same as object.co_return.
@@ -714,10 +714,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_co_return', {value}, handler, varargin);
         end
         function value = get.co_yield(obj)
-            value = rrmex('member', obj, 18);
+            value = rrmex('member', obj, 'co_yield');
         end
         function set.co_yield(obj, value)
-            rrmex('member', obj, 18, value);
+            rrmex('member', obj, 'co_yield', value);
         end
         function value = get_co_yield(obj)
             %get_co_yield The same as object.co_yield.
@@ -736,10 +736,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_co_yield', {value}, handler, varargin);
         end
         function value = get.compl(obj)
-            value = rrmex('member', obj, 19);
+            value = rrmex('member', obj, 'compl');
         end
         function set.compl(obj, value)
-            rrmex('member', obj, 19, value);
+            rrmex('member', obj, 'compl', value);
         end
         function value = get_compl(obj)
             %get_compl The same as object.compl.
@@ -758,10 +758,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_compl', {value}, handler, varargin);
         end
         function value = get.concept(obj)
-            value = rrmex('member', obj, 20);
+            value = rrmex('member', obj, 'concept');
         end
         function set.concept(obj, value)
-            rrmex('member', obj, 20, value);
+            rrmex('member', obj, 'concept', value);
         end
         function value = get_concept(obj)
             %get_concept The same as object.concept.
@@ -780,10 +780,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_concept', {value}, handler, varargin);
         end
         function value = get.const(obj)
-            value = rrmex('member', obj, 21);
+            value = rrmex('member', obj, 'const');
         end
         function set.const(obj, value)
-            rrmex('member', obj, 21, value);
+            rrmex('member', obj, 'const', value);
         end
         function value = get_const(obj)
             %get_const The same as object.const.
@@ -802,10 +802,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_const', {value}, handler, varargin);
         end
         function value = get.const_cast(obj)
-            value = rrmex('member', obj, 22);
+            value = rrmex('member', obj, 'const_cast');
         end
         function set.const_cast(obj, value)
-            rrmex('member', obj, 22, value);
+            rrmex('member', obj, 'const_cast', value);
         end
         function value = get_const_cast(obj)
             %get_const_cast The same as object.const_cast.
@@ -824,10 +824,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_const_cast', {value}, handler, varargin);
         end
         function value = get.consteval(obj)
-            value = rrmex('member', obj, 23);
+            value = rrmex('member', obj, 'consteval');
         end
         function set.consteval(obj, value)
-            rrmex('member', obj, 23, value);
+            rrmex('member', obj, 'consteval', value);
         end
         function value = get_consteval(obj)
             %get_consteval The same as object.consteval.
@@ -846,10 +846,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_consteval', {value}, handler, varargin);
         end
         function value = get.constexpr(obj)
-            value = rrmex('member', obj, 24);
+            value = rrmex('member', obj, 'constexpr');
         end
         function set.constexpr(obj, value)
-            rrmex('member', obj, 24, value);
+            rrmex('member', obj, 'constexpr', value);
         end
         function value = get_constexpr(obj)
             %get_constexpr The same as object.constexpr.
@@ -868,10 +868,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_constexpr', {value}, handler, varargin);
         end
         function value = get.constinit(obj)
-            value = rrmex('member', obj, 25);
+            value = rrmex('member', obj, 'constinit');
         end
         function set.constinit(obj, value)
-            rrmex('member', obj, 25, value);
+            rrmex('member', obj, 'constinit', value);
         end
         function value = get_constinit(obj)
             %get_constinit The same as object.constinit.
@@ -890,10 +890,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_constinit', {value}, handler, varargin);
         end
         function value = get.continue_(obj)
-            value = rrmex('member', obj, 26);
+            value = rrmex('member', obj, 'continue');
         end
         function set.continue_(obj, value)
-            rrmex('member', obj, 26, value);
+            rrmex('member', obj, 'continue', value);
         end
         function value = get_continue(obj)
             %get_continue The same as object.continue_.
@@ -912,10 +912,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_continue', {value}, handler, varargin);
         end
         function value = get.decltype(obj)
-            value = rrmex('member', obj, 27);
+            value = rrmex('member', obj, 'decltype');
         end
         function set.decltype(obj, value)
-            rrmex('member', obj, 27, value);
+            rrmex('member', obj, 'decltype', value);
         end
         function value = get_decltype(obj)
             %get_decltype The same as object.decltype.
@@ -934,10 +934,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_decltype', {value}, handler, varargin);
         end
         function value = get.default(obj)
-            value = rrmex('member', obj, 28);
+            value = rrmex('member', obj, 'default');
         end
         function set.default(obj, value)
-            rrmex('member', obj, 28, value);
+            rrmex('member', obj, 'default', value);
         end
         function value = get_default(obj)
             %get_default The same as object.default.
@@ -956,10 +956,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_default', {value}, handler, varargin);
         end
         function value = get.delete_(obj)
-            value = rrmex('member', obj, 29);
+            value = rrmex('member', obj, 'delete');
         end
         function set.delete_(obj, value)
-            rrmex('member', obj, 29, value);
+            rrmex('member', obj, 'delete', value);
         end
         function value = get_delete(obj)
             %get_delete The same as object.delete_.
@@ -978,10 +978,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_delete', {value}, handler, varargin);
         end
         function value = get.do_(obj)
-            value = rrmex('member', obj, 30);
+            value = rrmex('member', obj, 'do');
         end
         function set.do_(obj, value)
-            rrmex('member', obj, 30, value);
+            rrmex('member', obj, 'do', value);
         end
         function value = get_do(obj)
             %get_do The same as object.do_.
@@ -1000,10 +1000,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_do', {value}, handler, varargin);
         end
         function value = get.dynamic_cast(obj)
-            value = rrmex('member', obj, 31);
+            value = rrmex('member', obj, 'dynamic_cast');
         end
         function set.dynamic_cast(obj, value)
-            rrmex('member', obj, 31, value);
+            rrmex('member', obj, 'dynamic_cast', value);
         end
         function value = get_dynamic_cast(obj)
             %get_dynamic_cast The same as object.dynamic_cast.
@@ -1022,10 +1022,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_dynamic_cast', {value}, handler, varargin);
         end
         function value = get.else_(obj)
-            value = rrmex('member', obj, 32);
+            value = rrmex('member', obj, 'else');
         end
         function set.else_(obj, value)
-            rrmex('member', obj, 32, value);
+            rrmex('member', obj, 'else', value);
         end
         function value = get_else(obj)
             %get_else The same as object.else_.
@@ -1044,10 +1044,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_else', {value}, handler, varargin);
         end
         function value = get.explicit(obj)
-            value = rrmex('member', obj, 33);
+            value = rrmex('member', obj, 'explicit');
         end
         function set.explicit(obj, value)
-            rrmex('member', obj, 33, value);
+            rrmex('member', obj, 'explicit', value);
         end
         function value = get_explicit(obj)
             %get_explicit The same as object.explicit.
@@ -1066,10 +1066,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_explicit', {value}, handler, varargin);
         end
         function value = get.export(obj)
-            value = rrmex('member', obj, 34);
+            value = rrmex('member', obj, 'export');
         end
         function set.export(obj, value)
-            rrmex('member', obj, 34, value);
+            rrmex('member', obj, 'export', value);
         end
         function value = get_export(obj)
             %get_export The same as object.export.
@@ -1088,10 +1088,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_export', {value}, handler, varargin);
         end
         function value = get.extern(obj)
-            value = rrmex('member', obj, 35);
+            value = rrmex('member', obj, 'extern');
         end
         function set.extern(obj, value)
-            rrmex('member', obj, 35, value);
+            rrmex('member', obj, 'extern', value);
         end
         function value = get_extern(obj)
             %get_extern The same as object.extern.
@@ -1110,10 +1110,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_extern', {value}, handler, varargin);
         end
         function value = get.false(obj)
-            value = rrmex('member', obj, 36);
+            value = rrmex('member', obj, 'false');
         end
         function set.false(obj, value)
-            rrmex('member', obj, 36, value);
+            rrmex('member', obj, 'false', value);
         end
         function value = get_false(obj)
             %get_false The same as object.false.
@@ -1132,10 +1132,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_false', {value}, handler, varargin);
         end
         function value = get.float(obj)
-            value = rrmex('member', obj, 37);
+            value = rrmex('member', obj, 'float');
         end
         function set.float(obj, value)
-            rrmex('member', obj, 37, value);
+            rrmex('member', obj, 'float', value);
         end
         function value = get_float(obj)
             %get_float The same as object.float.
@@ -1154,10 +1154,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_float', {value}, handler, varargin);
         end
         function value = get.for_(obj)
-            value = rrmex('member', obj, 38);
+            value = rrmex('member', obj, 'for');
         end
         function set.for_(obj, value)
-            rrmex('member', obj, 38, value);
+            rrmex('member', obj, 'for', value);
         end
         function value = get_for(obj)
             %get_for The same as object.for_.
@@ -1176,10 +1176,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_for', {value}, handler, varargin);
         end
         function value = get.friend(obj)
-            value = rrmex('member', obj, 39);
+            value = rrmex('member', obj, 'friend');
         end
         function set.friend(obj, value)
-            rrmex('member', obj, 39, value);
+            rrmex('member', obj, 'friend', value);
         end
         function value = get_friend(obj)
             %get_friend The same as object.friend.
@@ -1198,10 +1198,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_friend', {value}, handler, varargin);
         end
         function value = get.goto(obj)
-            value = rrmex('member', obj, 40);
+            value = rrmex('member', obj, 'goto');
         end
         function set.goto(obj, value)
-            rrmex('member', obj, 40, value);
+            rrmex('member', obj, 'goto', value);
         end
         function value = get_goto(obj)
             %get_goto The same as object.goto.
@@ -1220,10 +1220,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_goto', {value}, handler, varargin);
         end
         function value = get.if_(obj)
-            value = rrmex('member', obj, 41);
+            value = rrmex('member', obj, 'if');
         end
         function set.if_(obj, value)
-            rrmex('member', obj, 41, value);
+            rrmex('member', obj, 'if', value);
         end
         function value = get_if(obj)
             %get_if The same as object.if_.
@@ -1242,10 +1242,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_if', {value}, handler, varargin);
         end
         function value = get.inline(obj)
-            value = rrmex('member', obj, 42);
+            value = rrmex('member', obj, 'inline');
         end
         function set.inline(obj, value)
-            rrmex('member', obj, 42, value);
+            rrmex('member', obj, 'inline', value);
         end
         function value = get_inline(obj)
             %get_inline The same as object.inline.
@@ -1264,10 +1264,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_inline', {value}, handler, varargin);
         end
         function value = get.int(obj)
-            value = rrmex('member', obj, 43);
+            value = rrmex('member', obj, 'int');
         end
         function set.int(obj, value)
-            rrmex('member', obj, 43, value);
+            rrmex('member', obj, 'int', value);
         end
         function value = get_int(obj)
             %get_int The same as object.int.
@@ -1286,10 +1286,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_int', {value}, handler, varargin);
         end
         function value = get.long(obj)
-            value = rrmex('member', obj, 44);
+            value = rrmex('member', obj, 'long');
         end
         function set.long(obj, value)
-            rrmex('member', obj, 44, value);
+            rrmex('member', obj, 'long', value);
         end
         function value = get_long(obj)
             %get_long The same as object.long.
@@ -1308,10 +1308,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_long', {value}, handler, varargin);
         end
         function value = get.mutable(obj)
-            value = rrmex('member', obj, 45);
+            value = rrmex('member', obj, 'mutable');
         end
         function set.mutable(obj, value)
-            rrmex('member', obj, 45, value);
+            rrmex('member', obj, 'mutable', value);
         end
         function value = get_mutable(obj)
             %get_mutable The same as object.mutable.
@@ -1330,10 +1330,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_mutable', {value}, handler, varargin);
         end
         function value = get.namespace(obj)
-            value = rrmex('member', obj, 46);
+            value = rrmex('member', obj, 'namespace');
         end
         function set.namespace(obj, value)
-            rrmex('member', obj, 46, value);
+            rrmex('member', obj, 'namespace', value);
         end
         function value = get_namespace(obj)
             %get_namespace The same as object.namespace.
@@ -1352,10 +1352,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_namespace', {value}, handler, varargin);
         end
         function value = get.new(obj)
-            value = rrmex('member', obj, 47);
+            value = rrmex('member', obj, 'new');
         end
         function set.new(obj, value)
-            rrmex('member', obj, 47, value);
+            rrmex('member', obj, 'new', value);
         end
         function value = get_new(obj)
             %get_new The same as object.new.
@@ -1374,10 +1374,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_new', {value}, handler, varargin);
         end
         function value = get.noexcept(obj)
-            value = rrmex('member', obj, 48);
+            value = rrmex('member', obj, 'noexcept');
         end
         function set.noexcept(obj, value)
-            rrmex('member', obj, 48, value);
+            rrmex('member', obj, 'noexcept', value);
         end
         function value = get_noexcept(obj)
             %get_noexcept The same as object.noexcept.
@@ -1396,10 +1396,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_noexcept', {value}, handler, varargin);
         end
         function value = get.not(obj)
-            value = rrmex('member', obj, 49);
+            value = rrmex('member', obj, 'not');
         end
         function set.not(obj, value)
-            rrmex('member', obj, 49, value);
+            rrmex('member', obj, 'not', value);
         end
         function value = get_not(obj)
             %get_not The same as object.not.
@@ -1418,10 +1418,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_not', {value}, handler, varargin);
         end
         function value = get.not_eq(obj)
-            value = rrmex('member', obj, 50);
+            value = rrmex('member', obj, 'not_eq');
         end
         function set.not_eq(obj, value)
-            rrmex('member', obj, 50, value);
+            rrmex('member', obj, 'not_eq', value);
         end
         function value = get_not_eq(obj)
             %get_not_eq The same as object.not_eq.
@@ -1440,10 +1440,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_not_eq', {value}, handler, varargin);
         end
         function value = get.nullptr(obj)
-            value = rrmex('member', obj, 51);
+            value = rrmex('member', obj, 'nullptr');
         end
         function set.nullptr(obj, value)
-            rrmex('member', obj, 51, value);
+            rrmex('member', obj, 'nullptr', value);
         end
         function value = get_nullptr(obj)
             %get_nullptr The same as object.nullptr.
@@ -1462,10 +1462,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_nullptr', {value}, handler, varargin);
         end
         function value = get.operator(obj)
-            value = rrmex('member', obj, 52);
+            value = rrmex('member', obj, 'operator');
         end
         function set.operator(obj, value)
-            rrmex('member', obj, 52, value);
+            rrmex('member', obj, 'operator', value);
         end
         function value = get_operator(obj)
             %get_operator The same as object.operator.
@@ -1484,10 +1484,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_operator', {value}, handler, varargin);
         end
         function value = get.or(obj)
-            value = rrmex('member', obj, 53);
+            value = rrmex('member', obj, 'or');
         end
         function set.or(obj, value)
-            rrmex('member', obj, 53, value);
+            rrmex('member', obj, 'or', value);
         end
         function value = get_or(obj)
             %get_or The same as object.or.
@@ -1506,10 +1506,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_or', {value}, handler, varargin);
         end
         function value = get.or_eq(obj)
-            value = rrmex('member', obj, 54);
+            value = rrmex('member', obj, 'or_eq');
         end
         function set.or_eq(obj, value)
-            rrmex('member', obj, 54, value);
+            rrmex('member', obj, 'or_eq', value);
         end
         function value = get_or_eq(obj)
             %get_or_eq The same as object.or_eq.
@@ -1528,10 +1528,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_or_eq', {value}, handler, varargin);
         end
         function value = get.private(obj)
-            value = rrmex('member', obj, 55);
+            value = rrmex('member', obj, 'private');
         end
         function set.private(obj, value)
-            rrmex('member', obj, 55, value);
+            rrmex('member', obj, 'private', value);
         end
         function value = get_private(obj)
             %get_private The same as object.private.
@@ -1550,10 +1550,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_private', {value}, handler, varargin);
         end
         function value = get.protected(obj)
-            value = rrmex('member', obj, 56);
+            value = rrmex('member', obj, 'protected');
         end
         function set.protected(obj, value)
-            rrmex('member', obj, 56, value);
+            rrmex('member', obj, 'protected', value);
         end
         function value = get_protected(obj)
             %get_protected The same as object.protected.
@@ -1572,10 +1572,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_protected', {value}, handler, varargin);
         end
         function value = get.public(obj)
-            value = rrmex('member', obj, 57);
+            value = rrmex('member', obj, 'public');
         end
         function set.public(obj, value)
-            rrmex('member', obj, 57, value);
+            rrmex('member', obj, 'public', value);
         end
         function value = get_public(obj)
             %get_public The same as object.public.
@@ -1594,10 +1594,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_public', {value}, handler, varargin);
         end
         function value = get.register(obj)
-            value = rrmex('member', obj, 58);
+            value = rrmex('member', obj, 'register');
         end
         function set.register(obj, value)
-            rrmex('member', obj, 58, value);
+            rrmex('member', obj, 'register', value);
         end
         function value = get_register(obj)
             %get_register The same as object.register.
@@ -1616,10 +1616,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_register', {value}, handler, varargin);
         end
         function value = get.reinterpret_cast(obj)
-            value = rrmex('member', obj, 59);
+            value = rrmex('member', obj, 'reinterpret_cast');
         end
         function set.reinterpret_cast(obj, value)
-            rrmex('member', obj, 59, value);
+            rrmex('member', obj, 'reinterpret_cast', value);
         end
         function value = get_reinterpret_cast(obj)
             %get_reinterpret_cast The same as object.reinterpret_cast.
@@ -1638,10 +1638,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_reinterpret_cast', {value}, handler, varargin);
         end
         function value = get.requires(obj)
-            value = rrmex('member', obj, 60);
+            value = rrmex('member', obj, 'requires');
         end
         function set.requires(obj, value)
-            rrmex('member', obj, 60, value);
+            rrmex('member', obj, 'requires', value);
         end
         function value = get_requires(obj)
             %get_requires The same as object.requires.
@@ -1660,10 +1660,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_requires', {value}, handler, varargin);
         end
         function value = get.return_(obj)
-            value = rrmex('member', obj, 61);
+            value = rrmex('member', obj, 'return');
         end
         function set.return_(obj, value)
-            rrmex('member', obj, 61, value);
+            rrmex('member', obj, 'return', value);
         end
         function value = get_return(obj)
             %get_return The same as object.return_.
@@ -1682,10 +1682,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_return', {value}, handler, varargin);
         end
         function value = get.short(obj)
-            value = rrmex('member', obj, 62);
+            value = rrmex('member', obj, 'short');
         end
         function set.short(obj, value)
-            rrmex('member', obj, 62, value);
+            rrmex('member', obj, 'short', value);
         end
         function value = get_short(obj)
             %get_short The same as object.short.
@@ -1704,10 +1704,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_short', {value}, handler, varargin);
         end
         function value = get.signed(obj)
-            value = rrmex('member', obj, 63);
+            value = rrmex('member', obj, 'signed');
         end
         function set.signed(obj, value)
-            rrmex('member', obj, 63, value);
+            rrmex('member', obj, 'signed', value);
         end
         function value = get_signed(obj)
             %get_signed The same as object.signed.
@@ -1726,10 +1726,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_signed', {value}, handler, varargin);
         end
         function value = get.sizeof(obj)
-            value = rrmex('member', obj, 64);
+            value = rrmex('member', obj, 'sizeof');
         end
         function set.sizeof(obj, value)
-            rrmex('member', obj, 64, value);
+            rrmex('member', obj, 'sizeof', value);
         end
         function value = get_sizeof(obj)
             %get_sizeof The same as object.sizeof.
@@ -1748,10 +1748,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_sizeof', {value}, handler, varargin);
         end
         function value = get.static(obj)
-            value = rrmex('member', obj, 65);
+            value = rrmex('member', obj, 'static');
         end
         function set.static(obj, value)
-            rrmex('member', obj, 65, value);
+            rrmex('member', obj, 'static', value);
         end
         function value = get_static(obj)
             %get_static The same as object.static.
@@ -1770,10 +1770,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_static', {value}, handler, varargin);
         end
         function value = get.static_assert(obj)
-            value = rrmex('member', obj, 66);
+            value = rrmex('member', obj, 'static_assert');
         end
         function set.static_assert(obj, value)
-            rrmex('member', obj, 66, value);
+            rrmex('member', obj, 'static_assert', value);
         end
         function value = get_static_assert(obj)
             %get_static_assert The same as object.static_assert.
@@ -1792,10 +1792,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_static_assert', {value}, handler, varargin);
         end
         function value = get.static_cast(obj)
-            value = rrmex('member', obj, 67);
+            value = rrmex('member', obj, 'static_cast');
         end
         function set.static_cast(obj, value)
-            rrmex('member', obj, 67, value);
+            rrmex('member', obj, 'static_cast', value);
         end
         function value = get_static_cast(obj)
             %get_static_cast The same as object.static_cast.
@@ -1814,10 +1814,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_static_cast', {value}, handler, varargin);
         end
         function value = get.switch_(obj)
-            value = rrmex('member', obj, 68);
+            value = rrmex('member', obj, 'switch');
         end
         function set.switch_(obj, value)
-            rrmex('member', obj, 68, value);
+            rrmex('member', obj, 'switch', value);
         end
         function value = get_switch(obj)
             %get_switch The same as object.switch_.
@@ -1836,10 +1836,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_switch', {value}, handler, varargin);
         end
         function value = get.template(obj)
-            value = rrmex('member', obj, 69);
+            value = rrmex('member', obj, 'template');
         end
         function set.template(obj, value)
-            rrmex('member', obj, 69, value);
+            rrmex('member', obj, 'template', value);
         end
         function value = get_template(obj)
             %get_template The same as object.template.
@@ -1858,10 +1858,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_template', {value}, handler, varargin);
         end
         function value = get.thread_local(obj)
-            value = rrmex('member', obj, 70);
+            value = rrmex('member', obj, 'thread_local');
         end
         function set.thread_local(obj, value)
-            rrmex('member', obj, 70, value);
+            rrmex('member', obj, 'thread_local', value);
         end
         function value = get_thread_local(obj)
             %get_thread_local The same as object.thread_local.
@@ -1880,10 +1880,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_thread_local', {value}, handler, varargin);
         end
         function value = get.throw(obj)
-            value = rrmex('member', obj, 71);
+            value = rrmex('member', obj, 'throw');
         end
         function set.throw(obj, value)
-            rrmex('member', obj, 71, value);
+            rrmex('member', obj, 'throw', value);
         end
         function value = get_throw(obj)
             %get_throw The same as object.throw.
@@ -1902,10 +1902,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_throw', {value}, handler, varargin);
         end
         function value = get.true(obj)
-            value = rrmex('member', obj, 72);
+            value = rrmex('member', obj, 'true');
         end
         function set.true(obj, value)
-            rrmex('member', obj, 72, value);
+            rrmex('member', obj, 'true', value);
         end
         function value = get_true(obj)
             %get_true The same as object.true.
@@ -1924,10 +1924,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_true', {value}, handler, varargin);
         end
         function value = get.try_(obj)
-            value = rrmex('member', obj, 73);
+            value = rrmex('member', obj, 'try');
         end
         function set.try_(obj, value)
-            rrmex('member', obj, 73, value);
+            rrmex('member', obj, 'try', value);
         end
         function value = get_try(obj)
             %get_try The same as object.try_.
@@ -1946,10 +1946,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_try', {value}, handler, varargin);
         end
         function value = get.typedef(obj)
-            value = rrmex('member', obj, 74);
+            value = rrmex('member', obj, 'typedef');
         end
         function set.typedef(obj, value)
-            rrmex('member', obj, 74, value);
+            rrmex('member', obj, 'typedef', value);
         end
         function value = get_typedef(obj)
             %get_typedef The same as object.typedef.
@@ -1968,10 +1968,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_typedef', {value}, handler, varargin);
         end
         function value = get.typeid(obj)
-            value = rrmex('member', obj, 75);
+            value = rrmex('member', obj, 'typeid');
         end
         function set.typeid(obj, value)
-            rrmex('member', obj, 75, value);
+            rrmex('member', obj, 'typeid', value);
         end
         function value = get_typeid(obj)
             %get_typeid The same as object.typeid.
@@ -1990,10 +1990,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_typeid', {value}, handler, varargin);
         end
         function value = get.typename(obj)
-            value = rrmex('member', obj, 76);
+            value = rrmex('member', obj, 'typename');
         end
         function set.typename(obj, value)
-            rrmex('member', obj, 76, value);
+            rrmex('member', obj, 'typename', value);
         end
         function value = get_typename(obj)
             %get_typename The same as object.typename.
@@ -2012,10 +2012,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_typename', {value}, handler, varargin);
         end
         function value = get.union(obj)
-            value = rrmex('member', obj, 77);
+            value = rrmex('member', obj, 'union');
         end
         function set.union(obj, value)
-            rrmex('member', obj, 77, value);
+            rrmex('member', obj, 'union', value);
         end
         function value = get_union(obj)
             %get_union The same as object.union.
@@ -2034,10 +2034,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_union', {value}, handler, varargin);
         end
         function value = get.unsigned(obj)
-            value = rrmex('member', obj, 78);
+            value = rrmex('member', obj, 'unsigned');
         end
         function set.unsigned(obj, value)
-            rrmex('member', obj, 78, value);
+            rrmex('member', obj, 'unsigned', value);
         end
         function value = get_unsigned(obj)
             %get_unsigned The same as object.unsigned.
@@ -2056,10 +2056,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_unsigned', {value}, handler, varargin);
         end
         function value = get.virtual(obj)
-            value = rrmex('member', obj, 79);
+            value = rrmex('member', obj, 'virtual');
         end
         function set.virtual(obj, value)
-            rrmex('member', obj, 79, value);
+            rrmex('member', obj, 'virtual', value);
         end
         function value = get_virtual(obj)
             %get_virtual The same as object.virtual.
@@ -2078,10 +2078,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_virtual', {value}, handler, varargin);
         end
         function value = get.volatile(obj)
-            value = rrmex('member', obj, 80);
+            value = rrmex('member', obj, 'volatile');
         end
         function set.volatile(obj, value)
-            rrmex('member', obj, 80, value);
+            rrmex('member', obj, 'volatile', value);
         end
         function value = get_volatile(obj)
             %get_volatile The same as object.volatile.
@@ -2100,10 +2100,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_volatile', {value}, handler, varargin);
         end
         function value = get.wchar_t(obj)
-            value = rrmex('member', obj, 81);
+            value = rrmex('member', obj, 'wchar_t');
         end
         function set.wchar_t(obj, value)
-            rrmex('member', obj, 81, value);
+            rrmex('member', obj, 'wchar_t', value);
         end
         function value = get_wchar_t(obj)
             %get_wchar_t The same as object.wchar_t.
@@ -2122,10 +2122,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_wchar_t', {value}, handler, varargin);
         end
         function value = get.while_(obj)
-            value = rrmex('member', obj, 82);
+            value = rrmex('member', obj, 'while');
         end
         function set.while_(obj, value)
-            rrmex('member', obj, 82, value);
+            rrmex('member', obj, 'while', value);
         end
         function value = get_while(obj)
             %get_while The same as object.while_.
@@ -2144,10 +2144,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_while', {value}, handler, varargin);
         end
         function value = get.xor(obj)
-            value = rrmex('member', obj, 83);
+            value = rrmex('member', obj, 'xor');
         end
         function set.xor(obj, value)
-            rrmex('member', obj, 83, value);
+            rrmex('member', obj, 'xor', value);
         end
         function value = get_xor(obj)
             %get_xor The same as object.xor.
@@ -2166,10 +2166,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_xor', {value}, handler, varargin);
         end
         function value = get.xor_eq(obj)
-            value = rrmex('member', obj, 84);
+            value = rrmex('member', obj, 'xor_eq');
         end
         function set.xor_eq(obj, value)
-            rrmex('member', obj, 84, value);
+            rrmex('member', obj, 'xor_eq', value);
         end
         function value = get_xor_eq(obj)
             %get_xor_eq The same as object.xor_eq.
@@ -2188,10 +2188,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_xor_eq', {value}, handler, varargin);
         end
         function value = get.assert(obj)
-            value = rrmex('member', obj, 85);
+            value = rrmex('member', obj, 'assert');
         end
         function set.assert(obj, value)
-            rrmex('member', obj, 85, value);
+            rrmex('member', obj, 'assert', value);
         end
         function value = get_assert(obj)
             %get_assert The same as object.assert.
@@ -2210,10 +2210,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_assert', {value}, handler, varargin);
         end
         function value = get.errno(obj)
-            value = rrmex('member', obj, 86);
+            value = rrmex('member', obj, 'errno');
         end
         function set.errno(obj, value)
-            rrmex('member', obj, 86, value);
+            rrmex('member', obj, 'errno', value);
         end
         function value = get_errno(obj)
             %get_errno The same as object.errno.
@@ -2232,10 +2232,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_errno', {value}, handler, varargin);
         end
         function value = get.linux(obj)
-            value = rrmex('member', obj, 87);
+            value = rrmex('member', obj, 'linux');
         end
         function set.linux(obj, value)
-            rrmex('member', obj, 87, value);
+            rrmex('member', obj, 'linux', value);
         end
         function value = get_linux(obj)
             %get_linux The same as object.linux.
@@ -2254,10 +2254,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_linux', {value}, handler, varargin);
         end
         function value = get.unix(obj)
-            value = rrmex('member', obj, 88);
+            value = rrmex('member', obj, 'unix');
         end
         function set.unix(obj, value)
-            rrmex('member', obj, 88, value);
+            rrmex('member', obj, 'unix', value);
         end
         function value = get_unix(obj)
             %get_unix The same as object.unix.
@@ -2276,10 +2276,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_unix', {value}, handler, varargin);
         end
         function value = get.major(obj)
-            value = rrmex('member', obj, 89);
+            value = rrmex('member', obj, 'major');
         end
         function set.major(obj, value)
-            rrmex('member', obj, 89, value);
+            rrmex('member', obj, 'major', value);
         end
         function value = get_major(obj)
             %get_major The same as object.major.
@@ -2298,10 +2298,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_major', {value}, handler, varargin);
         end
         function value = get.minor(obj)
-            value = rrmex('member', obj, 90);
+            value = rrmex('member', obj, 'minor');
         end
         function set.minor(obj, value)
-            rrmex('member', obj, 90, value);
+            rrmex('member', obj, 'minor', value);
         end
         function value = get_minor(obj)
             %get_minor The same as object.minor.
@@ -2320,10 +2320,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_minor', {value}, handler, varargin);
         end
         function value = get.EOF(obj)
-            value = rrmex('member', obj, 91);
+            value = rrmex('member', obj, 'EOF');
         end
         function set.EOF(obj, value)
-            rrmex('member', obj, 91, value);
+            rrmex('member', obj, 'EOF', value);
         end
         function value = get_EOF(obj)
             %get_EOF The same as object.EOF.
@@ -2342,10 +2342,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_EOF', {value}, handler, varargin);
         end
         function value = get.NULL(obj)
-            value = rrmex('member', obj, 92);
+            value = rrmex('member', obj, 'NULL');
         end
         function set.NULL(obj, value)
-            rrmex('member', obj, 92, value);
+            rrmex('member', obj, 'NULL', value);
         end
         function value = get_NULL(obj)
             %get_NULL The same as object.NULL.
@@ -2364,10 +2364,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_NULL', {value}, handler, varargin);
         end
         function value = get.INFINITY(obj)
-            value = rrmex('member', obj, 93);
+            value = rrmex('member', obj, 'INFINITY');
         end
         function set.INFINITY(obj, value)
-            rrmex('member', obj, 93, value);
+            rrmex('member', obj, 'INFINITY', value);
         end
         function value = get_INFINITY(obj)
             %get_INFINITY The same as object.INFINITY.
@@ -2386,10 +2386,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_INFINITY', {value}, handler, varargin);
         end
         function value = get.NAN(obj)
-            value = rrmex('member', obj, 94);
+            value = rrmex('member', obj, 'NAN');
         end
         function set.NAN(obj, value)
-            rrmex('member', obj, 94, value);
+            rrmex('member', obj, 'NAN', value);
         end
         function value = get_NAN(obj)
             %get_NAN The same as object.NAN.
@@ -2408,10 +2408,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_NAN', {value}, handler, varargin);
         end
         function value = get.RAND_MAX(obj)
-            value = rrmex('member', obj, 95);
+            value = rrmex('member', obj, 'RAND_MAX');
         end
         function set.RAND_MAX(obj, value)
-            rrmex('member', obj, 95, value);
+            rrmex('member', obj, 'RAND_MAX', value);
         end
         function value = get_RAND_MAX(obj)
             %get_RAND_MAX The same as object.RAND_MAX.
@@ -2430,10 +2430,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_RAND_MAX', {value}, handler, varargin);
         end
         function value = get.BUFSIZ(obj)
-            value = rrmex('member', obj, 96);
+            value = rrmex('member', obj, 'BUFSIZ');
         end
         function set.BUFSIZ(obj, value)
-            rrmex('member', obj, 96, value);
+            rrmex('member', obj, 'BUFSIZ', value);
         end
         function value = get_BUFSIZ(obj)
             %get_BUFSIZ The same as object.BUFSIZ.
@@ -2452,10 +2452,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_BUFSIZ', {value}, handler, varargin);
         end
         function value = get.SIGINT(obj)
-            value = rrmex('member', obj, 97);
+            value = rrmex('member', obj, 'SIGINT');
         end
         function set.SIGINT(obj, value)
-            rrmex('member', obj, 97, value);
+            rrmex('member', obj, 'SIGINT', value);
         end
         function value = get_SIGINT(obj)
             %get_SIGINT The same as object.SIGINT.
@@ -2474,10 +2474,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_SIGINT', {value}, handler, varargin);
         end
         function value = get.final(obj)
-            value = rrmex('member', obj, 98);
+            value = rrmex('member', obj, 'final');
         end
         function set.final(obj, value)
-            rrmex('member', obj, 98, value);
+            rrmex('member', obj, 'final', value);
         end
         function value = get_final(obj)
             %get_final The same as object.final.
@@ -2496,10 +2496,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_final', {value}, handler, varargin);
         end
         function value = get.override(obj)
-            value = rrmex('member', obj, 99);
+            value = rrmex('member', obj, 'override');
         end
         function set.override(obj, value)
-            rrmex('member', obj, 99, value);
+            rrmex('member', obj, 'override', value);
         end
         function value = get_override(obj)
             %get_override The same as object.override.
@@ -2518,10 +2518,10 @@ classdef delete < RobotRaconteurStub
             rr_async(obj, 'async_set_override', {value}, handler, varargin);
         end
         function value = get.module(obj)
-            value = rrmex('member', obj, 100);
+            value = rrmex('member', obj, 'module');
         end
         function set.module(obj, value)
-            rrmex('member', obj, 100, value);
+            rrmex('member', obj, 'module', value);
         end
         function value = get_module(obj)
             %get_module The same as object.module.

@@ -115,7 +115,7 @@ classdef new < RobotRaconteurStub
         end
         function result = alignas(obj, bitor)
             %ALIGNAS function template alignas(export bitor)
-            result = rrmex('member', obj, 0, bitor);
+            result = rrmex('member', obj, 'alignas', bitor);
         end
         function async_alignas(obj, bitor, handler, varargin)
             %async_alignas As alignas, but calls handler(param, value, err) in a later Poll.
@@ -123,7 +123,7 @@ classdef new < RobotRaconteurStub
         end
         function result = alignof(obj, break_)
             %ALIGNOF function template alignof(export break)
-            result = rrmex('member', obj, 1, break_);
+            result = rrmex('member', obj, 'alignof', break_);
         end
         function async_alignof(obj, break_, handler, varargin)
             %async_alignof As alignof, but calls handler(param, value, err) in a later Poll.
@@ -131,7 +131,7 @@ classdef new < RobotRaconteurStub
         end
         function result = and(obj, case_)
             %AND function template and(export case)
-            result = rrmex('member', obj, 2, case_);
+            result = rrmex('member', obj, 'and', case_);
         end
         function async_and(obj, case_, handler, varargin)
             %async_and As and, but calls handler(param, value, err) in a later Poll.
@@ -139,7 +139,7 @@ classdef new < RobotRaconteurStub
         end
         function result = and_eq(obj, catch_)
             %AND_EQ function template and_eq(export catch)
-            result = rrmex('member', obj, 3, catch_);
+            result = rrmex('member', obj, 'and_eq', catch_);
         end
         function async_and_eq(obj, catch_, handler, varargin)
             %async_and_eq As and_eq, but calls handler(param, value, err) in a later Poll.
@@ -147,7 +147,7 @@ classdef new < RobotRaconteurStub
         end
         function result = asm(obj, char)
             %ASM function template asm(export char)
-            result = rrmex('member', obj, 4, char);
+            result = rrmex('member', obj, 'asm', char);
         end
         function async_asm(obj, char, handler, varargin)
             %async_asm As asm, but calls handler(param, value, err) in a later Poll.
@@ -155,7 +155,7 @@ classdef new < RobotRaconteurStub
         end
         function result = auto(obj, char16_t)
             %AUTO function template auto(export char16_t)
-            result = rrmex('member', obj, 5, char16_t);
+            result = rrmex('member', obj, 'auto', char16_t);
         end
         function async_auto(obj, char16_t, handler, varargin)
             %async_auto As auto, but calls handler(param, value, err) in a later Poll.
@@ -163,7 +163,7 @@ classdef new < RobotRaconteurStub
         end
         function result = bitand(obj, char32_t)
             %BITAND function template bitand(export char32_t)
-            result = rrmex('member', obj, 6, char32_t);
+            result = rrmex('member', obj, 'bitand', char32_t);
         end
         function async_bitand(obj, char32_t, handler, varargin)
             %async_bitand As bitand, but calls handler(param, value, err) in a later Poll.
@@ -171,7 +171,7 @@ classdef new < RobotRaconteurStub
         end
         function result = bitor(obj, char8_t)
             %BITOR function template bitor(export char8_t)
-            result = rrmex('member', obj, 7, char8_t);
+            result = rrmex('member', obj, 'bitor', char8_t);
         end
         function async_bitor(obj, char8_t, handler, varargin)
             %async_bitor As bitor, but calls handler(param, value, err) in a later Poll.
@@ -179,7 +179,7 @@ classdef new < RobotRaconteurStub
         end
         function result = break_(obj, class)
             %BREAK_ function template break(export class)
-            result = rrmex('member', obj, 8, class);
+            result = rrmex('member', obj, 'break', class);
         end
         function async_break(obj, class, handler, varargin)
             %async_break As break_, but calls handler(param, value, err) in a later Poll.
@@ -187,7 +187,7 @@ classdef new < RobotRaconteurStub
         end
         function result = case_(obj, co_await)
             %CASE_ function template case(export co_await)
-            result = rrmex('member', obj, 9, co_await);
+            result = rrmex('member', obj, 'case', co_await);
         end
         function async_case(obj, co_await, handler, varargin)
             %async_case As case_, but calls handler(param, value, err) in a later Poll.
@@ -195,7 +195,7 @@ classdef new < RobotRaconteurStub
         end
         function result = catch_(obj, co_return)
             %CATCH_ function template catch(export co_return)
-            result = rrmex('member', obj, 10, co_return);
+            result = rrmex('member', obj, 'catch', co_return);
         end
         function async_catch(obj, co_return, handler, varargin)
             %async_catch As catch_, but calls handler(param, value, err) in a later Poll.
@@ -203,7 +203,7 @@ classdef new < RobotRaconteurStub
         end
         function result = char(obj, co_yield)
             %CHAR function template char(export co_yield)
-            result = rrmex('member', obj, 11, co_yield);
+            result = rrmex('member', obj, 'char', co_yield);
         end
         function async_char(obj, co_yield, handler, varargin)
             %async_char As char, but calls handler(param, value, err) in a later Poll.
@@ -211,7 +211,7 @@ classdef new < RobotRaconteurStub
         end
         function result = char16_t(obj, compl)
             %CHAR16_T function template char16_t(export compl)
-            result = rrmex('member', obj, 12, compl);
+            result = rrmex('member', obj, 'char16_t', compl);
         end
         function async_char16_t(obj, compl, handler, varargin)
             %async_char16_t As char16_t, but calls handler(param, value, err) in a later Poll.
@@ -219,7 +219,7 @@ classdef new < RobotRaconteurStub
         end
         function result = char32_t(obj, concept)
             %CHAR32_T function template char32_t(export concept)
-            result = rrmex('member', obj, 13, concept);
+            result = rrmex('member', obj, 'char32_t', concept);
         end
         function async_char32_t(obj, concept, handler, varargin)
             %async_char32_t As char32_t, but calls handler(param, value, err) in a later Poll.
@@ -227,7 +227,7 @@ classdef new < RobotRaconteurStub
         end
         function result = char8_t(obj, const)
             %CHAR8_T function template char8_t(export const)
-            result = rrmex('member', obj, 14, const);
+            result = rrmex('member', obj, 'char8_t', const);
         end
         function async_char8_t(obj, const, handler, varargin)
             %async_char8_t As char8_t, but calls handler(param, value, err) in a later Poll.
@@ -235,7 +235,7 @@ classdef new < RobotRaconteurStub
         end
         function result = class(obj, const_cast)
             %CLASS function template class(export const_cast)
-            result = rrmex('member', obj, 15, const_cast);
+            result = rrmex('member', obj, 'class', const_cast);
         end
         function async_class(obj, const_cast, handler, varargin)
             %async_class As class, but calls handler(param, value, err) in a later Poll.
@@ -243,7 +243,7 @@ classdef new < RobotRaconteurStub
         end
         function result = co_await(obj, consteval)
             %CO_AWAIT function template co_await(export consteval)
-            result = rrmex('member', obj, 16, consteval);
+            result = rrmex('member', obj, 'co_await', consteval);
         end
         function async_co_await(obj, consteval, handler, varargin)
             %async_co_await As co_await, but calls handler(param, value, err) in a later Poll.
@@ -251,7 +251,7 @@ classdef new < RobotRaconteurStub
         end
         function result = co_return(obj, constexpr)
             %CO_RETURN function template co_return(export constexpr)
-            result = rrmex('member', obj, 17, constexpr);
+            result = rrmex('member', obj, 'co_return', constexpr);
         end
         function async_co_return(obj, constexpr, handler, varargin)
             %async_co_return As co_return, but calls handler(param, value, err) in a later Poll.
@@ -259,7 +259,7 @@ classdef new < RobotRaconteurStub
         end
         function result = co_yield(obj, constinit)
             %CO_YIELD function template co_yield(export constinit)
-            result = rrmex('member', obj, 18, constinit);
+            result = rrmex('member', obj, 'co_yield', constinit);
         end
         function async_co_yield(obj, constinit, handler, varargin)
             %async_co_yield As co_yield, but calls handler(param, value, err) in a later Poll.
@@ -267,7 +267,7 @@ classdef new < RobotRaconteurStub
         end
         function result = compl(obj, continue_)
             %COMPL function template compl(export continue)
-            result = rrmex('member', obj, 19, continue_);
+            result = rrmex('member', obj, 'compl', continue_);
         end
         function async_compl(obj, continue_, handler, varargin)
             %async_compl As compl, but calls handler(param, value, err) in a later Poll.
@@ -275,7 +275,7 @@ classdef new < RobotRaconteurStub
         end
         function result = concept(obj, decltype)
             %CONCEPT function template concept(export decltype)
-            result = rrmex('member', obj, 20, decltype);
+            result = rrmex('member', obj, 'concept', decltype);
         end
         function async_concept(obj, decltype, handler, varargin)
             %async_concept As concept, but calls handler(param, value, err) in a later Poll.
@@ -283,7 +283,7 @@ classdef new < RobotRaconteurStub
         end
         function result = const(obj, default)
             %CONST function template const(export default)
-            result = rrmex('member', obj, 21, default);
+            result = rrmex('member', obj, 'const', default);
         end
         function async_const(obj, default, handler, varargin)
             %async_const As const, but calls handler(param, value, err) in a later Poll.
@@ -291,7 +291,7 @@ classdef new < RobotRaconteurStub
         end
         function result = const_cast(obj, delete)
             %CONST_CAST function template const_cast(export delete)
-            result = rrmex('member', obj, 22, delete);
+            result = rrmex('member', obj, 'const_cast', delete);
         end
         function async_const_cast(obj, delete, handler, varargin)
             %async_const_cast As const_cast, but calls handler(param, value, err) in a later Poll.
@@ -299,7 +299,7 @@ classdef new < RobotRaconteurStub
         end
         function result = consteval(obj, do_)
             %CONSTEVAL function template consteval(export do)
-            result = rrmex('member', obj, 23, do_);
+            result = rrmex('member', obj, 'consteval', do_);
         end
         function async_consteval(obj, do_, handler, varargin)
             %async_consteval As consteval, but calls handler(param, value, err) in a later Poll.
@@ -307,7 +307,7 @@ classdef new < RobotRaconteurStub
         end
         function result = constexpr(obj, dynamic_cast)
             %CONSTEXPR function template constexpr(export dynamic_cast)
-            result = rrmex('member', obj, 24, dynamic_cast);
+            result = rrmex('member', obj, 'constexpr', dynamic_cast);
         end
         function async_constexpr(obj, dynamic_cast, handler, varargin)
             %async_constexpr As constexpr, but calls handler(param, value, err) in a later Poll.
@@ -315,7 +315,7 @@ classdef new < RobotRaconteurStub
         end
         function result = constinit(obj, else_)
             %CONSTINIT function template constinit(export else)
-            result = rrmex('member', obj, 25, else_);
+            result = rrmex('member', obj, 'constinit', else_);
         end
         function async_constinit(obj, else_, handler, varargin)
             %async_constinit As constinit, but calls handler(param, value, err) in a later Poll.
@@ -323,7 +323,7 @@ classdef new < RobotRaconteurStub
         end
         function result = continue_(obj, explicit)
             %CONTINUE_ function template continue(export explicit)
-            result = rrmex('member', obj, 26, explicit);
+            result = rrmex('member', obj, 'continue', explicit);
         end
         function async_continue(obj, explicit, handler, varargin)
             %async_continue As continue_, but calls handler(param, value, err) in a later Poll.
@@ -331,7 +331,7 @@ classdef new < RobotRaconteurStub
         end
         function result = decltype(obj, export)
             %DECLTYPE function template decltype(export export)
-            result = rrmex('member', obj, 27, export);
+            result = rrmex('member', obj, 'decltype', export);
         end
         function async_decltype(obj, export, handler, varargin)
             %async_decltype As decltype, but calls handler(param, value, err) in a later Poll.
@@ -339,7 +339,7 @@ classdef new < RobotRaconteurStub
         end
         function result = default(obj, extern)
             %DEFAULT function template default(export extern)
-            result = rrmex('member', obj, 28, extern);
+            result = rrmex('member', obj, 'default', extern);
         end
         function async_default(obj, extern, handler, varargin)
             %async_default As default, but calls handler(param, value, err) in a later Poll.
@@ -347,7 +347,7 @@ classdef new < RobotRaconteurStub
         end
         function result = delete_(obj, false)
             %DELETE_ function template delete(export false)
-            result = rrmex('member', obj, 29, false);
+            result = rrmex('member', obj, 'delete', false);
         end
         function async_delete(obj, false, handler, varargin)
             %async_delete As delete_, but calls handler(param, value, err) in a later Poll.
@@ -355,7 +355,7 @@ classdef new < RobotRaconteurStub
         end
         function result = do_(obj, float)
             %DO_ function template do(export float)
-            result = rrmex('member', obj, 30, float);
+            result = rrmex('member', obj, 'do', float);
         end
         function async_do(obj, float, handler, varargin)
             %async_do As do_, but calls handler(param, value, err) in a later Poll.
@@ -363,7 +363,7 @@ classdef new < RobotRaconteurStub
         end
         function result = dynamic_cast(obj, for_)
             %DYNAMIC_CAST function template dynamic_cast(export for)
-            result = rrmex('member', obj, 31, for_);
+            result = rrmex('member', obj, 'dynamic_cast', for_);
         end
         function async_dynamic_cast(obj, for_, handler, varargin)
             %async_dynamic_cast As dynamic_cast, but calls handler(param, value, err) in a later Poll.
@@ -371,7 +371,7 @@ classdef new < RobotRaconteurStub
         end
         function result = else_(obj, friend)
             %ELSE_ function template else(export friend)
-            result = rrmex('member', obj, 32, friend);
+            result = rrmex('member', obj, 'else', friend);
         end
         function async_else(obj, friend, handler, varargin)
             %async_else As else_, but calls handler(param, value, err) in a later Poll.
@@ -379,7 +379,7 @@ classdef new < RobotRaconteurStub
         end
         function result = explicit(obj, goto)
             %EXPLICIT function template explicit(export goto)
-            result = rrmex('member', obj, 33, goto);
+            result = rrmex('member', obj, 'explicit', goto);
         end
         function async_explicit(obj, goto, handler, varargin)
             %async_explicit As explicit, but calls handler(param, value, err) in a later Poll.
@@ -387,7 +387,7 @@ classdef new < RobotRaconteurStub
         end
         function result = export(obj, if_)
             %EXPORT function template export(export if)
-            result = rrmex('member', obj, 34, if_);
+            result = rrmex('member', obj, 'export', if_);
         end
         function async_export(obj, if_, handler, varargin)
             %async_export As export, but calls handler(param, value, err) in a later Poll.
@@ -395,7 +395,7 @@ classdef new < RobotRaconteurStub
         end
         function result = extern(obj, inline)
             %EXTERN function template extern(export inline)
-            result = rrmex('member', obj, 35, inline);
+            result = rrmex('member', obj, 'extern', inline);
         end
         function async_extern(obj, inline, handler, varargin)
             %async_extern As extern, but calls handler(param, value, err) in a later Poll.
@@ -403,7 +403,7 @@ classdef new < RobotRaconteurStub
         end
         function result = false(obj, int)
             %FALSE function template false(export int)
-            result = rrmex('member', obj, 36, int);
+            result = rrmex('member', obj, 'false', int);
         end
         function async_false(obj, int, handler, varargin)
             %async_false As false, but calls handler(param, value, err) in a later Poll.
@@ -411,7 +411,7 @@ classdef new < RobotRaconteurStub
         end
         function result = float(obj, long)
             %FLOAT function template float(export long)
-            result = rrmex('member', obj, 37, long);
+            result = rrmex('member', obj, 'float', long);
         end
         function async_float(obj, long, handler, varargin)
             %async_float As float, but calls handler(param, value, err) in a later Poll.
@@ -419,7 +419,7 @@ classdef new < RobotRaconteurStub
         end
         function result = for_(obj, mutable)
             %FOR_ function template for(export mutable)
-            result = rrmex('member', obj, 38, mutable);
+            result = rrmex('member', obj, 'for', mutable);
         end
         function async_for(obj, mutable, handler, varargin)
             %async_for As for_, but calls handler(param, value, err) in a later Poll.
@@ -427,7 +427,7 @@ classdef new < RobotRaconteurStub
         end
         function result = friend(obj, namespace)
             %FRIEND function template friend(export namespace)
-            result = rrmex('member', obj, 39, namespace);
+            result = rrmex('member', obj, 'friend', namespace);
         end
         function async_friend(obj, namespace, handler, varargin)
             %async_friend As friend, but calls handler(param, value, err) in a later Poll.
@@ -435,7 +435,7 @@ classdef new < RobotRaconteurStub
         end
         function result = goto(obj, new)
             %GOTO function template goto(export new)
-            result = rrmex('member', obj, 40, new);
+            result = rrmex('member', obj, 'goto', new);
         end
         function async_goto(obj, new, handler, varargin)
             %async_goto As goto, but calls handler(param, value, err) in a later Poll.
@@ -443,7 +443,7 @@ classdef new < RobotRaconteurStub
         end
         function result = if_(obj, noexcept)
             %IF_ function template if(export noexcept)
-            result = rrmex('member', obj, 41, noexcept);
+            result = rrmex('member', obj, 'if', noexcept);
         end
         function async_if(obj, noexcept, handler, varargin)
             %async_if As if_, but calls handler(param, value, err) in a later Poll.
@@ -451,7 +451,7 @@ classdef new < RobotRaconteurStub
         end
         function result = inline(obj, not)
             %INLINE function template inline(export not)
-            result = rrmex('member', obj, 42, not);
+            result = rrmex('member', obj, 'inline', not);
         end
         function async_inline(obj, not, handler, varargin)
             %async_inline As inline, but calls handler(param, value, err) in a later Poll.
@@ -459,7 +459,7 @@ classdef new < RobotRaconteurStub
         end
         function result = int(obj, not_eq)
             %INT function template int(export not_eq)
-            result = rrmex('member', obj, 43, not_eq);
+            result = rrmex('member', obj, 'int', not_eq);
         end
         function async_int(obj, not_eq, handler, varargin)
             %async_int As int, but calls handler(param, value, err) in a later Poll.
@@ -467,7 +467,7 @@ classdef new < RobotRaconteurStub
         end
         function result = long(obj, nullptr)
             %LONG function template long(export nullptr)
-            result = rrmex('member', obj, 44, nullptr);
+            result = rrmex('member', obj, 'long', nullptr);
         end
         function async_long(obj, nullptr, handler, varargin)
             %async_long As long, but calls handler(param, value, err) in a later Poll.
@@ -475,7 +475,7 @@ classdef new < RobotRaconteurStub
         end
         function result = mutable(obj, operator)
             %MUTABLE function template mutable(export operator)
-            result = rrmex('member', obj, 45, operator);
+            result = rrmex('member', obj, 'mutable', operator);
         end
         function async_mutable(obj, operator, handler, varargin)
             %async_mutable As mutable, but calls handler(param, value, err) in a later Poll.
@@ -483,7 +483,7 @@ classdef new < RobotRaconteurStub
         end
         function result = namespace(obj, or)
             %NAMESPACE function template namespace(export or)
-            result = rrmex('member', obj, 46, or);
+            result = rrmex('member', obj, 'namespace', or);
         end
         function async_namespace(obj, or, handler, varargin)
             %async_namespace As namespace, but calls handler(param, value, err) in a later Poll.
@@ -491,7 +491,7 @@ classdef new < RobotRaconteurStub
         end
         function result = new_(obj, or_eq)
             %NEW_ function template new(export or_eq)
-            result = rrmex('member', obj, 47, or_eq);
+            result = rrmex('member', obj, 'new', or_eq);
         end
         function async_new(obj, or_eq, handler, varargin)
             %async_new As new_, but calls handler(param, value, err) in a later Poll.
@@ -499,7 +499,7 @@ classdef new < RobotRaconteurStub
         end
         function result = noexcept(obj, private)
             %NOEXCEPT function template noexcept(export private)
-            result = rrmex('member', obj, 48, private);
+            result = rrmex('member', obj, 'noexcept', private);
         end
         function async_noexcept(obj, private, handler, varargin)
             %async_noexcept As noexcept, but calls handler(param, value, err) in a later Poll.
@@ -507,7 +507,7 @@ classdef new < RobotRaconteurStub
         end
         function result = not(obj, protected)
             %NOT function template not(export protected)
-            result = rrmex('member', obj, 49, protected);
+            result = rrmex('member', obj, 'not', protected);
         end
         function async_not(obj, protected, handler, varargin)
             %async_not As not, but calls handler(param, value, err) in a later Poll.
@@ -515,7 +515,7 @@ classdef new < RobotRaconteurStub
         end
         function result = not_eq(obj, public)
             %NOT_EQ function template not_eq(export public)
-            result = rrmex('member', obj, 50, public);
+            result = rrmex('member', obj, 'not_eq', public);
         end
         function async_not_eq(obj, public, handler, varargin)
             %async_not_eq As not_eq, but calls handler(param, value, err) in a later Poll.
@@ -523,7 +523,7 @@ classdef new < RobotRaconteurStub
         end
         function result = nullptr(obj, register)
             %NULLPTR function template nullptr(export register)
-            result = rrmex('member', obj, 51, register);
+            result = rrmex('member', obj, 'nullptr', register);
         end
         function async_nullptr(obj, register, handler, varargin)
             %async_nullptr As nullptr, but calls handler(param, value, err) in a later Poll.
@@ -531,7 +531,7 @@ classdef new < RobotRaconteurStub
         end
         function result = operator(obj, reinterpret_cast)
             %OPERATOR function template operator(export reinterpret_cast)
-            result = rrmex('member', obj, 52, reinterpret_cast);
+            result = rrmex('member', obj, 'operator', reinterpret_cast);
         end
         function async_operator(obj, reinterpret_cast, handler, varargin)
             %async_operator As operator, but calls handler(param, value, err) in a later Poll.
@@ -539,7 +539,7 @@ classdef new < RobotRaconteurStub
         end
         function result = or(obj, requires)
             %OR function template or(export requires)
-            result = rrmex('member', obj, 53, requires);
+            result = rrmex('member', obj, 'or', requires);
         end
         function async_or(obj, requires, handler, varargin)
             %async_or As or, but calls handler(param, value, err) in a later Poll.
@@ -547,7 +547,7 @@ classdef new < RobotRaconteurStub
         end
         function result = or_eq(obj, return_)
             %OR_EQ function template or_eq(export return)
-            result = rrmex('member', obj, 54, return_);
+            result = rrmex('member', obj, 'or_eq', return_);
         end
         function async_or_eq(obj, return_, handler, varargin)
             %async_or_eq As or_eq, but calls handler(param, value, err) in a later Poll.
@@ -555,7 +555,7 @@ classdef new < RobotRaconteurStub
         end
         function result = private(obj, short)
             %PRIVATE function template private(export short)
-            result = rrmex('member', obj, 55, short);
+            result = rrmex('member', obj, 'private', short);
         end
         function async_private(obj, short, handler, varargin)
             %async_private As private, but calls handler(param, value, err) in a later Poll.
@@ -563,7 +563,7 @@ classdef new < RobotRaconteurStub
         end
         function result = protected(obj, signed)
             %PROTECTED function template protected(export signed)
-            result = rrmex('member', obj, 56, signed);
+            result = rrmex('member', obj, 'protected', signed);
         end
         function async_protected(obj, signed, handler, varargin)
             %async_protected As protected, but calls handler(param, value, err) in a later Poll.
@@ -571,7 +571,7 @@ classdef new < RobotRaconteurStub
         end
         function result = public(obj, sizeof)
             %PUBLIC function template public(export sizeof)
-            result = rrmex('member', obj, 57, sizeof);
+            result = rrmex('member', obj, 'public', sizeof);
         end
         function async_public(obj, sizeof, handler, varargin)
             %async_public As public, but calls handler(param, value, err) in a later Poll.
@@ -579,7 +579,7 @@ classdef new < RobotRaconteurStub
         end
         function result = register(obj, static)
             %REGISTER function template register(export static)
-            result = rrmex('member', obj, 58, static);
+            result = rrmex('member', obj, 'register', static);
         end
         function async_register(obj, static, handler, varargin)
             %async_register As register, but calls handler(param, value, err) in a later Poll.
@@ -587,7 +587,7 @@ classdef new < RobotRaconteurStub
         end
         function result = reinterpret_cast(obj, static_assert)
             %REINTERPRET_CAST function template reinterpret_cast(export static_assert)
-            result = rrmex('member', obj, 59, static_assert);
+            result = rrmex('member', obj, 'reinterpret_cast', static_assert);
         end
         function async_reinterpret_cast(obj, static_assert, handler, varargin)
             %async_reinterpret_cast As reinterpret_cast, but calls handler(param, value, err) in a later Poll.
@@ -595,7 +595,7 @@ classdef new < RobotRaconteurStub
         end
         function result = requires(obj, static_cast)
             %REQUIRES function template requires(export static_cast)
-            result = rrmex('member', obj, 60, static_cast);
+            result = rrmex('member', obj, 'requires', static_cast);
         end
         function async_requires(obj, static_cast, handler, varargin)
             %async_requires As requires, but calls handler(param, value, err) in a later Poll.
@@ -603,7 +603,7 @@ classdef new < RobotRaconteurStub
         end
         function result = return_(obj, switch_)
             %RETURN_ function template return(export switch)
-            result = rrmex('member', obj, 61, switch_);
+            result = rrmex('member', obj, 'return', switch_);
         end
         function async_return(obj, switch_, handler, varargin)
             %async_return As return_, but calls handler(param, value, err) in a later Poll.
@@ -611,7 +611,7 @@ classdef new < RobotRaconteurStub
         end
         function result = short(obj, template)
             %SHORT function template short(export template)
-            result = rrmex('member', obj, 62, template);
+            result = rrmex('member', obj, 'short', template);
         end
         function async_short(obj, template, handler, varargin)
             %async_short As short, but calls handler(param, value, err) in a later Poll.
@@ -619,7 +619,7 @@ classdef new < RobotRaconteurStub
         end
         function result = signed(obj, thread_local)
             %SIGNED function template signed(export thread_local)
-            result = rrmex('member', obj, 63, thread_local);
+            result = rrmex('member', obj, 'signed', thread_local);
         end
         function async_signed(obj, thread_local, handler, varargin)
             %async_signed As signed, but calls handler(param, value, err) in a later Poll.
@@ -627,7 +627,7 @@ classdef new < RobotRaconteurStub
         end
         function result = sizeof(obj, throw)
             %SIZEOF function template sizeof(export throw)
-            result = rrmex('member', obj, 64, throw);
+            result = rrmex('member', obj, 'sizeof', throw);
         end
         function async_sizeof(obj, throw, handler, varargin)
             %async_sizeof As sizeof, but calls handler(param, value, err) in a later Poll.
@@ -635,7 +635,7 @@ classdef new < RobotRaconteurStub
         end
         function result = static(obj, true)
             %STATIC function template static(export true)
-            result = rrmex('member', obj, 65, true);
+            result = rrmex('member', obj, 'static', true);
         end
         function async_static(obj, true, handler, varargin)
             %async_static As static, but calls handler(param, value, err) in a later Poll.
@@ -643,7 +643,7 @@ classdef new < RobotRaconteurStub
         end
         function result = static_assert(obj, try_)
             %STATIC_ASSERT function template static_assert(export try)
-            result = rrmex('member', obj, 66, try_);
+            result = rrmex('member', obj, 'static_assert', try_);
         end
         function async_static_assert(obj, try_, handler, varargin)
             %async_static_assert As static_assert, but calls handler(param, value, err) in a later Poll.
@@ -651,7 +651,7 @@ classdef new < RobotRaconteurStub
         end
         function result = static_cast(obj, typedef)
             %STATIC_CAST function template static_cast(export typedef)
-            result = rrmex('member', obj, 67, typedef);
+            result = rrmex('member', obj, 'static_cast', typedef);
         end
         function async_static_cast(obj, typedef, handler, varargin)
             %async_static_cast As static_cast, but calls handler(param, value, err) in a later Poll.
@@ -659,7 +659,7 @@ classdef new < RobotRaconteurStub
         end
         function result = switch_(obj, typeid)
             %SWITCH_ function template switch(export typeid)
-            result = rrmex('member', obj, 68, typeid);
+            result = rrmex('member', obj, 'switch', typeid);
         end
         function async_switch(obj, typeid, handler, varargin)
             %async_switch As switch_, but calls handler(param, value, err) in a later Poll.
@@ -667,7 +667,7 @@ classdef new < RobotRaconteurStub
         end
         function result = template(obj, typename)
             %TEMPLATE function template template(export typename)
-            result = rrmex('member', obj, 69, typename);
+            result = rrmex('member', obj, 'template', typename);
         end
         function async_template(obj, typename, handler, varargin)
             %async_template As template, but calls handler(param, value, err) in a later Poll.
@@ -675,7 +675,7 @@ classdef new < RobotRaconteurStub
         end
         function result = thread_local(obj, union)
             %THREAD_LOCAL function template thread_local(export union)
-            result = rrmex('member', obj, 70, union);
+            result = rrmex('member', obj, 'thread_local', union);
         end
         function async_thread_local(obj, union, handler, varargin)
             %async_thread_local As thread_local, but calls handler(param, value, err) in a later Poll.
@@ -683,7 +683,7 @@ classdef new < RobotRaconteurStub
         end
         function result = throw(obj, unsigned)
             %THROW function template throw(export unsigned)
-            result = rrmex('member', obj, 71, unsigned);
+            result = rrmex('member', obj, 'throw', unsigned);
         end
         function async_throw(obj, unsigned, handler, varargin)
             %async_throw As throw, but calls handler(param, value, err) in a later Poll.
@@ -691,7 +691,7 @@ classdef new < RobotRaconteurStub
         end
         function result = true(obj, virtual)
             %TRUE function template true(export virtual)
-            result = rrmex('member', obj, 72, virtual);
+            result = rrmex('member', obj, 'true', virtual);
         end
         function async_true(obj, virtual, handler, varargin)
             %async_true As true, but calls handler(param, value, err) in a later Poll.
@@ -699,7 +699,7 @@ classdef new < RobotRaconteurStub
         end
         function result = try_(obj, volatile)
             %TRY_ function template try(export volatile)
-            result = rrmex('member', obj, 73, volatile);
+            result = rrmex('member', obj, 'try', volatile);
         end
         function async_try(obj, volatile, handler, varargin)
             %async_try As try_, but calls handler(param, value, err) in a later Poll.
@@ -707,7 +707,7 @@ classdef new < RobotRaconteurStub
         end
         function result = typedef(obj, wchar_t)
             %TYPEDEF function template typedef(export wchar_t)
-            result = rrmex('member', obj, 74, wchar_t);
+            result = rrmex('member', obj, 'typedef', wchar_t);
         end
         function async_typedef(obj, wchar_t, handler, varargin)
             %async_typedef As typedef, but calls handler(param, value, err) in a later Poll.
@@ -715,7 +715,7 @@ classdef new < RobotRaconteurStub
         end
         function result = typeid(obj, while_)
             %TYPEID function template typeid(export while)
-            result = rrmex('member', obj, 75, while_);
+            result = rrmex('member', obj, 'typeid', while_);
         end
         function async_typeid(obj, while_, handler, varargin)
             %async_typeid As typeid, but calls handler(param, value, err) in a later Poll.
@@ -723,7 +723,7 @@ classdef new < RobotRaconteurStub
         end
         function result = typename(obj, xor)
             %TYPENAME function template typename(export xor)
-            result = rrmex('member', obj, 76, xor);
+            result = rrmex('member', obj, 'typename', xor);
         end
         function async_typename(obj, xor, handler, varargin)
             %async_typename As typename, but calls handler(param, value, err) in a later Poll.
@@ -731,7 +731,7 @@ classdef new < RobotRaconteurStub
         end
         function result = union(obj, xor_eq)
             %UNION function template union(export xor_eq)
-            result = rrmex('member', obj, 77, xor_eq);
+            result = rrmex('member', obj, 'union', xor_eq);
         end
         function async_union(obj, xor_eq, handler, varargin)
             %async_union As union, but calls handler(param, value, err) in a later Poll.
@@ -739,7 +739,7 @@ classdef new < RobotRaconteurStub
         end
         function result = unsigned(obj, assert)
             %UNSIGNED function template unsigned(export assert)
-            result = rrmex('member', obj, 78, assert);
+            result = rrmex('member', obj, 'unsigned', assert);
         end
         function async_unsigned(obj, assert, handler, varargin)
             %async_unsigned As unsigned, but calls handler(param, value, err) in a later Poll.
@@ -747,7 +747,7 @@ classdef new < RobotRaconteurStub
         end
         function result = virtual(obj, errno)
             %VIRTUAL function template virtual(export errno)
-            result = rrmex('member', obj, 79, errno);
+            result = rrmex('member', obj, 'virtual', errno);
         end
         function async_virtual(obj, errno, handler, varargin)
             %async_virtual As virtual, but calls handler(param, value, err) in a later Poll.
@@ -755,7 +755,7 @@ classdef new < RobotRaconteurStub
         end
         function result = volatile(obj, linux)
             %VOLATILE function template volatile(export linux)
-            result = rrmex('member', obj, 80, linux);
+            result = rrmex('member', obj, 'volatile', linux);
         end
         function async_volatile(obj, linux, handler, varargin)
             %async_volatile As volatile, but calls handler(param, value, err) in a later Poll.
@@ -763,7 +763,7 @@ classdef new < RobotRaconteurStub
         end
         function result = wchar_t(obj, unix)
             %WCHAR_T function template wchar_t(export unix)
-            result = rrmex('member', obj, 81, unix);
+            result = rrmex('member', obj, 'wchar_t', unix);
         end
         function async_wchar_t(obj, unix, handler, varargin)
             %async_wchar_t As wchar_t, but calls handler(param, value, err) in a later Poll.
@@ -771,7 +771,7 @@ classdef new < RobotRaconteurStub
         end
         function result = while_(obj, major)
             %WHILE_ function template while(export major)
-            result = rrmex('member', obj, 82, major);
+            result = rrmex('member', obj, 'while', major);
         end
         function async_while(obj, major, handler, varargin)
             %async_while As while_, but calls handler(param, value, err) in a later Poll.
@@ -779,7 +779,7 @@ classdef new < RobotRaconteurStub
         end
         function result = xor(obj, minor)
             %XOR function template xor(export minor)
-            result = rrmex('member', obj, 83, minor);
+            result = rrmex('member', obj, 'xor', minor);
         end
         function async_xor(obj, minor, handler, varargin)
             %async_xor As xor, but calls handler(param, value, err) in a later Poll.
@@ -787,7 +787,7 @@ classdef new < RobotRaconteurStub
         end
         function result = xor_eq(obj, EOF)
             %XOR_EQ function template xor_eq(export EOF)
-            result = rrmex('member', obj, 84, EOF);
+            result = rrmex('member', obj, 'xor_eq', EOF);
         end
         function async_xor_eq(obj, EOF, handler, varargin)
             %async_xor_eq As xor_eq, but calls handler(param, value, err) in a later Poll.
@@ -795,7 +795,7 @@ classdef new < RobotRaconteurStub
         end
         function result = assert(obj, NULL)
             %ASSERT function template assert(export NULL)
-            result = rrmex('member', obj, 85, NULL);
+            result = rrmex('member', obj, 'assert', NULL);
         end
         function async_assert(obj, NULL, handler, varargin)
             %async_assert As assert, but calls handler(param, value, err) in a later Poll.
@@ -803,7 +803,7 @@ classdef new < RobotRaconteurStub
         end
         function result = errno(obj, INFINITY)
             %ERRNO function template errno(export INFINITY)
-            result = rrmex('member', obj, 86, INFINITY);
+            result = rrmex('member', obj, 'errno', INFINITY);
         end
         function async_errno(obj, INFINITY, handler, varargin)
             %async_errno As errno, but calls handler(param, value, err) in a later Poll.
@@ -811,7 +811,7 @@ classdef new < RobotRaconteurStub
         end
         function result = linux(obj, NAN)
             %LINUX function template linux(export NAN)
-            result = rrmex('member', obj, 87, NAN);
+            result = rrmex('member', obj, 'linux', NAN);
         end
         function async_linux(obj, NAN, handler, varargin)
             %async_linux As linux, but calls handler(param, value, err) in a later Poll.
@@ -819,7 +819,7 @@ classdef new < RobotRaconteurStub
         end
         function result = unix(obj, RAND_MAX)
             %UNIX function template unix(export RAND_MAX)
-            result = rrmex('member', obj, 88, RAND_MAX);
+            result = rrmex('member', obj, 'unix', RAND_MAX);
         end
         function async_unix(obj, RAND_MAX, handler, varargin)
             %async_unix As unix, but calls handler(param, value, err) in a later Poll.
@@ -827,7 +827,7 @@ classdef new < RobotRaconteurStub
         end
         function result = major(obj, BUFSIZ)
             %MAJOR function template major(export BUFSIZ)
-            result = rrmex('member', obj, 89, BUFSIZ);
+            result = rrmex('member', obj, 'major', BUFSIZ);
         end
         function async_major(obj, BUFSIZ, handler, varargin)
             %async_major As major, but calls handler(param, value, err) in a later Poll.
@@ -835,7 +835,7 @@ classdef new < RobotRaconteurStub
         end
         function result = minor(obj, SIGINT)
             %MINOR function template minor(export SIGINT)
-            result = rrmex('member', obj, 90, SIGINT);
+            result = rrmex('member', obj, 'minor', SIGINT);
         end
         function async_minor(obj, SIGINT, handler, varargin)
             %async_minor As minor, but calls handler(param, value, err) in a later Poll.
@@ -843,7 +843,7 @@ classdef new < RobotRaconteurStub
         end
         function result = EOF(obj, final)
             %EOF function template EOF(export final)
-            result = rrmex('member', obj, 91, final);
+            result = rrmex('member', obj, 'EOF', final);
         end
         function async_EOF(obj, final, handler, varargin)
             %async_EOF As EOF, but calls handler(param, value, err) in a later Poll.
@@ -851,7 +851,7 @@ classdef new < RobotRaconteurStub
         end
         function result = NULL(obj, override)
             %NULL function template NULL(export override)
-            result = rrmex('member', obj, 92, override);
+            result = rrmex('member', obj, 'NULL', override);
         end
         function async_NULL(obj, override, handler, varargin)
             %async_NULL As NULL, but calls handler(param, value, err) in a later Poll.
@@ -859,7 +859,7 @@ classdef new < RobotRaconteurStub
         end
         function result = INFINITY(obj, module)
             %INFINITY function template INFINITY(export module)
-            result = rrmex('member', obj, 93, module);
+            result = rrmex('member', obj, 'INFINITY', module);
         end
         function async_INFINITY(obj, module, handler, varargin)
             %async_INFINITY As INFINITY, but calls handler(param, value, err) in a later Poll.
@@ -867,7 +867,7 @@ classdef new < RobotRaconteurStub
         end
         function result = NAN(obj, alignas)
             %NAN function template NAN(export alignas)
-            result = rrmex('member', obj, 94, alignas);
+            result = rrmex('member', obj, 'NAN', alignas);
         end
         function async_NAN(obj, alignas, handler, varargin)
             %async_NAN As NAN, but calls handler(param, value, err) in a later Poll.
@@ -875,7 +875,7 @@ classdef new < RobotRaconteurStub
         end
         function result = RAND_MAX(obj, alignof)
             %RAND_MAX function template RAND_MAX(export alignof)
-            result = rrmex('member', obj, 95, alignof);
+            result = rrmex('member', obj, 'RAND_MAX', alignof);
         end
         function async_RAND_MAX(obj, alignof, handler, varargin)
             %async_RAND_MAX As RAND_MAX, but calls handler(param, value, err) in a later Poll.
@@ -883,7 +883,7 @@ classdef new < RobotRaconteurStub
         end
         function result = BUFSIZ(obj, and)
             %BUFSIZ function template BUFSIZ(export and)
-            result = rrmex('member', obj, 96, and);
+            result = rrmex('member', obj, 'BUFSIZ', and);
         end
         function async_BUFSIZ(obj, and, handler, varargin)
             %async_BUFSIZ As BUFSIZ, but calls handler(param, value, err) in a later Poll.
@@ -891,7 +891,7 @@ classdef new < RobotRaconteurStub
         end
         function result = SIGINT(obj, and_eq)
             %SIGINT function template SIGINT(export and_eq)
-            result = rrmex('member', obj, 97, and_eq);
+            result = rrmex('member', obj, 'SIGINT', and_eq);
         end
         function async_SIGINT(obj, and_eq, handler, varargin)
             %async_SIGINT As SIGINT, but calls handler(param, value, err) in a later Poll.
@@ -899,7 +899,7 @@ classdef new < RobotRaconteurStub
         end
         function result = final(obj, asm)
             %FINAL function template final(export asm)
-            result = rrmex('member', obj, 98, asm);
+            result = rrmex('member', obj, 'final', asm);
         end
         function async_final(obj, asm, handler, varargin)
             %async_final As final, but calls handler(param, value, err) in a later Poll.
@@ -907,7 +907,7 @@ classdef new < RobotRaconteurStub
         end
         function result = override(obj, auto)
             %OVERRIDE function template override(export auto)
-            result = rrmex('member', obj, 99, auto);
+            result = rrmex('member', obj, 'override', auto);
         end
         function async_override(obj, auto, handler, varargin)
             %async_override As override, but calls handler(param, value, err) in a later Poll.
@@ -915,7 +915,7 @@ classdef new < RobotRaconteurStub
         end
         function result = module(obj, bitand)
             %MODULE function template module(export bitand)
-            result = rrmex('member', obj, 100, bitand);
+            result = rrmex('member', obj, 'module', bitand);
         end
         function async_module(obj, bitand, handler, varargin)
             %async_module As module, but calls handler(param, value, err) in a later Poll.

@@ -27,10 +27,10 @@ classdef Node < RobotRaconteurStub
                 }, varargin{:});
         end
         function value = get.Error(obj)
-            value = rrmex('member', obj, 0);
+            value = rrmex('member', obj, 'Error');
         end
         function set.Error(obj, value)
-            rrmex('member', obj, 0, value);
+            rrmex('member', obj, 'Error', value);
         end
         function value = get_Error(obj)
             %get_Error The same as object.Error.
@@ -49,10 +49,10 @@ classdef Node < RobotRaconteurStub
             rr_async(obj, 'async_set_Error', {value}, handler, varargin);
         end
         function value = get.shared_ptr(obj)
-            value = rrmex('member', obj, 1);
+            value = rrmex('member', obj, 'shared_ptr');
         end
         function set.shared_ptr(obj, value)
-            rrmex('member', obj, 1, value);
+            rrmex('member', obj, 'shared_ptr', value);
         end
         function value = get_shared_ptr(obj)
             %get_shared_ptr The same as object.shared_ptr.
@@ -72,7 +72,7 @@ classdef Node < RobotRaconteurStub
         end
         function result = move(obj, std, size_t)
             %MOVE function int32 move(optional std, int32 size_t)
-            result = rrmex('member', obj, 2, std, size_t);
+            result = rrmex('member', obj, 'move', std, size_t);
         end
         function async_move(obj, std, size_t, handler, varargin)
             %async_move As move, but calls handler(param, value, err) in a later Poll.
