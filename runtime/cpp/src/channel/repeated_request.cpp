@@ -20,13 +20,13 @@ Bytes RepeatedRequest::kept(std::span<const std::byte> request) {
 
 void RepeatedRequest::receive(std::span<const std::byte> wire, Bytes& plain, Bytes& reply) {
   while (!wire.empty() && !request_.empty()) {
-    if (tls_->is_open()) {
-      request_.clear();
-    } else if (is_between_records() && wire.front() == request_[repeated_]) {
+    if (is_between_records() && wire.front() == request_[repeated_]) {
       wire = wire.subspan(take_repetition(wire));
     } else if (repeated_ != 0) {  // it was none
       const Bytes begun = std::exchange(request_, {});
       tls_->receive(std::span(begun).first(repeated_), plain, reply);
+    } else if (tls_->is_open()) {
+      request_.clear();
     } else {
       const std::size_t size = take_record(wire);
       tls_->receive(wire.first(size), plain, reply);

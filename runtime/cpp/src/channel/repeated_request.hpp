@@ -13,9 +13,9 @@ namespace rr::channel {
 
 /// The TLS of a server, which tolerates that the client repeats its request for TLS (STARTTLS).
 /// Clients of the reference library sometimes send it a second time in clear, between two messages
-/// of the handshake. It is dropped, and never handled: once, while the handshake lasts, where a
-/// record ends, and only when it is the request byte for byte. All other bytes go to TLS, which
-/// refuses what is no record of its own.
+/// of the handshake, or behind the last one. It is dropped, and never handled: once, until the
+/// first record behind the handshake, where a record ends, and only when it is the request byte for
+/// byte. All other bytes go to TLS, which refuses what is no record of its own.
 class RepeatedRequest final : public Layer {
  public:
   /// What is kept of a request; nothing of one that is larger than those of nodes are.
