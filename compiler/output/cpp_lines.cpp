@@ -106,9 +106,34 @@ std::optional<List> inner_list(const List& outer) {
   return inner;
 }
 
+/// `return {A, B[I]};`: items one below the other, and an index on a line of its own where it has
+/// to.
+std::string braces(std::string_view text, std::size_t indent) {
+  constexpr std::string_view begin = "return {";
+  constexpr std::string_view end = "};";
+  const bool is_returned = text.starts_with(begin) && text.ends_with(end);
+  if (!is_returned || indent + text.size() <= line_width) return std::string(text);
+  const std::size_t column = indent + begin.size();
+  constexpr std::size_t deeper = 4;
+  std::string result(begin);
+  const auto items = items_of(text.substr(begin.size(), text.size() - begin.size() - end.size()));
+  for (const std::string& item : items) {
+    const bool is_last = &item == &items.back();
+    const std::string ended = item + (is_last ? std::string(end) : ",\n" + blanks(column));
+    const std::size_t index = item.find('[');
+    if (column + item.size() + (is_last ? end.size() : 1) <= line_width || index == nowhere) {
+      result += ended;
+    } else {
+      result.append(ended, 0, index).append("\n").append(blanks(column + deeper));
+      result.append(ended, index);
+    }
+  }
+  return result;
+}
+
 std::string call(std::string_view text, std::size_t indent) {
   const std::optional<List> outer = list_of(text);
-  if (!outer) return std::string(text);
+  if (!outer) return braces(text, indent);
   const std::optional<List> inner = inner_list(*outer);
   if (!inner) return list(*outer, indent);
   std::string result = list({.before = outer->before + inner->before,

@@ -102,10 +102,24 @@ def break_list(parts, indent, is_declaration):
     return before[:angle + 1] + here + before[angle + 1:] + here + inside
 
 
+def braces(text, indent):
+    if not text.startswith("return {") or not text.endswith("};") or indent + len(text) <= WIDTH:
+        return text
+    column = indent + len("return {")
+    lines = []
+    items = split_items(text[len("return {"):-2])
+    for number, item in enumerate(items):
+        item += "};" if number + 1 == len(items) else ","
+        if column + len(item) > WIDTH and "[" in item:
+            item = item.replace("[", "\n" + " " * (column + DEEPER) + "[", 1)
+        lines.append(item)
+    return "return {" + joined(lines, column)
+
+
 def call(text, indent):
     outer = split_list(text)
     if not outer:
-        return text
+        return braces(text, indent)
     before, items, after = outer
     inner = split_list(items[0]) if len(items) == 1 else None
     if not inner or inner[2] != ")" or not inner[1]:

@@ -140,6 +140,10 @@ void typed(Runtime& runtime, Call& call) {
 void member(Runtime& runtime, Call& call) {
   const auto object = runtime.handles().get<TypedHandle>(call.handle(0));
   runtime.current = object->connection();
+  if (!mxIsChar(call[1])) {
+    throw Error(ErrorCode::invalid_operation,
+                "the class was generated for another version of the toolbox: run robdef again");
+  }
   const std::string name = call.text(1);
   const TypedMember* const typed = object->typed(name);
   if (typed != nullptr && runtime.may_block()) {

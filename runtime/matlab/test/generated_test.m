@@ -24,6 +24,7 @@
 %!error <not a `experimental.bench.Tool`> experimental.bench.Tool(bench())
 %!error id=RobotRaconteur:InvalidArgument experimental.bench.Bench()
 %!error id=RobotRaconteur:MemberNotFound rrmex('member', bench().rr_h, 'nothing')
+%!error <run robdef again> rrmex('member', bench().rr_h, 2)
 
 %!test % constants, enums and exceptions without a connection
 %! assert(experimental.bench.Constants.LIMIT, int32(42));

@@ -31,7 +31,7 @@ struct rr_at_RobotDevice {
     Name,
     GetProperty,
     SetProperty,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_RobotDevice[rr_at_RobotDevice::rr_count];
@@ -144,7 +144,7 @@ struct rr_at_RobotCamera {
     GetProperty,
     SetProperty,
     GetCurrentStreamFrameCameraBitmap,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_RobotCamera[rr_at_RobotCamera::rr_count];
@@ -281,7 +281,7 @@ struct rr_at_CameraHost {
     robcamera,
     RobotCameraCount,
     RobotDeviceCount,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_CameraHost[rr_at_CameraHost::rr_count];

@@ -33,7 +33,7 @@ struct rr_at_Store {
     at_the_edge,
     beyond_it,
     depth,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Store[rr_at_Store::rr_count];

@@ -57,7 +57,7 @@ struct Machine {
 struct rr_at_Machine {
   enum : ::std::size_t {
     setting,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Machine[rr_at_Machine::rr_count];

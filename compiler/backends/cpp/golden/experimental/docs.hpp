@@ -52,7 +52,7 @@ struct rr_at_Shutters {
     move,
     moved,
     part,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Shutters[rr_at_Shutters::rr_count];

@@ -40,7 +40,7 @@ struct rr_at_Machine {
     history,
     parts,
     limit,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Machine[rr_at_Machine::rr_count];

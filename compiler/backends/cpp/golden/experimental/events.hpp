@@ -30,7 +30,7 @@ struct rr_at_Siren {
     tick,
     raised,
     test,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Siren[rr_at_Siren::rr_count];

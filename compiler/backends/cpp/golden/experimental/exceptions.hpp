@@ -39,7 +39,7 @@ class Overload : public ::rr::Error {
 struct rr_at_Press {
   enum : ::std::size_t {
     close,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Press[rr_at_Press::rr_count];

@@ -38,7 +38,7 @@ struct rr_at_Machine {
     inspect,
     filter,
     a_function_whose_name_is_rather_long,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Machine[rr_at_Machine::rr_count];

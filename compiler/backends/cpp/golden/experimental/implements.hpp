@@ -21,7 +21,7 @@ struct rr_at_Named {
   enum : ::std::size_t {
     name,
     renamed,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Named[rr_at_Named::rr_count];
@@ -80,7 +80,7 @@ struct rr_at_Device {
     name,
     renamed,
     reset,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Device[rr_at_Device::rr_count];
@@ -140,7 +140,7 @@ struct rr_at_Powered {
     name,
     renamed,
     on,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Powered[rr_at_Powered::rr_count];
@@ -214,7 +214,7 @@ struct rr_at_Drive {
     angle,
     torque,
     part,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Drive[rr_at_Drive::rr_count];

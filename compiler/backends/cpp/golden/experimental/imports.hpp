@@ -36,7 +36,7 @@ struct rr_at_Planner {
     plan,
     picture,
     solve,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Planner[rr_at_Planner::rr_count];

@@ -52,7 +52,7 @@ struct rr_at_Sensor {
     force,
     buffer,
     count,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Sensor[rr_at_Sensor::rr_count];
@@ -142,7 +142,7 @@ struct rr_at_Generators {
     relabel,
     trace_a_path_between_points,
     token,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Generators[rr_at_Generators::rr_count];
@@ -338,7 +338,7 @@ struct rr_at_Pipes {
     anything,
     long_ones,
     a_pipe_whose_name_is_so_long_that_its_line_has_to_be_broken_somewhere,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Pipes[rr_at_Pipes::rr_count];
@@ -369,7 +369,9 @@ class PipesStub : public virtual ::rr::Stub {
   }
   ::rr::Pipe<::std::optional<::std::map<::std::string, ::rr::MultiArray<Sample>>>>
   a_pipe_whose_name_is_so_long_that_its_line_has_to_be_broken_somewhere() {
-    return {*this, rr_members_Pipes[rr_at::a_pipe_whose_name_is_so_long_that_its_line_has_to_be_broken_somewhere]};
+    return {*this,
+            rr_members_Pipes
+                [rr_at::a_pipe_whose_name_is_so_long_that_its_line_has_to_be_broken_somewhere]};
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
 };
@@ -403,7 +405,9 @@ class PipesSkeleton : public virtual ::rr::Skeleton {
   }
   ::rr::PipeServer<::std::optional<::std::map<::std::string, ::rr::MultiArray<Sample>>>>
   a_pipe_whose_name_is_so_long_that_its_line_has_to_be_broken_somewhere() const {
-    return {*this, rr_members_Pipes[rr_at::a_pipe_whose_name_is_so_long_that_its_line_has_to_be_broken_somewhere]};
+    return {*this,
+            rr_members_Pipes
+                [rr_at::a_pipe_whose_name_is_so_long_that_its_line_has_to_be_broken_somewhere]};
   }
   [[nodiscard]] const ::rr::ObjectType& rr_object_type() const override;
   void rr_dispatch(::std::size_t member, ::rr::Request& request) override;
@@ -419,7 +423,7 @@ struct rr_at_Callbacks {
     measure,
     hurry,
     a_callback_whose_name_is_rather_long,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Callbacks[rr_at_Callbacks::rr_count];
@@ -561,7 +565,7 @@ struct rr_at_Wires {
     grid,
     anything,
     modes,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Wires[rr_at_Wires::rr_count];
@@ -633,7 +637,7 @@ struct rr_at_Memories {
     sample_grid,
     points,
     point_grid,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Memories[rr_at_Memories::rr_count];
@@ -767,7 +771,7 @@ struct rr_at_Station {
     mode,
     changed,
     generators,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Station[rr_at_Station::rr_count];
@@ -869,7 +873,7 @@ struct rr_at_Reserved {
     union_,
     register_,
     for_,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Reserved[rr_at_Reserved::rr_count];

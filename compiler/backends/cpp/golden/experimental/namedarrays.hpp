@@ -65,7 +65,7 @@ struct rr_at_Arm {
     thumbnail,
     places,
     cross,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Arm[rr_at_Arm::rr_count];

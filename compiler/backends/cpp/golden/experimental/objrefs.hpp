@@ -19,7 +19,7 @@ namespace experimental::objrefs {
 struct rr_at_Joint {
   enum : ::std::size_t {
     angle,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Joint[rr_at_Joint::rr_count];
@@ -90,7 +90,7 @@ struct rr_at_Robot {
     joint_by_name,
     tool,
     tools,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Robot[rr_at_Robot::rr_count];

@@ -58,7 +58,7 @@ struct rr_at_Recorder {
     matrix,
     marked,
     record,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Recorder[rr_at_Recorder::rr_count];

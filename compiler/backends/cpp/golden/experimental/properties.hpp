@@ -51,7 +51,7 @@ struct rr_at_Board {
     page,
     notes,
     view,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Board[rr_at_Board::rr_count];

@@ -492,7 +492,7 @@ struct rr_at_delete {
     final,
     override,
     module,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_delete[rr_at_delete::rr_count];
@@ -3558,7 +3558,7 @@ struct rr_at_new {
     final,
     override,
     module,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_new[rr_at_new::rr_count];
@@ -6325,7 +6325,7 @@ struct rr_at_class {
     final,
     override,
     module,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_class[rr_at_class::rr_count];

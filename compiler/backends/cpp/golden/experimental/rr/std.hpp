@@ -48,7 +48,7 @@ struct rr_at_Node {
     move,
     swap,
     array,
-    rr_count
+    rr_count,
   };
 };
 extern const ::rr::Member rr_members_Node[rr_at_Node::rr_count];
