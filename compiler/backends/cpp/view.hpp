@@ -171,7 +171,7 @@ struct ObjectView {
   bool has_objrefs = false;
   bool uses_index = false;  ///< one of them has an index
   bool has_memories = false;
-  bool has_stored = false;  ///< the Default class stores something
+  bool has_stored = false;   ///< the Default class stores something
   std::string table;         ///< name of its ObjectType
   std::string member_table;  ///< of the array of its members
   std::string implements_table;
