@@ -167,7 +167,7 @@ std::string Outcome::text() const {
   constexpr double mib = 1024 * 1024;
   char line[200];
   std::snprintf(line, sizeof line,
-                "sent %.2f MiB, held %.1f MiB, kept %.1f MiB, p99 idle %.1f ms, attacked %.1f ms, "
+                "sent %.2f MiB, held %.1f MiB, kept %.1f MiB, p99 idle %.3f ms, attacked %.3f ms, "
                 "%zu calls, %zu failed",
                 static_cast<double>(sent) / mib, static_cast<double>(held) / mib,
                 static_cast<double>(kept) / mib, idle_p99, attacked_p99, calls, failures);

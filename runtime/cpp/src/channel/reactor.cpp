@@ -357,7 +357,7 @@ void Reactor::give_way() {
 void Reactor::yield_processor(Time& at) {
   const Time now = Clock::now();
   if (now < at) return;
-  at = now + longest_turn;
+  at = now + longest_slice;
   std::this_thread::yield();
 }
 

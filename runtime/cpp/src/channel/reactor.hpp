@@ -19,6 +19,7 @@
 #include "rr/visibility.hpp"
 #include "runtime/cpp/src/channel/flusher.hpp"
 #include "runtime/cpp/src/channel/late_work.hpp"
+#include "runtime/cpp/src/channel/readers.hpp"
 #include "runtime/cpp/src/channel/thread_share.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/channel/timer_heap.hpp"
@@ -102,6 +103,9 @@ class RR_INSIDE Reactor final : public Watcher {
   void post_for(std::shared_ptr<Pollable> pollable, std::function<void()> work) {
     post({std::move(work), nullptr, std::move(pollable)});
   }
+
+  /// Of the connections that the node has accepted.
+  [[nodiscard]] Readers& readers() { return readers_; }
 
   // A connection counts from when it has a receiver until it has told that one of its end.
   void begin_connection();
@@ -210,6 +214,7 @@ class RR_INSIDE Reactor final : public Watcher {
   const unsigned max_stays_;
   const unsigned reserve_;  // threads for sessions that hold none
   Flusher flusher_;
+  Readers readers_;
   int epoll_ = -1;
   int wake_ = -1;
 

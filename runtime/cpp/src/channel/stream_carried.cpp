@@ -36,7 +36,7 @@ StreamConnection::Received StreamConnection::receive_messages(Scratch& scratch, 
     if (size <= 0) {
       return fail_reading({ErrorCode::connection_error, "the other side closed the connection"});
     }
-    last_received_.store(coarse_now(), std::memory_order_relaxed);
+    note_received();
     may_block = false;
     result = Received::some;
     const std::size_t whole = message_size(frame.bytes, limits());
@@ -70,7 +70,7 @@ StreamConnection::Received StreamConnection::receive_bytes(Scratch& scratch, boo
       }
       return fail_reading({ErrorCode::connection_error, failure});
     }
-    last_received_.store(coarse_now(), std::memory_order_relaxed);
+    note_received();
     may_block = false;
     is_full = true;  // the socket may have more
     if (!was_heard_ && layers_.is_layered() && !layers_.is_proven()) note_peer();

@@ -15,8 +15,6 @@ namespace {
 constexpr Milliseconds memory_pause{40};
 // Who has not opened a session sends small messages: so much is received at once.
 constexpr std::size_t stranger_receive = 8 * 1024;
-// So that others are looked at before a large message is whole.
-constexpr std::size_t largest_receive = std::size_t{128} * 1024;
 
 }  // namespace
 
@@ -48,7 +46,10 @@ bool StreamConnection::is_departed() const { return role_ == Role::server && is_
   if (account_ == nullptr || role_ == Role::client) return room;
   const bool is_stranger =
       !inbox_.is_assembling() && !is_authorised_.load(std::memory_order_relaxed);
-  return room.first(std::min(room.size(), is_stranger ? stranger_receive : largest_receive));
+  const std::size_t largest = is_stranger          ? stranger_receive
+                              : is_beside_others() ? largest_receive_beside_others
+                                                   : largest_receive;
+  return room.first(std::min(room.size(), largest));
 }
 
 // With the read lease, when the account has no room for more of the message that has begun.

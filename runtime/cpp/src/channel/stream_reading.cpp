@@ -6,17 +6,18 @@
 #include <cerrno>
 #include <cstring>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 #include "runtime/cpp/src/channel/strand_turn.hpp"
 #include "runtime/cpp/src/channel/stream_connection.hpp"
+#include "runtime/cpp/src/channel/stream_sizes.hpp"
 
 namespace rr::channel {
 namespace {
 
 // After so many full receives in a row other connections get their chance.
 constexpr int receives_at_once = 16;
-constexpr std::size_t bytes_at_once = std::size_t{128} * 1024;
 
 constexpr std::string_view not_our_protocol = "HTTP/1.1 404 File Not Found\r\n";
 
@@ -117,11 +118,22 @@ void StreamConnection::read_as_reactor(bool until_end) {
       if (may_pin) read_pinned(*scratch);
       return;
     }
-    if (left == 1 || bytes >= bytes_at_once) break;
+    if (left == 1 || bytes >= largest_receive || must_let_others_go(bytes)) break;
     if (!take_read_lease()) return;
   }
   pace_.note_endless();
   read_soon(until_end);
+}
+
+// Pages that are new cost more than the copy into them, so that all of largest_receive may take
+// longer than others should wait: those who want this thread's processor, and those who want it to
+// poll.
+bool StreamConnection::must_let_others_go(std::size_t bytes) const {
+  if (role_ != Role::server || bytes < largest_receive_beside_others || !is_beside_others()) {
+    return false;
+  }
+  std::this_thread::yield();
+  return reactor_->holds_up_others();
 }
 
 StreamConnection::Received StreamConnection::receive(Scratch& scratch, bool may_block,
@@ -155,10 +167,22 @@ StreamConnection::Received StreamConnection::receive(Scratch& scratch, bool may_
                                                           ? "the other side closed the connection"
                                                           : "the connection broke"});
   }
-  last_received_.store(coarse_now(), std::memory_order_relaxed);
+  note_received();
   const auto received = static_cast<std::size_t>(size);
   is_full = received == room.size();
   return take_bytes(scratch, received);
+}
+
+// With the read lease.
+[[gnu::hot]] void StreamConnection::note_received() {
+  const Time now = coarse_now();
+  last_received_.store(now, std::memory_order_relaxed);
+  if (role_ == Role::server) reactor_->readers().note(this, now);
+}
+
+// With the read lease: others are read at this time, too.
+bool StreamConnection::is_beside_others() const {
+  return reactor_->readers().are_several(last_received_.load(std::memory_order_relaxed));
 }
 
 // With the read lease.

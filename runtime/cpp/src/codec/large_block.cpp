@@ -7,6 +7,7 @@
 #include <array>
 #include <mutex>
 #include <new>
+#include <thread>
 #include <utility>
 
 namespace rr::codec {
@@ -22,6 +23,18 @@ std::size_t whole_pages(std::size_t size) {
 
 void give_to_system(LargeBlock block) noexcept {
   if (block.bytes != nullptr) ::munmap(block.bytes, block.size);
+}
+
+// The system takes milliseconds for a block of some MiB, in one piece: others come first between
+// the parts of one that nobody waits for.
+void give_to_system_slowly(LargeBlock block) noexcept {
+  constexpr std::size_t part = std::size_t{512} * 1024;
+  while (block.size > part) {
+    block.size -= part;
+    ::munmap(block.bytes + block.size, part);
+    std::this_thread::yield();
+  }
+  give_to_system(block);
 }
 
 // Blocks that were given back, the latest first.
@@ -67,7 +80,7 @@ class SpareBlocks {
       }
       is_any_left = bytes_ != 0;
     }
-    unmap(dropped);
+    for (const Spare& spare : dropped) give_to_system_slowly(spare.block);
     return is_any_left;
   }
 
