@@ -56,7 +56,7 @@ async function page() {
 }
 
 async function tests() {
-  const entries = readdirSync("test").filter((name) => /\.(?:test|main)\.tsx?$/.test(name)).map((name) => `test/${name}`);
+  const entries = readdirSync("test").filter((name) => /\.(?:test|browser|main)\.tsx?$/.test(name)).map((name) => `test/${name}`);
   await esbuild.build({ ...shared, entryPoints: entries, outdir: "dist-test", platform: "node", format: "esm", outExtension: { ".js": ".mjs" }, sourcemap: "inline", jsx: "automatic", jsxImportSource: "preact", external: ["axe-core"] });
 }
 
