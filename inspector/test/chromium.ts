@@ -249,6 +249,12 @@ export class Page {
     writeFileSync(file, Buffer.from(String(data), "base64"));
   }
 
+  /** The picture of an element, in base64. */
+  async pictureOf(selector: string): Promise<string> {
+    const clip = await this.evaluate<Json>(`(() => { const { x, y, width, height } = document.querySelector(${JSON.stringify(selector)}).getBoundingClientRect(); return { x, y, width, height, scale: 1 }; })()`);
+    return String((await this.send("Page.captureScreenshot", { format: "png", clip })).data);
+  }
+
   async close(): Promise<void> {
     await this.browser.send("Target.closeTarget", { targetId: this.target });
   }

@@ -94,7 +94,7 @@ export async function submit(page: Page, selector: string): Promise<void> {
 
 /** Keeps the files that the page saves from now on in `saved`. */
 export async function catchFiles(page: Page): Promise<void> {
-  await page.evaluate("globalThis.saved = []; { const make = URL.createObjectURL; URL.createObjectURL = (blob) => { blob.arrayBuffer().then((bytes) => saved.push(Array.from(new Uint8Array(bytes)))); return make(blob); }; } undefined");
+  await page.evaluate("if (!globalThis.saved) { const make = URL.createObjectURL; URL.createObjectURL = (blob) => { blob.arrayBuffer().then((bytes) => saved.push(Array.from(new Uint8Array(bytes)))); return make(blob); }; } globalThis.saved = []; undefined");
 }
 
 export async function savedFiles(page: Page, count: number): Promise<Uint8Array[]> {

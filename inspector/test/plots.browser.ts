@@ -43,6 +43,13 @@ describe("Plots, pictures and scenes", allowed, () => {
       const [mat] = await savedFiles(page, 1);
       assert.equal(Buffer.from(mat ?? []).toString("latin1", 0, 10), "MATLAB 5.0");
       assert.ok((await text(page, ".legend")).length > 0);
+      // Arrows move a cursor.
+      const apart = async (): Promise<number> => Number(/([\d.]+) s apart/.exec(await text(page, ".cursors"))?.[1]);
+      const before = await apart();
+      await page.evaluate("document.querySelector('.plot .canvas').focus()");
+      await page.key("ArrowRight");
+      await page.until(`Number(/([\\d.]+) s apart/.exec(document.querySelector('.cursors').innerText)[1]) > ${before}`);
+      assert.ok(Math.abs((await apart()) - before - 0.05) < 1e-3, `${before} to ${await apart()}`);
       await clickText(page, ".panel button", "Go on");
       await clickText(page, ".panel button", "Cursors");
       await shootBoth(page, "plot");
@@ -77,6 +84,12 @@ describe("Plots, pictures and scenes", allowed, () => {
       await page.until("document.querySelectorAll('[data-kind=scene] canvas').length === 2");
       await page.until("document.querySelectorAll('[data-kind=scene] .poses').length === 2");
       await shootBoth(page, "camera");
+      // Arrows turn what is seen.
+      await page.evaluate("document.querySelectorAll('[data-kind=scene] .scene')[1].scrollIntoView()");
+      const seen = await page.pictureOf("[data-kind=scene]:last-of-type .scene");
+      await page.evaluate("document.querySelectorAll('[data-kind=scene] .scene')[1].focus()");
+      await page.key("ArrowLeft");
+      await page.waitFor(async () => (await page.pictureOf("[data-kind=scene]:last-of-type .scene")) !== seen, () => "another look at the scene");
       assert.deepEqual(await faultsInBoth(page), []);
       assert.deepEqual(page.complaints.filter((one) => !aboutDrawing.test(one)), []);
     }));
