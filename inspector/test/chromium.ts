@@ -202,7 +202,7 @@ export class Page {
   async until(expression: string, what = expression): Promise<void> {
     await this.waitFor(
       () => this.evaluate<boolean>(`Boolean(${expression})`),
-      async () => `${what}; the page says:\n${(await this.evaluate<string>("document.body.innerText")).slice(0, 3000)}\n${this.complaints.join("\n")}`,
+      async () => `${what}; the page says:\n${(await this.evaluate<string>("document.body.innerText")).slice(-6000)}\n${this.complaints.join("\n")}`,
     );
   }
 

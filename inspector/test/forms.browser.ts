@@ -62,6 +62,7 @@ describe("The page", allowed, () => {
   it("shows objects, and sets properties by forms made from types", () =>
     both.browser.with(address, {}, async (page) => {
       const { state } = both.workshop;
+      const firstSettings = state.settings;
       await connect(page, both.workshop.url("bench"));
       await page.until("document.querySelectorAll('[role=treeitem]').length === 5", "the bench and four tools");
       await page.until("/0.25 m\\/s/.test(document.querySelector('[data-member=speed]').innerText)");
@@ -95,6 +96,18 @@ describe("The page", allowed, () => {
       assert.equal(mode, 10);
       assert.equal(serial, 9007199254740993n);
       assert.deepEqual(await faultsInBoth(page), []);
+      // A field with a million numbers would block the page.
+      state.settings = { ...(state.settings as object), bytes: new Uint8Array(1_000_000).fill(7) };
+      await page.until("/1000000 items/.test(document.querySelector('[data-member=settings] .current').innerText) || /7, 7, 7/.test(document.querySelector('[data-member=settings] .current').innerText)");
+      await page.click("[aria-label='Edit settings']");
+      await page.until("!document.querySelector('[data-member=settings] form')");
+      await page.click("[aria-label='Edit settings']");
+      await page.until("/1000000 numbers, too many to edit here/.test(document.querySelector('[data-member=settings] form')?.innerText)");
+      await choose(page, `${form} select`, "0");
+      await submit(page, form);
+      await page.until("/mode: idle/.test(document.querySelector('[data-member=settings] .current').innerText)");
+      assert.equal((state.settings as { bytes: Uint8Array }).bytes.length, 1_000_000);
+      state.settings = firstSettings;
       assert.deepEqual(page.complaints, []);
     }));
 

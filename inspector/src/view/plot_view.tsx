@@ -217,7 +217,7 @@ function timeLabels(times: readonly number[]): string[] {
   return times.map((time) => {
     if (time < 1e8) return `${rounded(Number(time.toFixed(6)))} s`;
     const text = clock(time);
-    return step >= 1 ? text.slice(0, 8) : step >= 0.001 ? text.slice(3) : `${text.slice(6)}${(time % 0.001).toFixed(6).slice(5)}`;
+    return step >= 1 && Number.isInteger(step) ? text.slice(0, 8) : step >= 0.1 ? text.slice(0, 10) : step >= 0.001 ? text.slice(3) : `${text.slice(6)}${(time % 0.001).toFixed(6).slice(5)}`;
   });
 }
 
