@@ -34,7 +34,10 @@ describe("The reference library's test server", allowed, () => {
       const names = await page.evaluate<string[]>("[...document.querySelectorAll('.member.property')].filter((one) => one.querySelector('.current .value:not(.none)') && one.querySelector('[aria-label^=Edit]')).map((one) => one.dataset.member)");
       assert.ok(names.length > 45, `${names.length} properties`);
       const form = (name: string): string => `[data-member=${name}] form`;
-      for (const name of names.filter((one) => one !== "d1")) {
+      // Its test server ends when a map or struct is not the one that it wants.
+      const plain = names.filter((one) => /^(?:d|s|i8_|u8_|i16_|u16_|i32_|u32_|i64_|u64_)\w*\d$|huge/.test(one) && one !== "d1");
+      assert.ok(plain.length > 20, plain.join(", "));
+      for (const name of plain) {
         await page.evaluate(`document.querySelector("[aria-label='Edit ${name}']").click()`);
         await page.until(`document.querySelector(${JSON.stringify(form(name))})`);
         await page.evaluate("document.querySelector('[aria-live]').innerText = ''");
