@@ -56,8 +56,20 @@ async function page() {
 }
 
 async function tests() {
-  const entries = readdirSync("test").filter((name) => /\.(?:test|main)\.tsx?$/.test(name)).map((name) => `test/${name}`);
+  const entries = readdirSync("test").filter((name) => /\.(?:test|browser|main)\.tsx?$/.test(name)).map((name) => `test/${name}`);
   await esbuild.build({ ...shared, entryPoints: entries, outdir: "dist-test", platform: "node", format: "esm", outExtension: { ".js": ".mjs" }, sourcemap: "inline", jsx: "automatic", jsxImportSource: "preact", external: ["axe-core"] });
+  // Tests of the codec, for a page: what they use of Node is replaced.
+  const inPage = (name) => new URL(`test/in_page/${name}.ts`, import.meta.url).pathname;
+  await esbuild.build({
+    ...shared,
+    entryPoints: ["captures", "codec", "values"].map((name) => ({ in: `../runtime/typescript/test/${name}.test.ts`, out: name })),
+    outdir: "dist-test/in_page",
+    platform: "browser",
+    format: "iife",
+    nodePaths: ["node_modules"],
+    inject: [inPage("globals")],
+    alias: { ...alias, "node:test": inPage("node_test"), "node:assert/strict": inPage("assert"), "node:fs": inPage("files"), "node:path": inPage("files") },
+  });
 }
 
 await (process.argv[2] === "tests" ? tests() : page());

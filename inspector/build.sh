@@ -11,8 +11,8 @@ exec 9>"$folder/lock"
 flock 9
 package=$folder/inspector
 mkdir -p "$package" "$folder/runtime/typescript"
-rm -rf "$package"/{src,test} "$folder/runtime/typescript/src"
-cp -r "$top/runtime/typescript/src" "$folder/runtime/typescript"
+rm -rf "$package"/{src,test,dist-test} "$folder"/runtime/typescript/{src,test}
+cp -r "$top"/runtime/typescript/{src,test} "$folder/runtime/typescript"
 cp -r "$here"/{src,test} "$package"
 cp "$here"/{package.json,package-lock.json,.npmrc,tsconfig.json,eslint.config.js,build.mjs} "$package"
 cd "$package"

@@ -6,6 +6,12 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import type { Readable, Writable } from "node:stream";
 
+export interface PageOptions {
+  readonly width?: number;
+  readonly height?: number;
+  readonly scheme?: "light" | "dark";
+}
+
 type Json = Readonly<Record<string, unknown>>;
 
 interface Pending {
@@ -13,7 +19,27 @@ interface Pending {
   readonly reject: (error: Error) => void;
 }
 
-/** A browser without a window. Close it, or it stays. */
+/** How long a page may take before a test gives up: long, since machines are busy at times. */
+const patience = Number(process.env.ROBDEF_PATIENCE ?? 180) * 1000;
+
+/** Browsers that run: none is left behind when a test ends early. */
+const running = new Set<ChildProcess>();
+process.on("exit", () => {
+  for (const one of running) kill(one);
+});
+for (const name of ["SIGTERM", "SIGINT", "SIGHUP"] as const) process.on(name, () => process.exit(1));
+
+/** Ends a browser with all of its processes, which are a group. */
+function kill({ pid }: ChildProcess): void {
+  if (pid === undefined) return;
+  try {
+    process.kill(-pid, "SIGKILL");
+  } catch {
+    // It has ended.
+  }
+}
+
+/** A browser without a window. Close it, or it stays until the test ends. */
 export class Chromium {
   private readonly profile = mkdtempSync(join(tmpdir(), "inspector-"));
   private readonly process: ChildProcess;
@@ -22,21 +48,32 @@ export class Chromium {
   private readonly pages = new Map<string, Page>();
   private last = 0;
   private rest = "";
+  private isOver = false;
 
   constructor(program = process.env.ROBDEF_BROWSER ?? "chromium") {
     const flags = [
       "--headless=new", "--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-dev-shm-usage", "--remote-debugging-pipe",
       "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars", "--force-color-profile=srgb", `--user-data-dir=${this.profile}`, "about:blank",
     ];
-    this.process = spawn(program, flags, { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
+    this.process = spawn(program, flags, { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"], detached: true });
+    running.add(this.process);
     this.out = this.process.stdio[3] as Writable;
     (this.process.stdio[4] as Readable).setEncoding("utf8").on("data", (text: string) => {
       const parts = (this.rest + text).split("\0");
       this.rest = parts.pop() ?? "";
       for (const part of parts) this.take(JSON.parse(part) as Json);
     });
-    this.process.on("exit", () => {
-      for (const { reject } of this.pending.values()) reject(new Error("the browser has ended"));
+    const ended = (why: string): void => {
+      running.delete(this.process);
+      this.isOver = true;
+      for (const { reject } of this.pending.values()) reject(new Error(why));
+      this.pending.clear();
+    };
+    this.process.on("exit", (code, name) => {
+      ended(`the browser has ended (${code ?? name ?? ""})`);
+    });
+    this.process.on("error", (error) => {
+      ended(`${program}: ${error.message}`);
     });
     this.out.on("error", () => undefined);
   }
@@ -44,7 +81,19 @@ export class Chromium {
   send(method: string, params: Json = {}, sessionId?: string): Promise<Json> {
     const id = ++this.last;
     return new Promise((resolve, reject) => {
-      this.pending.set(id, { resolve, reject });
+      if (this.isOver) {
+        reject(new Error("the browser has ended"));
+        return;
+      }
+      const timer = setTimeout(() => {
+        this.pending.delete(id);
+        reject(new Error(`no answer within ${patience / 1000} s to ${method} ${String(params.expression ?? "").slice(0, 200)}`));
+      }, patience);
+      const over = <T>(then: (value: T) => void) => (value: T): void => {
+        clearTimeout(timer);
+        then(value);
+      };
+      this.pending.set(id, { resolve: over(resolve), reject: over(reject) });
       this.out.write(`${JSON.stringify({ id, method, params, ...(sessionId === undefined ? {} : { sessionId }) })}\0`);
     });
   }
@@ -62,7 +111,7 @@ export class Chromium {
   }
 
   /** A page of so many pixels, at a URL. */
-  async open(url: string, { width = 1280, height = 860, scheme = "light" }: { width?: number; height?: number; scheme?: "light" | "dark" } = {}): Promise<Page> {
+  async open(url: string, { width = 1280, height = 860, scheme = "light" }: PageOptions = {}): Promise<Page> {
     const { targetId } = await this.send("Target.createTarget", { url: "about:blank" });
     const { sessionId } = await this.send("Target.attachToTarget", { targetId, flatten: true });
     const page = new Page(this, String(sessionId), String(targetId));
@@ -74,12 +123,23 @@ export class Chromium {
     return page;
   }
 
+  /** Opens a page, does something with it, and closes it whatever comes of that. */
+  async with(url: string, options: PageOptions, use: (page: Page) => Promise<void>): Promise<void> {
+    const page = await this.open(url, options);
+    try {
+      await use(page);
+    } finally {
+      await page.close().catch(() => undefined);
+    }
+  }
+
   async close(): Promise<void> {
-    const ended = new Promise((resolve) => this.process.once("exit", resolve));
-    await this.send("Browser.close").catch(() => undefined);
-    const timer = setTimeout(() => this.process.kill("SIGKILL"), 5000);
+    const ended = this.isOver ? undefined : new Promise((resolve) => this.process.once("exit", resolve));
+    void this.send("Browser.close").catch(() => undefined);
+    const timer = setTimeout(() => { kill(this.process); }, 10_000);
     await ended;
     clearTimeout(timer);
+    kill(this.process);
     rmSync(this.profile, { recursive: true, force: true, maxRetries: 5 });
   }
 }
@@ -139,13 +199,18 @@ export class Page {
   }
 
   /** Waits until an expression is true. */
-  async until(expression: string, what = expression, timeout = 30_000): Promise<void> {
-    const end = Date.now() + timeout;
-    while (!(await this.evaluate<boolean>(`Boolean(${expression})`))) {
-      if (Date.now() > end) {
-        const text = await this.evaluate<string>("document.body.innerText");
-        throw new Error(`not within ${timeout} ms: ${what}; the page says:\n${text.slice(0, 3000)}\n${this.complaints.join("\n")}`);
-      }
+  async until(expression: string, what = expression): Promise<void> {
+    await this.waitFor(
+      () => this.evaluate<boolean>(`Boolean(${expression})`),
+      async () => `${what}; the page says:\n${(await this.evaluate<string>("document.body.innerText")).slice(-6000)}\n${this.complaints.join("\n")}`,
+    );
+  }
+
+  /** Waits until a test has what it wants, for as long as a busy machine may take. */
+  async waitFor(isThere: () => boolean | Promise<boolean>, what: () => string | Promise<string>): Promise<void> {
+    const end = Date.now() + patience;
+    while (!(await isThere())) {
+      if (Date.now() > end) throw new Error(`not within ${patience / 1000} s: ${await what()}`);
       await new Promise((resolve) => setTimeout(resolve, 20));
     }
   }
@@ -182,6 +247,12 @@ export class Page {
   async screenshot(file: string): Promise<void> {
     const { data } = await this.send("Page.captureScreenshot", { format: "png" });
     writeFileSync(file, Buffer.from(String(data), "base64"));
+  }
+
+  /** The picture of an element, in base64. */
+  async pictureOf(selector: string): Promise<string> {
+    const clip = await this.evaluate<Json>(`(() => { const { x, y, width, height } = document.querySelector(${JSON.stringify(selector)}).getBoundingClientRect(); return { x, y, width, height, scale: 1 }; })()`);
+    return String((await this.send("Page.captureScreenshot", { format: "png", clip })).data);
   }
 
   async close(): Promise<void> {

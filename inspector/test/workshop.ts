@@ -202,7 +202,8 @@ export async function startWorkshop({ origins = [], allowLocalPages = false, sta
         case "mirror":
           return args[0];
         case "slow":
-          await new Promise((resolve) => setTimeout(resolve, (args[0] as number) * 1000));
+          // Nobody waits for it when the test is over.
+          await new Promise((resolve) => setTimeout(resolve, (args[0] as number) * 1000).unref());
           return args[0];
         default:
           throw new RRError(ErrorCode.RemoteError, `jammed: ${String(args[0])}`, { errorName: "experimental.workshop.Jammed", subname: "belt" });
@@ -213,9 +214,9 @@ export async function startWorkshop({ origins = [], allowLocalPages = false, sta
         ? (async function* (): AsyncGenerator<number> {
             for (let i = 1; i <= (args[0] as number); ++i) yield i;
           })()
-        : (async function* (): AsyncGenerator<number> {
-            for await (const value of args[1] as AsyncIterable<number>) yield value * (args[0] as number);
-          })(),
+        : {
+            next: (value: unknown) => ({ value: (value as number) * (args[0] as number), done: false }),
+          },
     object: (objref, index) => {
       if (objref === "tool") return toolOf("the tool");
       const found = objref === "tools" ? tools.get(String(index)) : toolOf(String(index));

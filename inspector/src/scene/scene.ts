@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws poses, points, arrows and chains of joints. A bundle of its own; see load.ts.
-import { AmbientLight, ArrowHelper, AxesHelper, BufferGeometry, Color, CylinderGeometry, DirectionalLight, Float32BufferAttribute, GridHelper, Group, Line, LineBasicMaterial, Mesh, MeshLambertMaterial, PerspectiveCamera, Quaternion, Scene as ThreeScene, SphereGeometry, Vector3, WebGLRenderer, type Object3D } from "three";
+import { AmbientLight, ArrowHelper, AxesHelper, BufferGeometry, Color, CylinderGeometry, DirectionalLight, Float32BufferAttribute, GridHelper, Group, Line, LineBasicMaterial, Mesh, MeshLambertMaterial, PerspectiveCamera, Quaternion, Scene as ThreeScene, SphereGeometry, Spherical, Vector3, WebGLRenderer, type Object3D } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Shape, Vec3 } from "./poses.js";
 
@@ -8,6 +8,8 @@ export interface Scene {
   /** What is there from now on: shapes, and chains as points that links connect. */
   show(shapes: readonly Shape[], chains: readonly (readonly Vec3[])[]): void;
   render(): void;
+  /** Turns by so many radians around and up, and goes as many times as far away: for keys. */
+  turn(around: number, up: number, farther: number): void;
   /** Takes the colors of the page again. */
   recolor(): void;
   dispose(): void;
@@ -109,6 +111,17 @@ export function makeScene(place: HTMLElement): Scene {
       if (!isDirty) return;
       isDirty = false;
       renderer.render(scene, camera);
+    },
+    turn: (around, up, farther) => {
+      const from = camera.position.clone().sub(controls.target);
+      const seen = new Spherical().setFromVector3(from.applyAxisAngle(new Vector3(1, 0, 0), -Math.PI / 2));
+      seen.theta += around;
+      seen.phi -= up;
+      seen.radius *= farther;
+      seen.makeSafe();
+      camera.position.copy(controls.target).add(from.setFromSpherical(seen).applyAxisAngle(new Vector3(1, 0, 0), Math.PI / 2));
+      controls.update();
+      isDirty = true;
     },
     recolor: () => {
       scene.remove(grid);

@@ -169,6 +169,7 @@ function Help(): VNode {
         <dt><kbd>t</kbd></dt><dd>tree of objects; arrows walk through it, Enter selects</dd>
         <dt><kbd>m</kbd></dt><dd>the object</dd>
         <dt><kbd>f</kbd></dt><dd>filter members</dd>
+        <dt><kbd>←</kbd> <kbd>→</kbd></dt><dd>in a plot: the newer cursor, with Shift the older one; in 3-D all arrows turn, <kbd>+</kbd> and <kbd>−</kbd> zoom</dd>
         <dt><kbd>?</kbd></dt><dd>this list</dd>
       </dl>
     </section>

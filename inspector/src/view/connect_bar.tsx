@@ -50,7 +50,7 @@ export function Failure({ app }: { app: App }): VNode | null {
   if (!failure) return null;
   return (
     <section class="card failure" role="alert" aria-label="Cannot connect">
-      <h2>Cannot connect</h2>
+      <h2>{failure.needsLogin ? "Log in to connect" : "Cannot connect"}</h2>
       <p class="url">{failure.url}</p>
       <p class="why">{failure.why}</p>
       {failure.what.length === 0 ? null : (
@@ -96,7 +96,7 @@ export function LoginForm({ title, onLogin }: { title: string; onLogin: (user: s
       <label>
         Password <input name="password" type="password" autocomplete="current-password" />
       </label>
-      <button type="submit">{title}</button>
+      <button type="submit" class="primary">{title}</button>
       {problem.value === "" ? null : <p class="problem" role="alert">{problem.value}</p>}
     </form>
   );

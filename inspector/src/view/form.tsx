@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Forms made from types.
 import type { ComponentChildren, VNode } from "preact";
-import { useId } from "preact/hooks";
+import { useId, useMemo } from "preact/hooks";
 import type { Definitions, EnumType, ValueType } from "@robdef/runtime";
 import { emptyDraft, mayBeNull, rangeOf, splitNumbers, type Draft, type Problem } from "../model/draft.js";
 import { isBounded, item, shortType } from "../model/types.js";
@@ -21,6 +21,9 @@ export interface FormProps {
 
 /** Blocks of up to so many numbers are a grid of fields. */
 const mostCells = 64;
+
+/** Fields with longer texts block a browser. */
+const mostRowText = 50_000;
 
 /** What a value of a type is entered in. */
 export function ValueForm(props: FormProps): VNode {
@@ -181,8 +184,16 @@ function Choice(props: FormProps & { choices: EnumType }): VNode {
 function Row(props: FormProps): VNode {
   const { draft, onChange, type } = props;
   const text = textIn(draft);
-  const count = splitNumbers(text).length;
+  const count = useMemo(() => splitNumbers(text).length, [text]);
   const { array } = type;
+  if (text.length > mostRowText) {
+    return (
+      <Part {...props}>
+        <span class="hint">{count} numbers, too many to edit here; they stay as they are.</span>{" "}
+        <button type="button" class="small" onClick={() => { onChange({ kind: "text", text: "" }); }}>Replace {props.label}</button>
+      </Part>
+    );
+  }
   const wanted = array.kind === "array" && array.length !== undefined ? ` of ${array.isMaximum ? "at most " : ""}${array.length}` : "";
   // Problems of single items are shown with the row.
   const inside = props.problems.filter((one) => one.where.startsWith(`${props.where}[`));

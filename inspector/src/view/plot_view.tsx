@@ -182,9 +182,25 @@ export function PlotView({ model, label, at, onChoose, range }: PlotProps): VNod
       removeEventListener("robdef-theme", again);
     };
   }, []);
+  const onKey = (event: KeyboardEvent): void => {
+    const plot = plotRef.current;
+    if (!plot || (event.key !== "ArrowLeft" && event.key !== "ArrowRight")) return;
+    event.preventDefault();
+    const { min = 0, max = 0 } = plot.scales.x ?? {};
+    const step = ((max - min) / 200) * (event.key === "ArrowLeft" ? -1 : 1);
+    const moved = (time: number | undefined): number => Math.max(min, Math.min(max, (time ?? (min + max) / 2) + step));
+    if (onChoose) {
+      onChoose(moved(at));
+      return;
+    }
+    const cursors = [...model.cursors.value];
+    const which = event.shiftKey && cursors.length > 1 ? 0 : Math.max(0, cursors.length - 1);
+    cursors[which] = moved(cursors[which]);
+    model.cursors.value = cursors;
+  };
   return (
     <div class="plot" role="group" aria-label={label}>
-      <div ref={place} class="canvas" role="img" aria-label={`${label}: ${model.shown.length} lines`} />
+      <div ref={place} class="canvas" role="img" aria-label={`${label}: ${model.shown.length} lines. Arrow keys move a cursor, with Shift the other one.`} tabIndex={0} onKeyDown={onKey} />
       {model.lines.length === 0 ? <p class="empty">No values yet.</p> : null}
       <Legend model={model} at={at} />
     </div>
@@ -201,7 +217,7 @@ function timeLabels(times: readonly number[]): string[] {
   return times.map((time) => {
     if (time < 1e8) return `${rounded(Number(time.toFixed(6)))} s`;
     const text = clock(time);
-    return step >= 1 ? text.slice(0, 8) : step >= 0.001 ? text.slice(3) : `${text.slice(6)}${(time % 0.001).toFixed(6).slice(5)}`;
+    return step >= 1 && Number.isInteger(step) ? text.slice(0, 8) : step >= 0.1 ? text.slice(0, 10) : step >= 0.001 ? text.slice(3) : `${text.slice(6)}${(time % 0.001).toFixed(6).slice(5)}`;
   });
 }
 

@@ -12,10 +12,22 @@ import { loadScene } from "../scene/load.js";
 import type { Scene } from "../scene/scene.js";
 import { sourceTitle } from "./panels.js";
 
+/** What keys do: radians around, radians up, and how many times as far. */
+const turns: Readonly<Record<string, readonly [number, number, number] | undefined>> = {
+  ArrowLeft: [-0.1, 0, 1],
+  ArrowRight: [0.1, 0, 1],
+  ArrowUp: [0, 0.1, 1],
+  ArrowDown: [0, -0.1, 1],
+  "+": [0, 0, 0.9],
+  "=": [0, 0, 0.9],
+  "-": [0, 0, 1.1],
+};
+
 export function ScenePanel({ app, panel }: { app: App; panel: Panel }): VNode {
   const place = useRef<HTMLDivElement>(null);
   const problem = useSignal("");
   const texts = useSignal<readonly string[]>([]);
+  const shown = useRef<Scene | undefined>(undefined);
   const keys = panel.sources.map((one) => feedKey(one.object, one.member.name)).join("\n");
   useEffect(() => {
     const values = new Map<string, Shape[]>();
@@ -65,6 +77,7 @@ export function ScenePanel({ app, panel }: { app: App; panel: Panel }): VNode {
         if (isOver || !place.current) return;
         try {
           scene = make(place.current);
+          shown.current = scene;
           draw();
         } catch (error) {
           problem.value = `This browser shows no 3-D: ${error instanceof Error ? error.message : String(error)}`;
@@ -77,15 +90,25 @@ export function ScenePanel({ app, panel }: { app: App; panel: Panel }): VNode {
     const again = (): void => {
       scene?.recolor();
     };
+    const dark = matchMedia("(prefers-color-scheme: dark)");
+    dark.addEventListener("change", again);
     addEventListener("robdef-theme", again);
     return () => {
       isOver = true;
+      dark.removeEventListener("change", again);
       removeEventListener("robdef-theme", again);
       cancelAnimationFrame(request);
       for (const stop of stops) stop();
+      shown.current = undefined;
       scene?.dispose();
     };
   }, [keys]);
+  const onKey = (event: KeyboardEvent): void => {
+    const turn = turns[event.key];
+    if (!turn || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    shown.current?.turn(...turn);
+  };
   const title = panel.sources.map(sourceTitle).join(", ");
   return (
     <section class="card panel" data-kind="scene" aria-label={`3-D view of ${title}`}>
@@ -96,7 +119,7 @@ export function ScenePanel({ app, panel }: { app: App; panel: Panel }): VNode {
         </span>
       </header>
       {problem.value === "" ? null : <p class="problem" role="alert">{problem.value}</p>}
-      <div ref={place} class="scene" role="img" aria-label={`3-D view of ${title}; x red, y green, z blue. Drag to turn, wheel to zoom.`} />
+      <div ref={place} class="scene" role="img" aria-label={`3-D view of ${title}; x red, y green, z blue. Drag or use the arrow keys to turn; wheel, plus or minus to zoom.`} tabIndex={0} onKeyDown={onKey} />
       {texts.value.length === 0 ? <p class="empty">Nothing to show yet.</p> : <ul class="poses">{texts.value.map((one) => <li key={one}>{one}</li>)}</ul>}
     </section>
   );

@@ -83,7 +83,7 @@ export function StreamCard(props: MemberProps): VNode {
       actions={
         <>
           <ShowButtons {...props} />
-          {member.isWriteonly ? null : <button type="button" class="small" aria-pressed={use !== undefined} aria-label={`Watch ${member.name}`} onClick={watch}>{use ? "Stop" : "Watch"}</button>}
+          {member.isWriteonly ? null : <button type="button" class="small" aria-label={`${use ? "Stop" : "Watch"} ${member.name}`} onClick={watch}>{use ? "Stop" : "Watch"}</button>}
           {isWire && !member.isWriteonly ? <button type="button" class="small" aria-label={`Peek ${member.name}`} onClick={peek}>Peek</button> : null}
           {member.isReadonly ? null : <button type="button" class="small" aria-expanded={isSending.value} aria-label={`${isWire ? "Poke" : "Send"} ${member.name}…`} onClick={() => { isSending.value = !isSending.value; }}>{isWire ? "Poke…" : "Send…"}</button>}
         </>
@@ -208,16 +208,19 @@ export function CallbackCard(props: MemberProps): VNode {
         </label>
       }
     >
-      {(rule.value === "fixed" || (rule.value === "ask" && questions.value.length > 0)) && !isVoid ? <div>{form.forms()}</div> : null}
+      {rule.value === "fixed" && !isVoid ? (
+        <form onSubmit={(event) => { event.preventDefault(); }} aria-label={`Answer to ${member.name}`}>{form.forms()}</form>
+      ) : null}
       {rule.value === "none" ? null : <p class="hint">{answered.value} {answered.value === 1 ? "call" : "calls"} so far</p>}
-      {questions.value.map((question) => (
-        <div class="question" key={question.id} role="group" aria-label={`Call of ${member.name}`}>
+      {questions.value.map((question, i) => (
+        <form class="question" key={question.id} aria-label={`Call of ${member.name}`} onSubmit={(event) => { event.preventDefault(); answer(question); }}>
           <p>
-            <time>{clock(question.at)}</time> {member.name}({member.parameters.map(({ name, type }, i) => `${name}: ${valueText(type, question.args[i])}`).join(", ")})
+            <time>{clock(question.at)}</time> {member.name}({member.parameters.map(({ name, type }, at) => `${name}: ${valueText(type, question.args[at])}`).join(", ")})
           </p>
-          <button type="button" class="small primary" onClick={() => { answer(question); }}>Answer</button>
+          {i === 0 && !isVoid ? form.forms() : null}
+          <button type="submit" class="small primary" disabled={i > 0 && !isVoid}>Answer</button>
           <button type="button" class="small" onClick={() => { question.refuse(new Error("refused by a person")); finish(question); }}>Refuse</button>
-        </div>
+        </form>
       ))}
     </MemberCard>
   );
