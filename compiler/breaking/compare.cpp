@@ -31,13 +31,13 @@ void report_missing(const Pairs<Thing>& pairs, Code code, const Definition& now,
   for (const auto& pair : pairs.renamed) {
     comparison.changes
         .add(code, pair.before->span, pair.now->span,
-             noun(*pair.before) + " " + quoted(pair.before->name) + " is now called " +
-                 quoted(pair.now->name))
-        .help("keep the name " + quoted(pair.before->name));
+             noun(*pair.before) + " " + in_ticks(pair.before->name) + " is now called " +
+                 in_ticks(pair.now->name))
+        .help("keep the name " + in_ticks(pair.before->name));
   }
   for (const Thing* const thing : pairs.removed) {
     comparison.changes
-        .add(code, thing->span, now.span, noun(*thing) + " " + quoted(thing->name) + " is gone")
+        .add(code, thing->span, now.span, noun(*thing) + " " + in_ticks(thing->name) + " is gone")
         .help("keep it, or give the new version of the service another name");
   }
 }
@@ -57,10 +57,11 @@ void compare_versions(const Definition& before, const Definition& now,
   if (before.version_spelling == ast::VersionSpelling::none) return;
   const bool is_gone = now.version_spelling == ast::VersionSpelling::none;
   if (!is_gone && now.version <= before.version) return;
-  const std::string was = quoted(model::text_of(before.version));
-  const std::string message = is_gone ? quoted(now.name) + " declares no version, it was " + was
-                                      : quoted(now.name) + " needs version " +
-                                            quoted(model::text_of(now.version)) + ", it was " + was;
+  const std::string was = in_ticks(model::text_of(before.version));
+  const std::string message = is_gone
+                                  ? in_ticks(now.name) + " declares no version, it was " + was
+                                  : in_ticks(now.name) + " needs version " +
+                                        in_ticks(model::text_of(now.version)) + ", it was " + was;
   comparison.changes
       .add(Code::R0748, before.version_span, is_gone ? now.span : now.version_span, message)
       .help("leave it at `stdver " + model::text_of(before.version) + "`");
@@ -78,7 +79,7 @@ void compare_definition(const DefinitionPair& pair, const Comparison& comparison
   if (pair.is_renamed) {
     comparison.changes
         .add(Code::R0701, before.span, now.span,
-             "service " + quoted(before.name) + " is now called " + quoted(now.name))
+             "service " + in_ticks(before.name) + " is now called " + in_ticks(now.name))
         .help("serve both, under two names, while old programs are in use");
   }
   compare_versions(before, now, comparison);
@@ -109,7 +110,7 @@ void compare(const Model& before, const Model& now, bool now_is_partial, Changes
   const Comparison comparison{pairing, implemented, changes};
   for (const Definition* const definition : pairing.removed()) {
     changes.add(Code::R0701, definition->span, std::nullopt,
-                "service " + quoted(definition->name) + " is gone");
+                "service " + in_ticks(definition->name) + " is gone");
   }
   for (const DefinitionPair& pair : pairing.definitions()) compare_definition(pair, comparison);
 }

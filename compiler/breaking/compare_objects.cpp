@@ -66,7 +66,7 @@ class MemberComparison {
       : before_(before),
         now_(now),
         comparison_(comparison),
-        name_(std::string(model::name_of(now.kind)) + " " + quoted(object.name, now.name)) {}
+        name_(std::string(model::name_of(now.kind)) + " " + in_ticks(object.name, now.name)) {}
 
   void compare() const {
     if (before_.kind != now_.kind) {
@@ -112,8 +112,8 @@ class MemberComparison {
           name_ + " has " + index_text(now_.index) + ", it had " + index_text(before_.index));
     }
     if (compare_types(before_.type, now_.type, comparison_.pairing) == TypeChange::none) return;
-    const std::string message = name_ + " leads to " + quoted(text_of(now_.type)) + ", it was " +
-                                quoted(text_of(before_.type));
+    const std::string message = name_ + " leads to " + in_ticks(text_of(now_.type)) + ", it was " +
+                                in_ticks(text_of(before_.type));
     add(is_still_such_an_object() ? Code::R0747 : Code::R0718, message);
   }
 
@@ -141,22 +141,23 @@ class MemberComparison {
     for (const auto& pair : pairs.renamed) {
       changes()
           .add(Code::R0709, pair.before->span, pair.now->span,
-               parameter + quoted(pair.before->name) + of + " is now called " +
-                   quoted(pair.now->name))
-          .help("keep the name " + quoted(pair.before->name));
+               parameter + in_ticks(pair.before->name) + of + " is now called " +
+                   in_ticks(pair.now->name))
+          .help("keep the name " + in_ticks(pair.before->name));
     }
     for (const Parameter* const one : pairs.removed) {
       changes().add(Code::R0708, one->span, now_.span,
-                    parameter + quoted(one->name) + of + " is gone");
+                    parameter + in_ticks(one->name) + of + " is gone");
     }
     for (const Parameter* const one : pairs.added) {
       changes()
-          .add(Code::R0707, before_.span, one->span, parameter + quoted(one->name) + of + " is new")
+          .add(Code::R0707, before_.span, one->span,
+               parameter + in_ticks(one->name) + of + " is new")
           .help("add a " + std::string(model::name_of(now_.kind)) +
                 " with it, of another name, and keep this one");
     }
     for (const auto& pair : pairs.kept) {
-      compare_value({parameter + quoted(pair.now->name) + of, pair.before->span, pair.now->span},
+      compare_value({parameter + in_ticks(pair.now->name) + of, pair.before->span, pair.now->span},
                     pair.before->type, pair.now->type, comparison_);
     }
     compare_order(pairs);
@@ -213,25 +214,25 @@ void compare_as_base(const Object& before, const Object& now, const Pairs<Member
   const auto add = [&](Span old_place, Span new_place, const std::string& what) {
     comparison.changes
         .add(Code::R0749, old_place, new_place,
-             what + ", and other objects implement " + quoted(now.name))
-        .help("make an object that implements " + quoted(now.name) + ", and put it there");
+             what + ", and other objects implement " + in_ticks(now.name))
+        .help("make an object that implements " + in_ticks(now.name) + ", and put it there");
   };
   for (const Member* const member : pairs.added) {
     add(before.span, member->span,
-        std::string(model::name_of(member->kind)) + " " + quoted(now.name, member->name) +
+        std::string(model::name_of(member->kind)) + " " + in_ticks(now.name, member->name) +
             " is new");
   }
   for (const auto& pair : pairs.kept) {
     if (pair.before->kind != pair.now->kind || has_same_modifiers(*pair.before, *pair.now))
       continue;
     add(pair.before->span, pair.now->span,
-        "modifiers of " + quoted(now.name, pair.now->name) + " have changed");
+        "modifiers of " + in_ticks(now.name, pair.now->name) + " have changed");
   }
   const std::unordered_set<const void*> bases(before.implements.begin(), before.implements.end());
   for (std::size_t i = 0; i < now.implements.size(); ++i) {
     if (bases.contains(comparison.pairing.before(now.implements[i]))) continue;
     add(before.span, now.implements_spans[i],
-        quoted(now.name) + " implements " + quoted(now.implements[i]->name) + ", too");
+        in_ticks(now.name) + " implements " + in_ticks(now.implements[i]->name) + ", too");
   }
 }
 
@@ -241,8 +242,8 @@ void compare_implements(const Object& before, const Object& now, const Compariso
   for (std::size_t i = 0; i < before.implements.size(); ++i) {
     if (kept.contains(before.implements[i])) continue;
     comparison.changes.add(Code::R0719, before.implements_spans[i], now.span,
-                           "object " + quoted(now.name) + " no longer implements " +
-                               quoted(before.implements[i]->name));
+                           "object " + in_ticks(now.name) + " no longer implements " +
+                               in_ticks(before.implements[i]->name));
   }
 }
 
@@ -255,13 +256,13 @@ void compare_object(const Object& before, const Object& now, const Comparison& c
     return shape_of(member, comparison.pairing);
   });
   const auto name = [&](const Member& member) {
-    return std::string(model::name_of(member.kind)) + " " + quoted(before.name, member.name);
+    return std::string(model::name_of(member.kind)) + " " + in_ticks(before.name, member.name);
   };
   for (const auto& pair : pairs.renamed) {
     comparison.changes
         .add(Code::R0703, pair.before->span, pair.now->span,
-             name(*pair.before) + " is now called " + quoted(pair.now->name))
-        .help("keep " + quoted(pair.before->name) + " beside the new one");
+             name(*pair.before) + " is now called " + in_ticks(pair.now->name))
+        .help("keep " + in_ticks(pair.before->name) + " beside the new one");
   }
   for (const Member* const member : pairs.removed) {
     comparison.changes.add(Code::R0703, member->span, now.span, name(*member) + " is gone")

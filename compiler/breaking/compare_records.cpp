@@ -40,8 +40,8 @@ class RecordComparison {
     for (const auto& pair : pairs_.renamed) {
       changes()
           .add(Code::R0711, pair.before->span, pair.now->span,
-               name(*pair.before) + " is now called " + quoted(pair.now->name))
-          .help("keep the name " + quoted(pair.before->name));
+               name(*pair.before) + " is now called " + in_ticks(pair.now->name))
+          .help("keep the name " + in_ticks(pair.before->name));
     }
     for (const Field* const field : pairs_.removed) {
       changes().add(Code::R0711, field->span, now_.span, name(*field) + " is gone");
@@ -65,7 +65,7 @@ class RecordComparison {
     if (!has_same_fields()) {
       const bool is_same_row = has_same_row();
       changes().add(is_same_row ? Code::R0746 : Code::R0713, before_.span, now_.span,
-                    "namedarray " + quoted(now_.name) +
+                    "namedarray " + in_ticks(now_.name) +
                         (is_same_row ? " has the same numbers in other fields"
                                      : " has other numbers: " + row_text(now_) + ", it had " +
                                            row_text(before_)));
@@ -75,7 +75,7 @@ class RecordComparison {
       for (const auto& pair : pairs_by_place()) {
         if (pair.before->name == pair.now->name) continue;
         changes().add(Code::R0746, pair.before->span, pair.now->span,
-                      name(*pair.before) + " is now called " + quoted(pair.now->name));
+                      name(*pair.before) + " is now called " + in_ticks(pair.now->name));
       }
     }
   }
@@ -83,13 +83,13 @@ class RecordComparison {
  private:
   [[nodiscard]] Changes& changes() const { return comparison_.changes; }
   [[nodiscard]] std::string name(const Field& field) const {
-    return noun_of(now_) + quoted(now_.name, field.name);
+    return noun_of(now_) + in_ticks(now_.name, field.name);
   }
 
   void report_order(Code code) const {
     changes()
         .add(code, before_.span, now_.span,
-             std::string(model::name_of(now_.kind)) + " " + quoted(now_.name) +
+             std::string(model::name_of(now_.kind)) + " " + in_ticks(now_.name) +
                  " has its fields in another order")
         .help("put them back into the order that they had");
   }
@@ -137,7 +137,7 @@ class RecordComparison {
 
   static std::string row_text(const Record& record) {
     return std::to_string(record.number_count) + " of " +
-           quoted(std::string(model::name_of(record.number)));
+           in_ticks(std::string(model::name_of(record.number)));
   }
 
   const Record& before_;
@@ -152,7 +152,7 @@ void compare_record(const Record& before, const Record& now, const Comparison& c
   compare_constants(before.name, now.span, before.constants, now.constants, comparison);
   if (before.kind != now.kind) {
     comparison.changes.add(Code::R0714, before.span, now.span,
-                           quoted(now.name) + " is a " + std::string(model::name_of(now.kind)) +
+                           in_ticks(now.name) + " is a " + std::string(model::name_of(now.kind)) +
                                ", it was a " + std::string(model::name_of(before.kind)));
     return;
   }

@@ -14,7 +14,7 @@ namespace {
 using model::Constant;
 using model::EnumValue;
 
-std::string was(const model::Type& before) { return ", it was " + quoted(text_of(before)); }
+std::string was(const model::Type& before) { return ", it was " + in_ticks(text_of(before)); }
 
 template <class Value>
 bool is_same(const Constant& before, const Constant& now) {
@@ -66,7 +66,7 @@ std::string value_text(const Constant& before, const Constant& now) {
 
 bool compare_value(const Subject& subject, const model::Type& before, const model::Type& now,
                    const Comparison& comparison) {
-  const std::string type = subject.text + " is " + quoted(text_of(now)) + was(before);
+  const std::string type = subject.text + " is " + in_ticks(text_of(now)) + was(before);
   switch (compare_types(before, now, comparison.pairing)) {
     case TypeChange::none:
       return false;
@@ -90,17 +90,17 @@ void compare_constants(std::string_view scope, Span now_scope, const std::vector
   const auto pairs = pair_up(before, now, [](const Constant&) { return std::uint64_t{0}; });
   for (const Constant* const constant : pairs.removed) {
     comparison.changes.add(Code::R0743, constant->span, now_scope,
-                           "constant " + quoted(scope, constant->name) + " is gone");
+                           "constant " + in_ticks(scope, constant->name) + " is gone");
   }
   for (const auto& pair : pairs.kept) {
-    const std::string name = "constant " + quoted(scope, pair.now->name);
+    const std::string name = "constant " + in_ticks(scope, pair.now->name);
     if (!is_same_type(*pair.before, *pair.now)) {
       const auto text = [](const Constant& one) {
         return one.is_struct ? std::string("struct") : text_of(one.type);
       };
       comparison.changes.add(
           Code::R0745, pair.before->span, pair.now->span,
-          name + " is " + quoted(text(*pair.now)) + ", it was " + quoted(text(*pair.before)));
+          name + " is " + in_ticks(text(*pair.now)) + ", it was " + in_ticks(text(*pair.before)));
     } else if (!is_same_value(*pair.before, *pair.now)) {
       comparison.changes
           .add(Code::R0773, pair.before->span, pair.now->span,
@@ -117,20 +117,20 @@ void compare_enum(const model::Enum& before, const model::Enum& now, const Compa
   });
   for (const auto& pair : pairs.renamed) {
     comparison.changes.add(Code::R0742, pair.before->span, pair.now->span,
-                           "value " + quoted(before.name, pair.before->name) + " is now called " +
-                               quoted(pair.now->name));
+                           "value " + in_ticks(before.name, pair.before->name) + " is now called " +
+                               in_ticks(pair.now->name));
   }
   for (const EnumValue* const value : pairs.removed) {
     comparison.changes
         .add(Code::R0772, value->span, now.span,
-             "value " + quoted(before.name, value->name) + " is gone")
+             "value " + in_ticks(before.name, value->name) + " is gone")
         .help("keep the name for as long as programs may send " + std::to_string(value->value));
   }
   for (const auto& pair : pairs.kept) {
     if (pair.before->value == pair.now->value) continue;
     comparison.changes
         .add(Code::R0771, pair.before->span, pair.now->span,
-             "value " + quoted(now.name, pair.now->name) + " is " +
+             "value " + in_ticks(now.name, pair.now->name) + " is " +
                  std::to_string(pair.now->value) + ", it was " + std::to_string(pair.before->value))
         .help("write `" + pair.now->name.substr(0, 100) + " = " +
               std::to_string(pair.before->value) + "`");

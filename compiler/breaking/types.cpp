@@ -97,9 +97,9 @@ std::string text_of(const model::Type& type) {
   return base + type.suffix();
 }
 
-std::string quoted(std::string_view name) { return '`' + cut(name) + '`'; }
+std::string in_ticks(std::string_view name) { return '`' + cut(name) + '`'; }
 
-std::string quoted(std::string_view scope, std::string_view name) {
+std::string in_ticks(std::string_view scope, std::string_view name) {
   return '`' + cut(scope) + '.' + cut(name) + '`';
 }
 

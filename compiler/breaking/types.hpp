@@ -22,8 +22,8 @@ TypeChange compare_types(const model::Type& before, const model::Type& now, cons
 /// A type for messages: no service name, long names cut.
 std::string text_of(const model::Type& type);
 /// A name in backquotes for messages, cut when it is long.
-std::string quoted(std::string_view name);
+std::string in_ticks(std::string_view name);
 /// `Arm.speed` in backquotes for messages, likewise.
-std::string quoted(std::string_view scope, std::string_view name);
+std::string in_ticks(std::string_view scope, std::string_view name);
 
 }  // namespace robdef::breaking

@@ -32,4 +32,6 @@ function(robdef_embed target)
     COMMENT "Embedding the files of ${arg_FUNCTION}"
     VERBATIM)
   target_sources(${target} PRIVATE "${output}")
+  # For a program of another folder, robdef_at_once().
+  add_custom_target(${target}_embedded DEPENDS "${output}")
 endfunction()

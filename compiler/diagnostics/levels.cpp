@@ -2,7 +2,6 @@
 #include "compiler/diagnostics/levels.hpp"
 
 #include <algorithm>
-#include <cctype>
 
 #include "compiler/diagnostics/spelling.hpp"
 
@@ -10,14 +9,6 @@ namespace robdef {
 namespace {
 
 bool is_warning(const CodeEntry& entry) { return entry.severity == Severity::warning; }
-
-std::string upper_case(std::string_view text) {
-  std::string upper(text);
-  for (char& letter : upper) {
-    letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
-  }
-  return upper;
-}
 
 // Changes between versions have options of their own.
 bool is_of_versions(const CodeEntry& entry) { return entry.name.starts_with("R07"); }

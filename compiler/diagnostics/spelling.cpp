@@ -2,6 +2,7 @@
 #include "compiler/diagnostics/spelling.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
 #include <utility>
 
@@ -97,6 +98,14 @@ std::string_view nearest(std::string_view written,
 
 std::size_t comparisons(std::string_view written) {
   return written.size() > longest ? 1 : 1 + written.size() * written.size();
+}
+
+std::string upper_case(std::string_view text) {
+  std::string upper(text);
+  for (char& letter : upper) {
+    letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  }
+  return upper;
 }
 
 }  // namespace robdef

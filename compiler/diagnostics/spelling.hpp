@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -14,5 +15,8 @@ std::string_view nearest(std::string_view written, const std::vector<std::string
 
 /// About how many letters nearest() compares for each candidate.
 std::size_t comparisons(std::string_view written);
+
+/// With the letters a to z as capitals.
+std::string upper_case(std::string_view text);
 
 }  // namespace robdef

@@ -2,7 +2,6 @@
 #include "compiler/driver/option_values.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -11,17 +10,6 @@
 #include "compiler/diagnostics/spelling.hpp"
 
 namespace robdef {
-namespace {
-
-std::string upper_case(std::string_view text) {
-  std::string upper(text);
-  for (char& letter : upper) {
-    letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
-  }
-  return upper;
-}
-
-}  // namespace
 
 std::string take_language(Options& options, const std::string& value) {
   if (find_backend(value) != nullptr) {

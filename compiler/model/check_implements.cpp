@@ -80,10 +80,10 @@ void ImplementsRules::report_cycles(const Graph& graph) {
     };
     const std::string& name = objects_[cycle.front().from]->name;
     Diagnostic& diagnostic = report_.add(Code::R0607, place(cycle.front()),
-                                         "object " + quoted(name) + " implements itself");
+                                         "object " + in_ticks(name) + " implements itself");
     diagnostic.label(cycle.size() == 1 ? "the object itself" : "through this one");
     for (std::size_t i = 1; i < cycle.size(); ++i) {
-      diagnostic.also(place(cycle[i]), "which implements " + quoted(objects_[cycle[i].to]->name));
+      diagnostic.also(place(cycle[i]), "which implements " + in_ticks(objects_[cycle[i].to]->name));
     }
   }
 }
@@ -126,10 +126,10 @@ bool ImplementsRules::is_within_reach(const Object& object, std::size_t line) {
     const Replacement import = import_line(*object.definition, above->definition->name);
     report_
         .add(Code::R0606, object.implements_spans[line],
-             quoted(base.name) + " implements an object of " + quoted(above->definition->name) +
+             in_ticks(base.name) + " implements an object of " + in_ticks(above->definition->name) +
                  ", which is not imported here")
-        .label("implements " + quoted(above->qualified_name()))
-        .help("add " + quoted("import " + above->definition->name))
+        .label("implements " + in_ticks(above->qualified_name()))
+        .help("add " + in_ticks("import " + above->definition->name))
         .edit(import.span, import.text);
     return false;
   }
@@ -149,13 +149,13 @@ void ImplementsRules::check_listed(const Object& object, std::size_t line,
   if (missing.empty()) return;
   Diagnostic& diagnostic =
       report_.add(Code::R0608, object.implements_spans[line],
-                  "object " + quoted(object.name) + " implements " + listed(missing) +
+                  "object " + in_ticks(object.name) + " implements " + listed(missing) +
                       " without listing " + (missing.size() == 1 ? "it" : "them"));
   diagnostic.label("implements " + listed(missing) + " in turn");
   for (const std::string& name : missing) {
     const Replacement added =
         line_below(*object.definition, object.implements_spans[line], "implements " + name);
-    diagnostic.help("add " + quoted("implements " + name)).edit(added.span, added.text);
+    diagnostic.help("add " + in_ticks("implements " + name)).edit(added.span, added.text);
   }
 }
 
@@ -204,7 +204,7 @@ class Difference {
 
   bool type() {
     if (own_.type.is_same_as(repeated_.type)) return false;
-    return say(own_.type.span, "is " + quoted(written(repeated_.type, file_)) + " there");
+    return say(own_.type.span, "is " + in_ticks(written(repeated_.type, file_)) + " there");
   }
 
   bool generator() {
@@ -216,10 +216,10 @@ class Difference {
 
   bool parameter(const Parameter& own, const Parameter& repeated) {
     if (own.name != repeated.name) {
-      return say(own.span, "is named " + quoted(repeated.name) + " there");
+      return say(own.span, "is named " + in_ticks(repeated.name) + " there");
     }
     if (own.type.is_same_as(repeated.type)) return false;
-    return say(own.type.span, "is " + quoted(written(repeated.type, file_)) + " there");
+    return say(own.type.span, "is " + in_ticks(written(repeated.type, file_)) + " there");
   }
 
   bool parameters() {
@@ -272,21 +272,21 @@ void ImplementsRules::check_members(const Object& object, const Members& own, st
     if (!difference.found() || !reported.insert(member.name).second) continue;
     report_
         .add(Code::R0609, difference.span(),
-             quoted(member.name) + " differs from the one of " + quoted(base.name))
+             in_ticks(member.name) + " differs from the one of " + in_ticks(base.name))
         .label(difference.label())
         .also(member.span, "the one that it has to repeat")
-        .help("write " + quoted(written(member, file)));
+        .help("write " + in_ticks(written(member, file)));
   }
   if (missing.empty()) return;
   std::vector<std::string> names;
   for (const Member* member : missing) names.push_back(member->name);
   Diagnostic& diagnostic = report_.add(Code::R0609, object.implements_spans[line],
-                                       "object " + quoted(object.name) + " does not repeat " +
-                                           listed(names) + " of " + quoted(base.name));
+                                       "object " + in_ticks(object.name) + " does not repeat " +
+                                           listed(names) + " of " + in_ticks(base.name));
   diagnostic.label(missing.size() == 1 ? "has a member that is missing here"
                                        : "has members that are missing here");
   diagnostic.also(missing.front()->span, "declared here");
-  for (const Member* member : missing) diagnostic.help("add " + quoted(written(*member, file)));
+  for (const Member* member : missing) diagnostic.help("add " + in_ticks(written(*member, file)));
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ void report_contradiction(const std::vector<Modifier>& modifiers, std::string_vi
   const Modifier* winner = find(modifiers, wins);
   const Modifier* loser = find(modifiers, loses);
   if (winner == nullptr || loser == nullptr) return;
-  report.add(Code::R0611, loser->span, quoted(loses) + " contradicts " + quoted(wins))
+  report.add(Code::R0611, loser->span, in_ticks(loses) + " contradicts " + in_ticks(wins))
       .label("has no effect")
       .also(winner->span, "this one counts")
       .help("remove one of the two");
@@ -84,7 +84,7 @@ void report_feature(Span span, const std::string& feature, const Definition& def
 
 void report_statement(Span name, std::string_view keyword, const Definition& definition,
                       Report& report) {
-  report_feature(keyword_before(definition, name, keyword), quoted(keyword), definition, report);
+  report_feature(keyword_before(definition, name, keyword), in_ticks(keyword), definition, report);
 }
 
 // A slip would change what is generated, so it is an error; a word of one's own is not. What a peer
@@ -93,13 +93,13 @@ void report_unknown(const Modifier& modifier, Report& report) {
   const std::string_view near = report.origin() == Origin::user && modifier.arguments.empty()
                                     ? syntax::nearest_modifier(modifier.name)
                                     : std::string_view();
-  const std::string message = "unknown modifier " + quoted(modifier.name);
+  const std::string message = "unknown modifier " + in_ticks(modifier.name);
   if (near.empty()) {
     report.add(Code::R0610, modifier.span, message).label("has no effect");
   } else {
     report.add(Code::R0613, modifier.span, message)
         .label("would have no effect")
-        .help("write " + quoted(near))
+        .help("write " + in_ticks(near))
         .edit({modifier.span.source, modifier.span.begin,
                modifier.span.begin + static_cast<std::uint32_t>(modifier.name.size())},
               std::string(near));
@@ -146,12 +146,12 @@ void modifiers_are_known(const Definition& definition, Report& report) {
     for (const Modifier& modifier : modifiers) {
       if (knows_modifier(kind, modifier.name)) {
         if (modifier.arguments.empty()) continue;
-        report.add(Code::R0610, modifier.span, quoted(modifier.name) + " takes no arguments")
+        report.add(Code::R0610, modifier.span, in_ticks(modifier.name) + " takes no arguments")
             .label("has no effect with arguments")
-            .help("write plain " + quoted(modifier.name))
+            .help("write plain " + in_ticks(modifier.name))
             .edit(modifier.span, modifier.name);
       } else if (is_language_word(modifier.name)) {
-        report.add(Code::R0610, modifier.span, quoted(modifier.name) + of_kind())
+        report.add(Code::R0610, modifier.span, in_ticks(modifier.name) + of_kind())
             .label("belongs to other kinds of members");
       } else {
         report_unknown(modifier, report);
@@ -174,7 +174,7 @@ void modifiers_do_not_contradict(const Definition& definition, Report& report) {
       if (!modifier.arguments.empty() || !knows_modifier(kind, modifier.name)) continue;
       const Modifier* const first = firsts.try_emplace(modifier.name, &modifier).first->second;
       if (first == &modifier) continue;
-      report.add(Code::R0611, modifier.span, quoted(modifier.name) + " is repeated")
+      report.add(Code::R0611, modifier.span, in_ticks(modifier.name) + " is repeated")
           .label("means nothing more")
           .also(first->span, "first given here")
           .help("remove one of the two");
@@ -197,8 +197,9 @@ void modifier_arguments_are_constants(const Definition& definition, Report& repo
       for (std::size_t i = 0; i < modifier.arguments.size(); ++i) {
         const std::string& argument = modifier.arguments[i];
         if (!is_name(argument) || is_constant(argument)) continue;
-        Diagnostic& diagnostic = report.add(Code::R0612, modifier.argument_spans[i],
-                                            quoted(argument) + " is not a constant of this block");
+        Diagnostic& diagnostic =
+            report.add(Code::R0612, modifier.argument_spans[i],
+                       in_ticks(argument) + " is not a constant of this block");
         diagnostic.label("no constant of this block has this name");
         for (const Constant& constant : definition.constants) {
           if (constant.name != argument) continue;

@@ -47,8 +47,8 @@ void check_name(std::string_view name, Span span, std::string_view what, Report&
   std::string problem = form_problem(name);
   if (problem.empty()) problem = reservation_of(name);
   if (problem.empty()) return;
-  Diagnostic& diagnostic =
-      report.add(Code::R0205, span, quoted(name) + " cannot be the name of " + with_article(what));
+  Diagnostic& diagnostic = report.add(
+      Code::R0205, span, in_ticks(name) + " cannot be the name of " + with_article(what));
   diagnostic.label(std::move(problem));
   if (syntax::has_reserved_prefix(name)) explain_prefix(diagnostic);
 }
@@ -95,7 +95,7 @@ class Uniqueness {
     if (!first) return;
     report_
         .add(code_, span,
-             "the name " + quoted(name) + " occurs twice in this " + std::string(scope_))
+             "the name " + in_ticks(name) + " occurs twice in this " + std::string(scope_))
         .label(with_article(kind) + " of the same name")
         .also(first->span, "first declared here, as " + with_article(first->kind))
         .help("rename one of the two");
@@ -151,7 +151,7 @@ void service_name_is_valid(const Definition& definition, const SyntaxErrors& syn
   std::string problem = reservation_of(name);
   if (problem.empty()) return;
   Diagnostic& diagnostic =
-      report.add(Code::R0201, definition.span, quoted(name) + " cannot be the name of a service");
+      report.add(Code::R0201, definition.span, in_ticks(name) + " cannot be the name of a service");
   diagnostic.label(std::move(problem));
   if (syntax::has_reserved_prefix(name)) explain_prefix(diagnostic);
 }
@@ -210,9 +210,9 @@ void parameter_names_are_unique(const Definition& definition, Report& report) {
         const auto first = firsts.add(parameter.name, {parameter.span, "parameter"});
         if (!first) continue;
         report
-            .add(
-                Code::R0602, parameter.span,
-                "two parameters of " + quoted(member.name) + " are named " + quoted(parameter.name))
+            .add(Code::R0602, parameter.span,
+                 "two parameters of " + in_ticks(member.name) + " are named " +
+                     in_ticks(parameter.name))
             .label("has the name of an earlier parameter")
             .also(first->span, "first used here");
       }

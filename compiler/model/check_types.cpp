@@ -135,7 +135,7 @@ void check_generators(const Member& member, const Definition& definition, Report
         .label("neither `void` nor a generator")
         .also(member.generator_parameter->type.span, "the generator parameter")
         .help("return `void`, or a value with each step: " +
-              quoted(written_base(member.type, definition) + "{generator}"));
+              in_ticks(written_base(member.type, definition) + "{generator}"));
   }
 }
 
@@ -145,10 +145,10 @@ void types_are_values(const Definition& definition, Report& report) {
   each_type(definition, [&](const Type& type, Place place) {
     if (place == Place::record_field) return;  // V18 and V20 say more
     if (const Object* object = object_of(type)) {
-      report.add(Code::R0206, type.span, "object " + quoted(object->name) + " used as a value")
+      report.add(Code::R0206, type.span, "object " + in_ticks(object->name) + " used as a value")
           .label("objects are not sent by value")
           .also(object->span, "declared as an object here")
-          .help("write " + quoted("objref " + written_base(type, definition)) +
+          .help("write " + in_ticks("objref " + written_base(type, definition)) +
                 " and a name to refer to one");
     } else if (is_array_of_the_wrong_kind(type)) {
       const std::string_view kind = std::visit(ArrayBan{}, type.base);
@@ -156,7 +156,7 @@ void types_are_values(const Definition& definition, Report& report) {
           .add(Code::R0206, type.span,
                "an array of " + std::string(kind) + (kind == "string" ? "s" : " values"))
           .label("only numbers, pods and namedarrays form arrays")
-          .help("write " + quoted(written_base(type, definition) + "{list}"))
+          .help("write " + in_ticks(written_base(type, definition) + "{list}"))
           .edit(type.span, written_base(type, definition) + "{list}");
     }
   });

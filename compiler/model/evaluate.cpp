@@ -110,7 +110,7 @@ class Constants {
   void report_unknown(const ast::Name& name) {
     if (syntax_errors_.mention(definition_, name.text)) return;
     Diagnostic& diagnostic =
-        report_.add(Code::R0305, name.span, "unknown constant " + quoted(name.text));
+        report_.add(Code::R0305, name.span, "unknown constant " + in_ticks(name.text));
     const std::string_view scope = is_block_ ? "block" : "file";
     diagnostic.label("no constant of this " + std::string(scope) + " has this name");
     const std::size_t count = constants_.size() + definition_.constants.size();
@@ -119,7 +119,7 @@ class Constants {
     std::vector<std::string_view> candidates;
     for (const Constant& constant : constants_) candidates.push_back(constant.name);
     const std::string_view near = nearest(name.text, candidates);
-    if (!near.empty()) diagnostic.help(quoted(near) + " is close");
+    if (!near.empty()) diagnostic.help(in_ticks(near) + " is close");
   }
 
   bool suggest_file_constant(Diagnostic& diagnostic, std::string_view name) const {
@@ -143,11 +143,11 @@ class Constants {
       const ast::Name& first = reference(cycle.front());
       const std::string& name = constants_[cycle.front().from].name;
       Diagnostic& diagnostic =
-          report_.add(Code::R0305, first.span, "constant " + quoted(name) + " contains itself");
+          report_.add(Code::R0305, first.span, "constant " + in_ticks(name) + " contains itself");
       diagnostic.label(cycle.size() == 1 ? "the constant itself" : "through this one");
       for (std::size_t i = 1; i < cycle.size(); ++i) {
         diagnostic.also(reference(cycle[i]).span,
-                        "which contains " + quoted(reference(cycle[i]).text));
+                        "which contains " + in_ticks(reference(cycle[i]).text));
       }
     }
   }

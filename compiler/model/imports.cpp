@@ -77,7 +77,7 @@ void ImportRules::report_missing_import(const ast::Import& import, const Definit
   std::vector<std::string_view> loaded;
   const Definition* in_its_file = nullptr;
   if (!report_.may_suggest(model_.definitions().size(), comparisons(name))) {
-    report_.add(Code::R0505, import.name.span, "the import " + quoted(name) + " is not found")
+    report_.add(Code::R0505, import.name.span, "the import " + in_ticks(name) + " is not found")
         .label("no definition of this name is loaded");
     return;
   }
@@ -89,21 +89,21 @@ void ImportRules::report_missing_import(const ast::Import& import, const Definit
   }
   if (in_its_file != nullptr && in_its_file->name.empty()) return;
   Diagnostic& diagnostic =
-      report_.add(Code::R0505, import.name.span, "the import " + quoted(name) + " is not found");
+      report_.add(Code::R0505, import.name.span, "the import " + in_ticks(name) + " is not found");
   diagnostic.label("no definition of this name is loaded");
   if (in_its_file != nullptr) {
     diagnostic.also(in_its_file->span, "the file of that name has another service name");
-    diagnostic.help(in_its_file == &user
-                        ? "write " + quoted("service " + name) +
-                              " if this file is meant, and no import"
-                        : "import " + quoted(in_its_file->name) + ", or correct its service line");
+    diagnostic.help(
+        in_its_file == &user
+            ? "write " + in_ticks("service " + name) + " if this file is meant, and no import"
+            : "import " + in_ticks(in_its_file->name) + ", or correct its service line");
     return;
   }
   const std::string_view near = nearest(name, loaded);
   if (!near.empty()) {
-    diagnostic.help(quoted(near) + " is close").edit(import.name.span, std::string(near));
+    diagnostic.help(in_ticks(near) + " is close").edit(import.name.span, std::string(near));
   }
-  diagnostic.help("name the file of the definition, or the folder of " + quoted(expected_file) +
+  diagnostic.help("name the file of the definition, or the folder of " + in_ticks(expected_file) +
                   " with -I");
 }
 
@@ -116,7 +116,7 @@ void ImportRules::check_import_version(const ast::Import& import, const Definiti
     if (syntax_errors_.any_in(imported)) return;
     report_
         .add(Code::R0507, import.name.span,
-             quoted(imported.name) + " declares no version and cannot be imported here")
+             in_ticks(imported.name) + " declares no version and cannot be imported here")
         .label("has no version line")
         .also(user.version_span, "this file declares " + version)
         .help("add a version of " + version + " or less to the imported file");
@@ -126,10 +126,10 @@ void ImportRules::check_import_version(const ast::Import& import, const Definiti
   const std::string imported_version = text_of(imported.version);
   report_
       .add(Code::R0507, import.name.span,
-           quoted(imported.name) + " needs a higher version than this file declares")
+           in_ticks(imported.name) + " needs a higher version than this file declares")
       .label("declares version " + imported_version)
       .also(user.version_span, "this file declares " + version)
-      .help("write " + quoted("stdver " + imported_version))
+      .help("write " + in_ticks("stdver " + imported_version))
       .edit(user.version_span, imported_version);
 }
 
@@ -153,18 +153,18 @@ void ImportRules::report_cycle(const std::vector<Graph::Edge>& cycle) {
   };
   const ast::Name& first = import(cycle.front());
   if (cycle.size() == 1) {
-    report_.add(Code::R0506, first.span, quoted(first.text) + " imports itself")
+    report_.add(Code::R0506, first.span, in_ticks(first.text) + " imports itself")
         .label("this is the file's own service name")
         .help("remove the line");
     return;
   }
   Diagnostic& diagnostic = report_.add(Code::R0506, first.span, "imports go round in a circle");
-  diagnostic.label("imports " + quoted(first.text) + ", ...");
+  diagnostic.label("imports " + in_ticks(first.text) + ", ...");
   for (std::size_t i = 1; i < cycle.size(); ++i) {
     const ast::Name& next = import(cycle[i]);
     const bool is_last = i + 1 == cycle.size();
     diagnostic.also(next.span, std::string(is_last ? "... which imports " : "... imports ") +
-                                   quoted(next.text) + (is_last ? " again" : ""));
+                                   in_ticks(next.text) + (is_last ? " again" : ""));
   }
   diagnostic.help("move what both need into a definition of its own");
 }

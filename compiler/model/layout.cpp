@@ -126,7 +126,7 @@ void Layout::check_pod(const Record& pod) {
     if (type.container != ContainerForm::none) {
       report_.add(Code::R0401, type.span, "a pod field in a container")
           .label("has no bounded size")
-          .help("use an array with a length, or make " + quoted(pod.name) + " a struct");
+          .help("use an array with a length, or make " + in_ticks(pod.name) + " a struct");
       continue;
     }
     const bool fits = is_number(type) || is_record(type, RecordKind::pod) ||
@@ -134,7 +134,7 @@ void Layout::check_pod(const Record& pod) {
     if (!fits) {
       report_.add(Code::R0401, type.span, "a pod field that is no number, pod or namedarray")
           .label("cannot be part of a pod")
-          .help("make " + quoted(pod.name) + " a struct");
+          .help("make " + in_ticks(pod.name) + " a struct");
       continue;
     }
     if (!has_open_length(type)) continue;
@@ -147,7 +147,8 @@ void Layout::check_pod(const Record& pod) {
 // V20, and that a namedarray is not empty (V22)
 void Layout::check_namedarray(const Record& namedarray) {
   if (namedarray.fields.empty() && !syntax_errors_.any_in(*namedarray.definition)) {
-    report_.add(Code::R0405, namedarray.span, "namedarray " + quoted(namedarray.name) + " is empty")
+    report_
+        .add(Code::R0405, namedarray.span, "namedarray " + in_ticks(namedarray.name) + " is empty")
         .label("has no fields")
         .help("add a field of a number type");
   }
@@ -157,8 +158,9 @@ void Layout::check_namedarray(const Record& namedarray) {
     if (!is_number(type) && !is_record(type, RecordKind::namedarray)) {
       report_.add(Code::R0403, type.span, "a namedarray field that is no number or namedarray")
           .label("cannot be part of a namedarray")
-          .help(is_record(type, RecordKind::pod) ? "make " + quoted(namedarray.name) + " a pod"
-                                                 : "make " + quoted(namedarray.name) + " a struct");
+          .help(is_record(type, RecordKind::pod)
+                    ? "make " + in_ticks(namedarray.name) + " a pod"
+                    : "make " + in_ticks(namedarray.name) + " a struct");
       continue;
     }
     const bool is_fixed = type.array == ArrayForm::none || type.array == ArrayForm::fixed_length;
@@ -197,12 +199,12 @@ void Layout::report_cycles(RecordKind kind) {
     const Code code = kind == RecordKind::pod ? Code::R0402 : Code::R0405;
     Diagnostic& diagnostic =
         report_.add(code, field(cycle.front()).type.span,
-                    std::string(name_of(kind)) + ' ' + quoted(record.name) + " contains itself");
+                    std::string(name_of(kind)) + ' ' + in_ticks(record.name) + " contains itself");
     diagnostic.label(cycle.size() == 1 ? "the " + std::string(name_of(kind)) + " itself"
                                        : "through this field");
     for (std::size_t i = 1; i < cycle.size(); ++i) {
       diagnostic.also(field(cycle[i]).type.span,
-                      "which contains " + quoted(records_[cycle[i].to]->name));
+                      "which contains " + in_ticks(records_[cycle[i].to]->name));
     }
     if (kind == RecordKind::pod) diagnostic.help("a struct can contain itself, a pod cannot");
   }
@@ -257,9 +259,9 @@ void Layout::report_mixed(const Record& namedarray, const Field& first, Primitiv
                           const Field& other, Primitive found) {
   report_
       .add(Code::R0404, other.type.span,
-           "namedarray " + quoted(namedarray.name) + " has more than one number type")
-      .label("is of " + quoted(name_of(found)))
-      .also(first.type.span, "is of " + quoted(name_of(expected)))
+           "namedarray " + in_ticks(namedarray.name) + " has more than one number type")
+      .label("is of " + in_ticks(name_of(found)))
+      .also(first.type.span, "is of " + in_ticks(name_of(expected)))
       .help("give all fields one type, or make it a pod");
 }
 

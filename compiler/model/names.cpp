@@ -102,7 +102,7 @@ void Names::add_alias(const Definition& user, std::string_view alias, const ast:
     if (syntax_errors_.mention(user, service.text)) return;
     Diagnostic& diagnostic =
         report_.add(Code::R0508, service.span, "using names a definition that is not imported");
-    diagnostic.label(quoted(service.text) + " is not imported here");
+    diagnostic.label(in_ticks(service.text) + " is not imported here");
     suggest_import(diagnostic, scope, service.text);
     return;
   }
@@ -118,8 +118,8 @@ void Names::add_alias(const Definition& user, std::string_view alias, const ast:
   }
   if (syntax_errors_.mention(*target.definition, name.text)) return;
   Diagnostic& diagnostic = report_.add(
-      Code::R0508, name.span, "using names " + quoted(qualified.text) + ", which does not exist");
-  diagnostic.label(quoted(service.text) + " declares no such type, constant or exception");
+      Code::R0508, name.span, "using names " + in_ticks(qualified.text) + ", which does not exist");
+  diagnostic.label(in_ticks(service.text) + " declares no such type, constant or exception");
   suggest_declared(diagnostic, target, name.text, is_anything);
 }
 
@@ -141,7 +141,7 @@ const Named* Names::find(const Definition& user, const ast::Name& name, const Wa
   if (found == nullptr || wanted.fits(*found)) return found;
   report_
       .add(wanted.code, name.span,
-           quoted(name.text) + " is " + with_article(found->kind) + ", not " +
+           in_ticks(name.text) + " is " + with_article(found->kind) + ", not " +
                with_article(wanted.noun))
       .label(with_article(wanted.noun) + " is needed here")
       .also(found->span, "declared here");
@@ -176,15 +176,15 @@ const Named* Names::find_qualified(const Scope& scope, const ast::Name& name,
   if (found != target.declared.end()) return &found->second;
   if (syntax_errors_.mention(*target.definition, last.text)) return nullptr;
   Diagnostic& diagnostic = report_.add(
-      wanted.code, last.span, "unknown " + std::string(wanted.noun) + ' ' + quoted(name.text));
-  diagnostic.label(quoted(service.text) + " declares no such " + std::string(wanted.noun));
+      wanted.code, last.span, "unknown " + std::string(wanted.noun) + ' ' + in_ticks(name.text));
+  diagnostic.label(in_ticks(service.text) + " declares no such " + std::string(wanted.noun));
   suggest_declared(diagnostic, target, last.text, wanted.fits);
   return nullptr;
 }
 
 void Names::report_plain(const Scope& scope, const ast::Name& name, const Wanted& wanted) {
   Diagnostic& diagnostic = report_.add(
-      wanted.code, name.span, "unknown " + std::string(wanted.noun) + ' ' + quoted(name.text));
+      wanted.code, name.span, "unknown " + std::string(wanted.noun) + ' ' + in_ticks(name.text));
   diagnostic.label(absence(wanted.noun));
   if (!suggest_elsewhere(diagnostic, scope, name.text, wanted)) {
     suggest_near(diagnostic, scope, name.text, wanted);
@@ -201,9 +201,9 @@ void Names::report_own(const Scope& scope, const ast::Name& name, const Wanted& 
   report_
       .add(wanted.code, name.span,
            "an own " + std::string(wanted.noun) + " is named with its service")
-      .label("this is " + quoted(last.text) + " of this very file")
+      .label("this is " + in_ticks(last.text) + " of this very file")
       .also(found->second.span, "declared here")
-      .help("write " + quoted(last.text))
+      .help("write " + in_ticks(last.text))
       .edit(name.span, last.text)
       .note("only what is imported is named with its service");
 }
@@ -211,8 +211,8 @@ void Names::report_own(const Scope& scope, const ast::Name& name, const Wanted& 
 void Names::report_not_imported(const Scope& scope, const ast::Name& name, const Wanted& wanted) {
   const ast::Name service = service_part(name);
   Diagnostic& diagnostic = report_.add(
-      wanted.code, name.span, "unknown " + std::string(wanted.noun) + ' ' + quoted(name.text));
-  diagnostic.label(quoted(service.text) + " is not imported here");
+      wanted.code, name.span, "unknown " + std::string(wanted.noun) + ' ' + in_ticks(name.text));
+  diagnostic.label(in_ticks(service.text) + " is not imported here");
   suggest_import(diagnostic, scope, service.text);
 }
 
@@ -229,7 +229,7 @@ bool Names::suggest_elsewhere(Diagnostic& diagnostic, const Scope& scope, std::s
   for (const std::string_view service : scope.import_order) {
     if (!declares(scope.imports.at(service))) continue;
     const std::string qualified = std::string(service) + '.' + std::string(name);
-    diagnostic.help("write " + quoted(qualified) + ", or add " + quoted("using " + qualified))
+    diagnostic.help("write " + in_ticks(qualified) + ", or add " + in_ticks("using " + qualified))
         .edit(diagnostic.primary().span, qualified);
     return true;
   }
@@ -238,7 +238,7 @@ bool Names::suggest_elsewhere(Diagnostic& diagnostic, const Scope& scope, std::s
     const std::string qualified = definition->name + '.' + std::string(name);
     const Replacement import = import_line(*scope.definition, definition->name);
     diagnostic
-        .help("add " + quoted("import " + definition->name) + " and write " + quoted(qualified))
+        .help("add " + in_ticks("import " + definition->name) + " and write " + in_ticks(qualified))
         .edit(import.span, import.text)
         .edit(diagnostic.primary().span, qualified);
     return true;
@@ -251,7 +251,7 @@ void Names::suggest_near(Diagnostic& diagnostic, const Scope& scope, std::string
   const bool any_type = wanted.noun == "type";
   for (const auto& [habit, word] : habits) {
     if (any_type && habit == name) {
-      diagnostic.help("write " + quoted(word)).edit(diagnostic.primary().span, std::string(word));
+      diagnostic.help("write " + in_ticks(word)).edit(diagnostic.primary().span, std::string(word));
       return;
     }
   }
@@ -264,9 +264,9 @@ void Names::suggest_near(Diagnostic& diagnostic, const Scope& scope, std::string
   if (near.empty()) return;
   const auto own = scope.declared.find(near);
   if (own != scope.declared.end()) {
-    diagnostic.help(quoted(near) + ", declared on " + line_of(own->second.span) + ", is close");
+    diagnostic.help(in_ticks(near) + ", declared on " + line_of(own->second.span) + ", is close");
   } else {
-    diagnostic.help(quoted(near) + " is close");
+    diagnostic.help(in_ticks(near) + " is close");
   }
   diagnostic.edit(diagnostic.primary().span, std::string(near));
 }
@@ -294,7 +294,7 @@ void Names::suggest_declared(Diagnostic& diagnostic, const Scope& scope, std::st
   }
   const std::string_view near = nearest(name, candidates);
   if (near.empty()) return;
-  diagnostic.help(quoted(near) + " is close").edit(diagnostic.primary().span, std::string(near));
+  diagnostic.help(in_ticks(near) + " is close").edit(diagnostic.primary().span, std::string(near));
 }
 
 void Names::suggest_import(Diagnostic& diagnostic, const Scope& scope,
@@ -304,12 +304,12 @@ void Names::suggest_import(Diagnostic& diagnostic, const Scope& scope,
   for (const Definition* definition : order_) {
     if (definition->name != service) continue;
     const Replacement import = import_line(*scope.definition, std::string(service));
-    diagnostic.help("add " + quoted("import " + std::string(service)))
+    diagnostic.help("add " + in_ticks("import " + std::string(service)))
         .edit(import.span, import.text);
     for (const std::string_view name : scope.import_order) {
       const Definition* imported = scope.imports.at(name);
       if (imported == nullptr || !scopes_.at(imported).imports.contains(service)) continue;
-      diagnostic.note(quoted(name) + " imports it, but imports are not passed on");
+      diagnostic.note(in_ticks(name) + " imports it, but imports are not passed on");
       return;
     }
     return;
@@ -318,7 +318,7 @@ void Names::suggest_import(Diagnostic& diagnostic, const Scope& scope,
   if (near.empty()) return;
   Span written = diagnostic.primary().span;
   written.end = written.begin + static_cast<std::uint32_t>(service.size());
-  diagnostic.help("the import " + quoted(near) + " is close").edit(written, std::string(near));
+  diagnostic.help("the import " + in_ticks(near) + " is close").edit(written, std::string(near));
 }
 
 std::string Names::line_of(Span span) const {

@@ -5,13 +5,13 @@
 
 namespace robdef::model {
 
-std::string quoted(std::string_view name) { return '`' + std::string(name) + '`'; }
+std::string in_ticks(std::string_view name) { return '`' + std::string(name) + '`'; }
 
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
-    text += quoted(names[i]);
+    text += in_ticks(names[i]);
   }
   return text;
 }

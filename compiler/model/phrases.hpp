@@ -9,7 +9,7 @@
 namespace robdef::model {
 
 /// A name in backquotes.
-std::string quoted(std::string_view name);
+std::string in_ticks(std::string_view name);
 /// `a`, `b` and `c`
 std::string listed(const std::vector<std::string>& names);
 /// a struct, an object

@@ -18,7 +18,7 @@ namespace {
 // Names that were met, each with its first place.
 using Seen = std::unordered_map<std::string_view, Span>;
 
-std::string quoted(std::string_view text) { return fmt::format("`{}`", text); }
+std::string in_ticks(std::string_view text) { return fmt::format("`{}`", text); }
 
 // What other places would have against a name; empty for a good one.
 std::string objection(std::string_view name) {
@@ -41,7 +41,7 @@ void doubt_segments(const ast::Name& service, Report& report) {
                     service.span.begin + offset + static_cast<std::uint32_t>(segment.size())};
     // A reserved prefix is no more than usual: published definitions begin `com.robotraconteur`.
     if (is_reserved_word(segment)) {
-      report.add(Code::R0223, span, fmt::format("{} in a service name", quoted(segment)))
+      report.add(Code::R0223, span, fmt::format("{} in a service name", in_ticks(segment)))
           .label(objection(segment));
     }
     begin = end + 1;
@@ -55,7 +55,7 @@ void doubt_imports(const ast::File& file, Report& report) {
     if (is_new) continue;
     report
         .add(Code::R0521, import.name.span,
-             fmt::format("{} is imported twice", quoted(import.name.text)))
+             fmt::format("{} is imported twice", in_ticks(import.name.text)))
         .also(first->second, "first here");
   }
   Seen types;
@@ -63,7 +63,7 @@ void doubt_imports(const ast::File& file, Report& report) {
     const ast::Name& type = written.qualified;
     const auto [first, is_new] = types.try_emplace(type.text, type.span);
     if (is_new) continue;
-    report.add(Code::R0521, type.span, fmt::format("two aliases for {}", quoted(type.text)))
+    report.add(Code::R0521, type.span, fmt::format("two aliases for {}", in_ticks(type.text)))
         .also(first->second, "the first alias");
   }
 }
@@ -74,7 +74,7 @@ void doubt_parameters(const ast::Member& member, Report& report) {
     if (why.empty()) continue;
     report
         .add(Code::R0621, parameter.name.span,
-             fmt::format("a parameter with the name {}", quoted(parameter.name.text)))
+             fmt::format("a parameter with the name {}", in_ticks(parameter.name.text)))
         .label(why);
   }
   if (member.parameters.empty()) return;
@@ -85,7 +85,7 @@ void doubt_parameters(const ast::Member& member, Report& report) {
     report
         .add(Code::R0622, last.name.span,
              fmt::format("the generator {} has the name of another parameter",
-                         quoted(last.name.text)))
+                         in_ticks(last.name.text)))
         .also(parameter.name.span, "the other parameter");
     return;
   }
@@ -98,7 +98,7 @@ void doubt_implements(const ast::Object& object, Report& report) {
     if (is_new) continue;
     report
         .add(Code::R0625, written.name.span,
-             fmt::format("{} is implemented twice", quoted(written.name.text)))
+             fmt::format("{} is implemented twice", in_ticks(written.name.text)))
         .also(first->second, "first here");
   }
 }

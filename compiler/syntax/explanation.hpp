@@ -28,7 +28,7 @@ class Explanation {
 
   // Messages stay readable when a line holds a word of a megabyte.
   static constexpr std::size_t longest_quote = 60;
-  static std::string quoted(std::string_view text);
+  static std::string in_ticks(std::string_view text);
 
   // Families of rules.
   void names_line(Code code, std::string_view noun);

@@ -38,17 +38,17 @@ void Explanation::constant_value() {
   } else if (follows(Parser::COLON) && is(Parser::CLOSE_VALUE)) {
     add(code, "the name of a constant is missing after `:`").label("the name belongs here");
   } else if (rule() == Parser::RuleConstantField && follows(Parser::COLON)) {
-    add(code, fmt::format("{} is not the name of a constant", quoted(text())))
+    add(code, fmt::format("{} is not the name of a constant", in_ticks(text())))
         .label("a struct constant is made of other constants, by their names");
   } else if (is(Parser::OTHER_WORD) && is_digit(text().front())) {
-    Diagnostic& diagnostic = add(code, fmt::format("{} is not a number", quoted(text())));
+    Diagnostic& diagnostic = add(code, fmt::format("{} is not a number", in_ticks(text())));
     const bool is_octal = text().find_first_not_of("0123456789") == std::string_view::npos;
     if (is_octal) diagnostic.label("a number has no leading zeros");
     if (text().starts_with("0X")) diagnostic.help("write `0x` in lower case");
   } else if (is(Parser::OPEN_CONTAINER)) {
     add(code, "a blank is missing before the value").label("a blank belongs here");
   } else if (is_start) {
-    add(code, fmt::format("{} is not a value", quoted(text())))
+    add(code, fmt::format("{} is not a value", in_ticks(text())))
         .label("a number, a string or `{...}` belongs here");
   } else {
     unexpected(code, "in a value");
@@ -63,7 +63,7 @@ void Explanation::text_constant() {
   if (fault.is_unclosed) {
     add(Code::R0302, "a string without its closing quote").label("begins here");
   } else {
-    add_at(Code::R0302, place, fmt::format("unknown escape {} in a string", quoted(text(place))))
+    add_at(Code::R0302, place, fmt::format("unknown escape {} in a string", in_ticks(text(place))))
         .label("not an escape")
         .help(R"(the escapes are \" \\ \/ \b \f \n \r \t and \u with four hexadecimal digits)");
   }

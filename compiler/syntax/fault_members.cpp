@@ -10,7 +10,7 @@ void Explanation::missing_name() {
   if (is_in(Parser::RuleParameter)) {
     if (is(Parser::COMMA) || is(Parser::CLOSE_PARAMETERS) || is(Parser::NL)) {
       add_at(Code::R0127, fault_.previous,
-             fmt::format("a name is missing after the type {}", quoted(text(fault_.previous))))
+             fmt::format("a name is missing after the type {}", in_ticks(text(fault_.previous))))
           .label("a parameter has a type and a name");
     } else {
       unexpected(Code::R0127, "in a parameter list");
@@ -21,7 +21,7 @@ void Explanation::missing_name() {
       fault_.keyword == Parser::FUNCTION || fault_.keyword == Parser::CALLBACK;
   if (is(Parser::OPEN_PARAMETERS) && has_parameters) {
     add_at(Code::R0125, fault_.previous,
-           fmt::format("a type is missing before {}", quoted(text(fault_.previous))))
+           fmt::format("a type is missing before {}", in_ticks(text(fault_.previous))))
         .label(fmt::format("a {} has a return type", keyword()))
         .help(fmt::format("write `{} void {}(...)` if it returns nothing", keyword(),
                           text(fault_.previous).substr(0, longest_quote)));
@@ -29,7 +29,7 @@ void Explanation::missing_name() {
     after_member();
   } else if (is(Parser::NL) || is(Parser::OPEN_MODIFIERS)) {
     add_at(Code::R0124, {Parser::NL, fault_.previous.end, fault_.previous.end},
-           fmt::format("a name is missing after {}", quoted(text(fault_.previous))))
+           fmt::format("a name is missing after {}", in_ticks(text(fault_.previous))))
         .label(fmt::format("{} has a type and a name", with_article()));
   } else {
     unexpected(Code::R0124, "where a name belongs");
@@ -43,7 +43,7 @@ void Explanation::type() {
     return;
   }
   if (is(Parser::MEMBER_OTHER_WORD)) {
-    add(Code::R0124, fmt::format("{} is not a type", quoted(text())))
+    add(Code::R0124, fmt::format("{} is not a type", in_ticks(text())))
         .label("a type begins with a letter");
   } else {
     add(Code::R0124, fmt::format("expected a type after `{}`", keyword()))
@@ -69,7 +69,7 @@ void Explanation::array() {
         .label("lengths have no sign")
         .help("`[4-]` is an array of at most 4");
   } else {
-    add(Code::R0128, fmt::format("unexpected {} in an array part", quoted(text())))
+    add(Code::R0128, fmt::format("unexpected {} in an array part", in_ticks(text())))
         .label("not part of an array")
         .help("the forms are `[]`, `[4]`, `[4-]`, `[*]`, `[4,]`, `[3,3]`");
   }
@@ -87,13 +87,13 @@ void Explanation::container() {
     add(form_code(), "a blank is missing between the type and the name")
         .label("a blank belongs behind the `}`");
   } else if (is(Parser::OTHER_WORD)) {
-    add(Code::R0129, fmt::format("unknown container {}", quoted(text())))
+    add(Code::R0129, fmt::format("unknown container {}", in_ticks(text())))
         .label("there is no such container")
         .help(std::string(forms));
   } else if (is(Parser::CLOSE_CONTAINER)) {
     add(Code::R0129, "an empty container").label("its kind belongs here").help(std::string(forms));
   } else {
-    add(Code::R0128, fmt::format("unexpected {} in a container", quoted(text())))
+    add(Code::R0128, fmt::format("unexpected {} in a container", in_ticks(text())))
         .label("not part of a container")
         .help(std::string(forms));
   }
@@ -121,7 +121,7 @@ void Explanation::parameters() {
         .help("write for instance `double[] a`");
   } else if (is_word() && fault_.previous.type != Parser::COMMA &&
              !follows(Parser::OPEN_PARAMETERS)) {
-    add(code, fmt::format("a comma is missing before {}", quoted(text())))
+    add(code, fmt::format("a comma is missing before {}", in_ticks(text())))
         .label("parameters are joined by commas");
   } else {
     unexpected(code, "in a parameter list");

@@ -75,7 +75,7 @@ void Explanation::names_line(Code code, std::string_view noun) {
 void Explanation::using_line() {
   constexpr Code code = Code::R0504;
   if (is(Parser::NAME) && follows(Parser::USING)) {
-    add(code, fmt::format("{} is not a qualified name", quoted(text())))
+    add(code, fmt::format("{} is not a qualified name", in_ticks(text())))
         .label("the service is missing")
         .help(fmt::format("write `using some.service.{}`", text().substr(0, longest_quote)));
   } else if (is(Parser::SPACED_AS)) {
@@ -98,13 +98,13 @@ void Explanation::version(Code code) {
   }
   Diagnostic& diagnostic = is(Parser::NL)
                                ? add(code, "a version is missing")
-                               : add(code, fmt::format("{} is not a version", quoted(text())));
+                               : add(code, fmt::format("{} is not a version", in_ticks(text())));
   diagnostic.label("two to four numbers joined by dots belong here")
       .help(code == Code::R0112 ? "write `stdver 0.10`" : "write `option version 0.8`");
 }
 
 void Explanation::end_line() {
-  add(Code::R0120, fmt::format("unexpected {} after `end`", quoted(text())))
+  add(Code::R0120, fmt::format("unexpected {} after `end`", in_ticks(text())))
       .label("`end` stands alone on its line");
 }
 
@@ -117,12 +117,12 @@ void Explanation::enum_line() {
   } else if ((is(Parser::NL) || is(Parser::COMMA)) && follows(Parser::EQUALS)) {
     add(code, "a number is missing after `=`").label("the number belongs here");
   } else if (follows(Parser::EQUALS)) {
-    add(code, fmt::format("{} is not a whole number", quoted(text())))
+    add(code, fmt::format("{} is not a whole number", in_ticks(text())))
         .label("a decimal or hexadecimal whole number belongs here");
   } else if (follows(Parser::COMMA) && fault_.before_previous.type == Parser::COMMA) {
     add_at(code, fault_.previous, "two commas between enum values").label("one too many");
   } else if (is(Parser::ENUM_WORD)) {
-    add(code, fmt::format("a comma is missing before {}", quoted(text())))
+    add(code, fmt::format("a comma is missing before {}", in_ticks(text())))
         .label("values are joined by commas");
   } else if (is(Parser::OTHER_WORD) && (follows(Parser::COMMA) || fault_.token.begin == 0)) {
     not_a_word(code, "value name");
@@ -166,7 +166,7 @@ void Explanation::help_with_habits(Diagnostic& diagnostic) const {
 Diagnostic& Explanation::unexpected(Code code, std::string_view where) {
   if (is(Parser::NL))
     return add(code, fmt::format("the line ends too early")).label("more belongs here");
-  return add(code, fmt::format("unexpected {} {}", quoted(text()), where))
+  return add(code, fmt::format("unexpected {} {}", in_ticks(text()), where))
       .label("not expected here");
 }
 
@@ -178,7 +178,7 @@ void Explanation::not_a_word(Code code, std::string_view noun) {
   }
   const std::string_view word = text();
   Diagnostic& diagnostic =
-      add(code, fmt::format("{} is not {} {}", quoted(word), article_for(noun), noun));
+      add(code, fmt::format("{} is not {} {}", in_ticks(word), article_for(noun), noun));
   const bool may_be_dotted = code != Code::R0118 && code != Code::R0302;
   if (word.find('.') != std::string_view::npos && !may_be_dotted) {
     diagnostic.label("this name has no dots");
@@ -240,7 +240,7 @@ std::string_view Explanation::keyword() const {
   return line_.text().substr(0, static_cast<std::size_t>(end - line_.text().begin()));
 }
 
-std::string Explanation::quoted(std::string_view text) {
+std::string Explanation::in_ticks(std::string_view text) {
   if (text.size() > longest_quote) return fmt::format("`{}...`", text.substr(0, longest_quote));
   return fmt::format("`{}`", text);
 }
