@@ -66,6 +66,7 @@ describe("A recording", allowed, () => {
       await page.until("/^-?\\d/.test(document.querySelector('.legend .number').innerText)");
       const shown = Number((await text(page, ".legend .number")).split(" ")[0]);
       assert.ok(shown >= -1 && shown <= 1, String(shown));
+      await page.evaluate("document.querySelector('main').scrollTop = 0");
       await shootBoth(page, "tape");
       assert.deepEqual(await faultsInBoth(page), []);
       await page.click(".scrubber button");
