@@ -89,6 +89,7 @@ describe("The page", { timeout: 1_800_000 }, () => {
     await new Promise((resolve) => setTimeout(resolve, 11_000));
     const frames = await measured(page);
     report(`${wires} wires at 1 kHz`, frames);
+    assert.ok(frames.work.length > 0, "the page draws");
     const rates = await page.evaluate<number>("document.querySelectorAll('.legend li').length");
     assert.equal(rates, wires);
     workshop.drive(0);
