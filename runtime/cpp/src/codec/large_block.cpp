@@ -25,8 +25,8 @@ void give_to_system(LargeBlock block) noexcept {
   if (block.bytes != nullptr) ::munmap(block.bytes, block.size);
 }
 
-// The system takes milliseconds for a block of some MiB, in one piece: others come first between
-// the parts of one that nobody waits for.
+// Unmapping some MiB takes milliseconds and cannot be interrupted. Nobody waits for this block, so
+// other threads run between its parts.
 void give_to_system_slowly(LargeBlock block) noexcept {
   constexpr std::size_t part = std::size_t{512} * 1024;
   while (block.size > part) {
