@@ -75,6 +75,10 @@ describe("The page", allowed, () => {
       await page.type("[data-member=speed] form input", "11");
       await page.key("Enter");
       await page.until("/OutOfRange[\\s\\S]*faster than 10/.test(document.querySelector('[data-member=speed]').innerText)");
+      // It stays when the property has been read again.
+      state.speed = 0.5;
+      await page.until("/0.5 m\\/s/.test(document.querySelector('[data-member=speed] .current').innerText)");
+      assert.match(await text(page, "[data-member=speed]"), /faster than 10/);
       assert.deepEqual(await faultsInBoth(page), []);
       await shootBoth(page, "error");
       await page.type("[data-member=speed] form input", "0.75");

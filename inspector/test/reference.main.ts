@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// node reference.main.mjs PORT: the page in Chromium with the test server of the reference library, which listens there.
+// node reference.main.mjs PORT: the page in Chromium with the test server of the reference library, or that of RobotRaconteurWeb,
+// which listens there.
 // Properties of most types are read and set, functions called, wires watched, memories read.
 import assert from "node:assert/strict";
 import { describe, it } from "node:test";
@@ -29,7 +30,7 @@ describe("The reference library's test server", allowed, () => {
       await page.type("[data-member=d1] form input", "3.456");
       await page.key("Enter");
       await page.until("document.querySelector('[aria-live]').innerText === 'd1 is set'");
-      await page.until("/runtime_error This is a test/.test(document.querySelector('[data-member=errtest] .problem')?.innerText)");
+      await page.until("/(?:runtime_error|Exception) This is a test/.test(document.querySelector('[data-member=errtest] .problem')?.innerText)");
       // What was read of each type is taken by its form, and sent.
       const names = await page.evaluate<string[]>("[...document.querySelectorAll('.member.property')].filter((one) => one.querySelector('.current .value:not(.none)') && one.querySelector('[aria-label^=Edit]')).map((one) => one.dataset.member)");
       assert.ok(names.length > 45, `${names.length} properties`);
@@ -40,7 +41,6 @@ describe("The reference library's test server", allowed, () => {
       for (const name of plain) {
         await page.evaluate(`document.querySelector("[aria-label='Edit ${name}']").click()`);
         await page.until(`document.querySelector(${JSON.stringify(form(name))})`);
-        await page.evaluate("document.querySelector('[aria-live]').innerText = ''");
         await submit(page, form(name));
         await page.until(`document.querySelector('[aria-live]').innerText === '${name} is set' || document.querySelector('[data-member=${name}] > .problem, ${form(name)} .problem')`, `${name} is set, or refused`);
         assert.equal(await page.evaluate(`document.querySelectorAll('${form(name)} .problem').length`), 0, `the form of ${name} takes what was read`);
@@ -67,11 +67,17 @@ describe("The reference library's test server", allowed, () => {
       assert.deepEqual(page.complaints, []);
     }));
 
-  it("has wires that are watched, peeked and plotted", () =>
+  it("has wires that are peeked, poked, watched and plotted", () =>
     both.browser.with(address, {}, async (page) => {
-      await connect(page, service("RobotRaconteurTestService"));
-      await page.click("[aria-label='Plot broadcastwire']");
-      await page.until("/^-?\\d/.test(document.querySelector('.legend .number')?.innerText)");
+      await connect(page, service("RobotRaconteurTestService2"));
+      await page.click("[aria-label='Peek peekwire']");
+      await page.until("document.querySelector('[data-member=peekwire] .current')?.innerText.trim() === '56295674'");
+      await page.click("[aria-label='Poke pokewire…']");
+      await enter(page, "pokewire", "pokewire", "75738265");
+      await page.key("Enter");
+      await page.until("/pokewire is sent/.test(document.querySelector('[aria-live]').innerText)");
+      await page.click("[aria-label='Plot peekwire']");
+      await page.until("/^56295674/.test(document.querySelector('.legend .number')?.innerText)");
       assert.deepEqual(page.complaints, []);
     }));
 

@@ -112,6 +112,8 @@ export function PropertyCard(props: MemberProps): VNode {
   const { app, object, member } = props;
   const value = useSignal<unknown>(undefined);
   const words = useSignal<Words | undefined>(undefined);
+  /** Of a set; reading, which goes on, does not take it away. */
+  const refusal = useSignal<Words | undefined>(undefined);
   const isEditing = useSignal(false);
   const isLive = app.live.value;
   const form = useDrafts(object, [{ name: member.name, type: member.type }]);
@@ -145,6 +147,7 @@ export function PropertyCard(props: MemberProps): VNode {
   const edit = (): void => {
     isEditing.value = !isEditing.value;
     form.problems.value = [];
+    refusal.value = undefined;
     if (isEditing.value && value.value !== undefined) form.drafts.value = [fullDraft(object.device.definitions, member.type, value.value)];
   };
   const set = (event: Event): void => {
@@ -153,12 +156,12 @@ export function PropertyCard(props: MemberProps): VNode {
     if (!args) return;
     object.run("set", member, args, () => object.remote.set(member.name, args[0]?.value)).then(
       () => {
-        words.value = undefined;
+        refusal.value = undefined;
         app.announcement.value = `${member.name} is set`;
         if (!member.isWriteonly) void get(false);
       },
       (error: unknown) => {
-        words.value = wordsOf(error);
+        refusal.value = wordsOf(error);
       },
     );
   };
@@ -179,6 +182,7 @@ export function PropertyCard(props: MemberProps): VNode {
         </div>
       )}
       <ErrorWords words={words.value} />
+      <ErrorWords words={refusal.value} />
       {isEditing.value ? (
         <form onSubmit={set} aria-label={`Set ${member.name}`}>
           {form.forms()}
