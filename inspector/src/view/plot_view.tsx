@@ -6,6 +6,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import uPlot from "uplot";
 import { csvOf } from "../export/csv.js";
 import { matOf } from "../export/mat.js";
+import { drawOutline, isDense } from "../plot/outline.js";
 import type { Line, PlotModel } from "../plot/plot_model.js";
 import { rounded } from "../model/value_text.js";
 import { clock, save } from "./clock.js";
@@ -15,6 +16,7 @@ const colors = ["--line-1", "--line-2", "--line-3", "--line-4", "--line-5", "--l
 const dashes = [[], [8, 4], [2, 3], [10, 3, 2, 3]];
 const windows = [1, 2, 5, 10, 30, 60, 300, 1800];
 const plotHeight = 240;
+const lineWidth = 1.5;
 /** Lines above this have columns of two pixels instead of one; each column has two points, its low and its high. */
 const mostFineLines = 8;
 const mostAxes = 4;
@@ -35,6 +37,45 @@ function scaleOf(line: Line, units: readonly string[]): string {
 
 function unitsOf(lines: readonly Line[]): string[] {
   return [...new Set(lines.map((line) => line.unit))].slice(0, mostAxes);
+}
+
+/**
+ * Makes a plot whose canvas is drawn by the processor. Lines change in each frame, and where graphics are emulated, as
+ * in virtual machines and remote desktops, drawing them there takes seconds. The first to ask for a context says what
+ * kind it is, and uPlot has no option for it.
+ */
+function makePlot(options: uPlot.Options, data: uPlot.AlignedData, element: HTMLElement): uPlot {
+  const prototype = HTMLCanvasElement.prototype as { getContext: (this: HTMLCanvasElement, kind: string, more?: unknown) => unknown };
+  const own = prototype.getContext;
+  prototype.getContext = function (kind) {
+    return own.call(this, kind, { willReadFrequently: true });
+  };
+  try {
+    return new uPlot(options, data, element);
+  } finally {
+    prototype.getContext = own;
+  }
+}
+
+/** Lines with many points are filled, others are stroked. */
+function pathsOf(color: string, scale: string, dash: readonly number[]): uPlot.Series.PathBuilder {
+  const stroked = uPlot.paths.linear?.();
+  return (plot, index, from, to) => {
+    const values = (plot.data[index] ?? []) as (number | null)[];
+    if (stroked && !isDense(values)) return stroked(plot, index, from, to);
+    const { left, top, width, height } = plot.bbox;
+    const { min = 0, max = 1 } = plot.scales[scale] ?? {};
+    const factor = height / (max - min);
+    const path = new Path2D();
+    drawOutline(path, values, {
+      left,
+      step: width / (values.length / 2),
+      pixel: (value) => top + (max - value) * factor,
+      width: lineWidth * devicePixelRatio,
+      dash: dash.map((length) => length * devicePixelRatio),
+    });
+    return { fill: path, stroke: null, _fill: color, flags: 0 };
+  };
 }
 
 /** Values of a plot between two times, as uPlot takes them. */
@@ -107,7 +148,10 @@ export function PlotView({ model, label, at, onChoose, range }: PlotProps): VNod
         {},
         ...lines.map((line) => {
           const index = all.indexOf(line);
-          return { label: line.label, scale: scaleOf(line, units), stroke: colorOf(index), width: 1.5, dash: dashes[Math.floor(index / colors.length) % dashes.length] ?? [], spanGaps: true, points: { show: false } };
+          const stroke = colorOf(index);
+          const scale = scaleOf(line, units);
+          const dash = dashes[Math.floor(index / colors.length) % dashes.length] ?? [];
+          return { label: line.label, scale, stroke, width: lineWidth, dash, spanGaps: true, points: { show: false }, paths: pathsOf(stroke, scale, dash) };
         }),
       ],
       hooks: { draw: [(plot) => { marks(plot); }] },
@@ -135,7 +179,7 @@ export function PlotView({ model, label, at, onChoose, range }: PlotProps): VNod
       for (const time of model.cursors.peek()) draw(time, colorVariable("--accent"));
       if (latest.current.at !== undefined) draw(latest.current.at, colorVariable("--text"));
     };
-    const plot = new uPlot(options, frame.data, element);
+    const plot = makePlot(options, frame.data, element);
     plotRef.current = plot;
     const choose = (event: MouseEvent): void => {
       const time = plot.posToVal(event.clientX - plot.over.getBoundingClientRect().left, "x");

@@ -104,7 +104,7 @@ class RR_INSIDE Reactor final : public Watcher {
     post({std::move(work), nullptr, std::move(pollable)});
   }
 
-  /// Of the connections that the node has accepted.
+  /// Records which accepted connections receive data.
   [[nodiscard]] Readers& readers() { return readers_; }
 
   // A connection counts from when it has a receiver until it has told that one of its end.

@@ -7,17 +7,19 @@
 
 namespace rr::channel {
 
-/// Whether several connections of a node are read these days. One alone may receive much at once;
-/// beside others it receives less, so that they do not wait for it. Any thread.
-class Readers {
+/// Whether several connections of a node receive data at the same time. A single connection may
+/// receive much at once; beside others it receives less, so that it does not block them.
+/// Thread-safe. On a cache line of its own, since threads of different connections write it.
+class alignas(64) Readers {
  public:
-  /// `reader` has received something. Only who reads after another one writes here.
+  /// Records that the connection `reader` has received data. Writes nothing if it was also the last
+  /// one to receive.
   void note(const void* reader, Time now) {
     if (last_.load(std::memory_order_relaxed) == reader) return;
     last_.store(reader, std::memory_order_relaxed);
     changed_.store(now, std::memory_order_relaxed);
   }
-  /// True while one has received after another within a short time.
+  /// True if two connections received one after the other within `memory`.
   [[nodiscard]] bool are_several(Time now) const {
     const Time changed = changed_.load(std::memory_order_relaxed);
     return changed != Time::min() && now - changed < memory;

@@ -148,7 +148,7 @@ class StreamConnection final : public Connection,
   bool take_read_lease(bool until_end = false);
   void read_as_reactor(bool until_end);
   [[nodiscard]] bool is_drained_first() const;
-  [[nodiscard]] bool must_let_others_go(std::size_t bytes) const;
+  bool give_way_to_others(std::size_t bytes) const;
   void note_received();
   [[nodiscard]] bool is_beside_others() const;
   void read_soon(bool until_end);

@@ -118,17 +118,17 @@ void StreamConnection::read_as_reactor(bool until_end) {
       if (may_pin) read_pinned(*scratch);
       return;
     }
-    if (left == 1 || bytes >= largest_receive || must_let_others_go(bytes)) break;
+    if (left == 1 || bytes >= largest_receive || give_way_to_others(bytes)) break;
     if (!take_read_lease()) return;
   }
   pace_.note_endless();
   read_soon(until_end);
 }
 
-// Pages that are new cost more than the copy into them, so that all of largest_receive may take
-// longer than others should wait: those who want this thread's processor, and those who want it to
-// poll.
-bool StreamConnection::must_let_others_go(std::size_t bytes) const {
+// After `bytes` of one turn: gives up the processor beside other connections. True if one of them
+// waits for this thread to poll. Fresh pages cost more than the copy into them, so all of
+// largest_receive can take longer than others should wait.
+bool StreamConnection::give_way_to_others(std::size_t bytes) const {
   if (role_ != Role::server || bytes < largest_receive_beside_others || !is_beside_others()) {
     return false;
   }
@@ -180,7 +180,7 @@ StreamConnection::Received StreamConnection::receive(Scratch& scratch, bool may_
   if (role_ == Role::server) reactor_->readers().note(this, now);
 }
 
-// With the read lease: others are read at this time, too.
+// With the read lease: other connections receive data at the same time.
 bool StreamConnection::is_beside_others() const {
   return reactor_->readers().are_several(last_received_.load(std::memory_order_relaxed));
 }

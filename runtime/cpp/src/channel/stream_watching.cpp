@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // When the reactor watches a socket, and threads of it that are pinned to one.
+#include <utility>
+
 #include "runtime/cpp/src/channel/stream_connection.hpp"
 
 namespace rr::channel {
@@ -78,6 +80,7 @@ void StreamConnection::acknowledge_late() { acknowledge_with_next_segment(socket
       pace_.look_for_waiting_sender(before, last_received_.load(std::memory_order_relaxed));
     }
     leave_read_lease(scratch, true);
+    give_way_to_others(std::exchange(scratch.received, 0));
     goes_on = go_on_pinned(received, uses);
   }
   reactor_->end_stay();

@@ -54,8 +54,8 @@ inline void wait_until(std::condition_variable& condition, std::unique_lock<std:
 /// What one connection has brought is handled by a polling thread for so long before it serves
 /// others.
 inline constexpr std::chrono::microseconds longest_turn{250};
-/// Long work beside the polling thread gives its processor away as often: the slice that the
-/// threads of a node ask for.
+/// Long work on other threads yields the processor this often; the threads of a node ask for slices
+/// of this length.
 inline constexpr std::chrono::microseconds longest_slice{100};
 
 }  // namespace rr::channel

@@ -21,21 +21,19 @@ std::size_t whole_pages(std::size_t size) {
   return whole;
 }
 
+// Unmapping some MiB takes milliseconds and cannot be interrupted: other threads run between its
+// parts.
 void give_to_system(LargeBlock block) noexcept {
-  if (block.bytes != nullptr) ::munmap(block.bytes, block.size);
-}
-
-// The system takes milliseconds for a block of some MiB, in one piece: others come first between
-// the parts of one that nobody waits for.
-void give_to_system_slowly(LargeBlock block) noexcept {
+  if (block.bytes == nullptr) return;
   constexpr std::size_t part = std::size_t{512} * 1024;
   while (block.size > part) {
     block.size -= part;
     ::munmap(block.bytes + block.size, part);
     std::this_thread::yield();
   }
-  give_to_system(block);
+  ::munmap(block.bytes, block.size);
 }
+
 
 // Blocks that were given back, the latest first.
 class SpareBlocks {
@@ -80,7 +78,7 @@ class SpareBlocks {
       }
       is_any_left = bytes_ != 0;
     }
-    for (const Spare& spare : dropped) give_to_system_slowly(spare.block);
+    unmap(dropped);
     return is_any_left;
   }
 

@@ -10,6 +10,7 @@ import { ErrorCode, makeError, type RRError } from "../errors.js";
 import type { NodeSettings } from "../options.js";
 import { plainTerms, type Terms } from "./capabilities.js";
 import { Framing } from "./framing.js";
+import { GatheredSends } from "./gathered_sends.js";
 import type { ByteStream } from "./stream.js";
 
 /** What is to be sent. What is not said is left out, or zero. */
@@ -61,6 +62,7 @@ export class Connection {
   /** Whether large messages are allowed. */
   isAuthorized = false;
   private readonly framing: Framing;
+  private readonly sends: GatheredSends;
   private readonly ticks: ReturnType<typeof setInterval>;
   private readonly newest = new Map<string, () => void>();
   private lastSent: number;
@@ -77,6 +79,7 @@ export class Connection {
   ) {
     const { limits } = settings;
     this.framing = new Framing(() => (this.isAuthorized ? limits.messageSize : Math.min(limits.messageSize, limits.sizeBeforeSession)));
+    this.sends = new GatheredSends(stream);
     this.lastSent = this.lastReceived = Date.now();
     const period = Math.max(10, Math.min(400, settings.heartbeatPeriod / 4));
     this.ticks = setInterval(() => {
@@ -132,7 +135,7 @@ export class Connection {
 
   /** Bytes that wait to be sent. */
   get waiting(): number {
-    return this.stream.waiting;
+    return this.sends.waiting;
   }
 
   /**
@@ -149,18 +152,18 @@ export class Connection {
     const size = sizeOf(pieces);
     const limit = this.isAuthorized ? limits.messageSize - sendMargin : Math.min(limits.sizeBeforeSession, limits.messageSize - sendMargin);
     if (size > limit) throw makeError(ErrorCode.ProtocolError, `a message of ${size} bytes is larger than the ${limit} that may be sent`);
-    if (this.stream.waiting + size > limits.sendQueue) {
+    if (this.waiting + size > limits.sendQueue) {
       this.close("too much waits to be sent");
       throw makeError(ErrorCode.ConnectionError, "too much waits to be sent");
     }
     this.lastSent = Date.now();
-    this.stream.send(pieces);
+    this.sends.send(pieces, size);
   }
 
   /** Sends now, or when the stream has room again; then only the newest of this key. */
   sendNewest(key: string, send: () => void): void {
     if (!this.isOpen) return;
-    if (this.stream.waiting < newestOnlyFrom) {
+    if (this.waiting < newestOnlyFrom) {
       this.newest.delete(key);
       send();
       return;
@@ -177,6 +180,7 @@ export class Connection {
   /** Closes once everything is sent. */
   close(reason: string): void {
     if (!this.isOpen) return;
+    this.sends.flush();
     this.stream.close();
     this.end(reason);
   }
