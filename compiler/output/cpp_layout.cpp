@@ -23,26 +23,35 @@ std::size_t lines_of(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count(text, '\n')) + 1;
 }
 
+/// The length of a list on one line.
+std::size_t flat_size(const List& list) {
+  std::size_t size = list.before.size() + list.after.size();
+  for (const std::string& item : list.items) size += item.size();
+  return list.items.empty() ? size : size + 2 * (list.items.size() - 1);
+}
+
 /// Fills lines from `column` with items, the last followed by `after`. Nothing when one of them
 /// does not fit into a line of its own. `used` is what stands before the first.
 std::optional<std::string> fill(const List& list, std::size_t column) {
   std::string result;
+  result.reserve(2 * flat_size(list));
   std::size_t used = column;
   for (std::size_t i = 0; i < list.items.size(); ++i) {
     const bool is_last = i + 1 == list.items.size();
-    const std::string item = list.items[i] + (is_last ? list.after : ",");
-    if (column + item.size() > line_width) return std::nullopt;
+    const std::string_view end = is_last ? std::string_view(list.after) : ",";
+    const std::size_t size = list.items[i].size() + end.size();
+    if (column + size > line_width) return std::nullopt;
     if (i > 0) {
-      if (used + 1 + item.size() <= line_width) {
+      if (used + 1 + size <= line_width) {
         result += ' ';
         ++used;
       } else {
-        result += "\n" + blanks(column);
+        result.append("\n").append(column, ' ');
         used = column;
       }
     }
-    result += item;
-    used += item.size();
+    result.append(list.items[i]).append(end);
+    used += size;
   }
   return result;
 }
@@ -65,11 +74,11 @@ std::string break_parameter(const List& list, std::size_t indent) {
 /// Items behind the bracket, lines aligned with it; or all below it. A declaration is broken behind
 /// its bracket only when nothing else helps, a call when that saves a line.
 std::string break_list(const List& list, std::size_t indent, bool is_declaration) {
-  std::string flat = on_one_line(list);
-  if (list.items.empty() || fits(flat, indent)) return flat;
+  if (list.items.empty() || indent + flat_size(list) <= line_width) return on_one_line(list);
   const auto aligned = fill(list, indent + list.before.size());
+  if (aligned && is_declaration) return list.before + *aligned;
   const auto below = fill(list, indent + continuation);
-  if (aligned && (is_declaration || !below || lines_of(*aligned) <= lines_of(*below) + 1)) {
+  if (aligned && (!below || lines_of(*aligned) <= lines_of(*below) + 1)) {
     return list.before + *aligned;
   }
   const std::string items =

@@ -2,6 +2,7 @@
 #include "compiler/output/cpp_lines.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -13,6 +14,16 @@ namespace robdef::cpp {
 namespace {
 
 constexpr std::size_t nowhere = std::string_view::npos;
+
+enum class Kind : unsigned char { plain, opens, closes, quote };
+
+constexpr std::array<Kind, 256> kinds = [] {
+  std::array<Kind, 256> all{};
+  for (const char c : std::string_view("(<{[")) all[static_cast<unsigned char>(c)] = Kind::opens;
+  for (const char c : std::string_view(")>}]")) all[static_cast<unsigned char>(c)] = Kind::closes;
+  all[static_cast<unsigned char>('"')] = Kind::quote;
+  return all;
+}();
 
 /// Finds places of a text that are in no brackets and no string.
 class Reader {
@@ -28,16 +39,21 @@ class Reader {
         is_in_string_ = c != '"';
         continue;
       }
-      if (c == '"') {
+      const Kind kind = kinds[static_cast<unsigned char>(c)];
+      if (kind == Kind::plain) {
+        if (depth_ == 0) return true;
+        continue;
+      }
+      if (kind == Kind::quote) {
         is_in_string_ = true;
         continue;
       }
-      const bool is_arrow = c == '>' && at > 0 && text_[at - 1] == '-';
-      if (is_open(c)) {
+      if (kind == Kind::opens) {
         if (depth_++ == 0) return true;
         continue;
       }
-      if (is_close(c) && !is_arrow && depth_ > 0) {
+      const bool is_arrow = c == '>' && at > 0 && text_[at - 1] == '-';
+      if (!is_arrow && depth_ > 0) {
         if (--depth_ == 0) return true;
         continue;
       }
@@ -49,9 +65,6 @@ class Reader {
   std::size_t at = nowhere;
 
  private:
-  static bool is_open(char c) { return c == '(' || c == '<' || c == '{' || c == '['; }
-  static bool is_close(char c) { return c == ')' || c == '>' || c == '}' || c == ']'; }
-
   std::string_view text_;
   std::size_t depth_ = 0;
   bool is_in_string_ = false;

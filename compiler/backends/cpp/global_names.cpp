@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names of the global namespace that the first segment of a service must not meet: what the headers
 // of C, C++ and POSIX declare there that the runtime includes, and std itself.
-#include <string>
+#include <cstddef>
 #include <string_view>
+#include <unordered_set>
 
 #include "compiler/backends/cpp/names.hpp"
 
@@ -69,7 +70,16 @@ constexpr std::string_view global_names =
 }  // namespace
 
 bool is_global_name(std::string_view word) {
-  return global_names.find(" " + std::string(word) + " ") != std::string_view::npos;
+  static const std::unordered_set<std::string_view> names = [] {
+    std::unordered_set<std::string_view> all;
+    for (std::string_view rest = global_names.substr(1); !rest.empty();) {
+      const std::size_t end = rest.find(' ');
+      all.insert(rest.substr(0, end));
+      rest.remove_prefix(end + 1);
+    }
+    return all;
+  }();
+  return names.contains(word);
 }
 
 }  // namespace robdef::cpp

@@ -65,7 +65,8 @@ std::vector<std::string> literal_text(std::string_view text) {
   std::vector<std::string> pieces;
   while (!text.empty()) {
     const bool plain = is_plain(text.front());
-    std::size_t length = run_length(text, plain);
+    // No more of a long text than a piece takes, or each piece reads all of the rest.
+    std::size_t length = run_length(plain ? text.substr(0, piece_limit + 1) : text, plain);
     if (plain) length = piece_length(text.substr(0, length));
     pieces.push_back(plain ? raw(text.substr(0, length)) : escaped(text.substr(0, length)));
     text.remove_prefix(length);

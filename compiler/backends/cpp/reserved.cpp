@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <unordered_set>
 
 #include "compiler/backends/cpp/names.hpp"
 
@@ -302,10 +303,17 @@ static_assert(std::ranges::is_sorted(keywords) && std::ranges::is_sorted(macros)
 }  // namespace
 
 bool is_reserved(std::string_view word) {
+  static const std::unordered_set<std::string_view> words = [] {
+    std::unordered_set<std::string_view> all(keywords.begin(), keywords.end());
+    all.insert(macros.begin(), macros.end());
+    return all;
+  }();
+  if (words.contains(word)) return true;
+  // The families have capitals only.
+  if (word.empty() || word.front() < 'A' || word.front() > 'Z') return false;
   const auto begins = [&](std::string_view beginning) { return word.starts_with(beginning); };
   const auto ends = [&](std::string_view ending) { return word.ends_with(ending); };
-  return std::ranges::binary_search(keywords, word) || std::ranges::binary_search(macros, word) ||
-         std::ranges::any_of(family_beginnings, begins) ||
+  return std::ranges::any_of(family_beginnings, begins) ||
          (std::ranges::any_of(limit_beginnings, begins) &&
           std::ranges::any_of(limit_endings, ends));
 }
