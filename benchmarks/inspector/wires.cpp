@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Serves 20 wires to a page:
-//   inspector_wires RATE [FLAGS]   sends so many values a second on each, at a free port; prints
-//   the URL
+//   inspector_wires RATE [FLAGS]   sends so many values a second on each, at a free port, until a
+//                                  signal ends it; prints `ready: URL`
 #include "experimental/wires.hpp"
 
 #include <array>
@@ -12,9 +12,8 @@
 #include <cstdlib>
 #include <exception>
 #include <memory>
-#include <string>
+#include <thread>
 
-#include "examples/serving/serving.hpp"
 #include "rr/node.hpp"
 #include "rr/setup.hpp"
 
@@ -33,17 +32,17 @@ constexpr auto channels = std::to_array({
     &BenchSkeleton::channel_18, &BenchSkeleton::channel_19,
 });
 
-int serve(int argc, char** argv) {
+[[noreturn]] void serve(int argc, char** argv) {
   const double rate = std::atof(argv[1]);
-  serving::Stay stay(0);
   rr::SetupOptions options = rr::SetupOptions::server("experimental.wires", 0);
   options.tcp_ws_allow_local_pages = true;
   const rr::NodeSetup setup(options, argc - 1, argv + 1);
   const auto bench = std::make_shared<BenchSkeleton>();
   setup->register_service("bench", bench);
-  serving::announce("rr+ws://127.0.0.1:" + std::to_string(setup.port()) + "/?service=bench");
+  std::printf("ready: rr+ws://127.0.0.1:%u/?service=bench\n", unsigned{setup.port()});
+  std::fflush(stdout);
   const auto begin = std::chrono::steady_clock::now();
-  for (double sent = 0; stay.wait(1ms);) {
+  for (double sent = 0;; std::this_thread::sleep_for(1ms)) {
     // As many as the time says: sleeping is late at times.
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
     for (; sent < time.count() * rate; ++sent) {
@@ -55,7 +54,6 @@ int serve(int argc, char** argv) {
       }
     }
   }
-  return EXIT_SUCCESS;
 }
 
 }  // namespace
@@ -66,7 +64,7 @@ int main(int argc, char** argv) {
     return EXIT_FAILURE;
   }
   try {
-    return serve(argc, argv);
+    serve(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "inspector_wires: %s\n", error.what());
     return EXIT_FAILURE;

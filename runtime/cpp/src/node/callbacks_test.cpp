@@ -360,7 +360,9 @@ TEST(Callbacks, InFlightEndWhenTheServersNodeShutsDown) {
   pair.server.shutdown();
   EXPECT_EQ(code.get_future().get(), ErrorCode::connection_error);
   gate.set_value();
-  EXPECT_EQ(code_of([&] { call.get(); }), ErrorCode::connection_error);
+  // Its handler has ended by then, and may have answered before the connection was closed.
+  EXPECT_THAT(code_of([&] { call.get(); }),
+              ::testing::AnyOf(ErrorCode::none, ErrorCode::connection_error));
 }
 
 TEST(Callbacks, InFlightEndWhenTheClientsNodeShutsDown) {
