@@ -68,15 +68,16 @@ export function drawOutline(target: OutlineTarget, values: readonly (number | nu
     target.closePath();
     places.length = tops.length = bottoms.length = 0;
   };
-  let before: { top: number; bottom: number } | undefined;
+  let before: { column: number; top: number; bottom: number } | undefined;
   for (let column = 0; column < columns; ++column) {
     const first = values[2 * column];
     const second = values[2 * column + 1];
     if (typeof first !== "number" || typeof second !== "number") continue;
-    const own = { top: Math.min(pixel(first), pixel(second)), bottom: Math.max(pixel(first), pixel(second)) };
-    // Joined with the column before, which it may not overlap.
-    let top = before ? Math.min(own.top, before.bottom) : own.top;
-    let bottom = before ? Math.max(own.bottom, before.top) : own.bottom;
+    const own = { column, top: Math.min(pixel(first), pixel(second)), bottom: Math.max(pixel(first), pixel(second)) };
+    // Joined with the column before, which it may not overlap. Over empty columns the line is as wide as at their sides.
+    const isNext = before?.column === column - 1;
+    let top = before && isNext ? Math.min(own.top, before.bottom) : own.top;
+    let bottom = before && isNext ? Math.max(own.bottom, before.top) : own.bottom;
     before = own;
     if (bottom - top < width) {
       const middle = (top + bottom) / 2;
