@@ -21,24 +21,20 @@ export interface OutlineOptions {
   readonly dash: readonly number[];
 }
 
-/** True where most columns have several points, so that stroking the line costs much. */
+/** True where more than a quarter of the columns has several values, so that stroking the line costs much. */
 export function isDense(values: readonly (number | null)[]): boolean {
   let several = 0;
   for (let i = 0; i + 1 < values.length; i += 2) if (values[i] !== null && values[i] !== values[i + 1]) ++several;
-  return 4 * several > values.length / 2;
+  return 8 * several > values.length;
 }
 
-/** Which columns are drawn, after a pattern of lengths. */
-function dashes(columns: number, step: number, dash: readonly number[]): (column: number) => boolean {
-  const period = dash.reduce((sum, length) => sum + length, 0);
-  if (period <= 0) return () => true;
-  const isOn = Array.from({ length: columns }, (_, column) => {
-    let at = ((column + 0.5) * step) % period;
-    let part = 0;
-    while (at >= (dash[part] ?? period)) at -= dash[part++] ?? period;
-    return part % 2 === 0;
-  });
-  return (column) => isOn[column] ?? true;
+/** Whether a place is in a part of a pattern that is drawn. `period`: the sum of its lengths. */
+function isInDash(place: number, dash: readonly number[], period: number): boolean {
+  if (period <= 0) return true;
+  let at = place % period;
+  let part = 0;
+  while (at >= (dash[part] ?? period)) at -= dash[part++] ?? period;
+  return part % 2 === 0;
 }
 
 /**
@@ -47,7 +43,7 @@ function dashes(columns: number, step: number, dash: readonly number[]): (column
  */
 export function drawOutline(target: OutlineTarget, values: readonly (number | null)[], { left, step, pixel, width, dash }: OutlineOptions): void {
   const columns = values.length >> 1;
-  const isDrawn = dashes(columns, step, dash);
+  const period = dash.reduce((sum, length) => sum + length, 0);
   const half = width / 2;
   const places: number[] = [];
   const tops: number[] = [];
@@ -73,18 +69,23 @@ export function drawOutline(target: OutlineTarget, values: readonly (number | nu
     const first = values[2 * column];
     const second = values[2 * column + 1];
     if (typeof first !== "number" || typeof second !== "number") continue;
-    const own = { column, top: Math.min(pixel(first), pixel(second)), bottom: Math.max(pixel(first), pixel(second)) };
+    const one = pixel(first);
+    const other = pixel(second);
+    let top = Math.min(one, other);
+    let bottom = Math.max(one, other);
+    const own = { column, top, bottom };
     // Joined with the column before, which it may not overlap. Over empty columns the line is as wide as at their sides.
-    const isNext = before?.column === column - 1;
-    let top = before && isNext ? Math.min(own.top, before.bottom) : own.top;
-    let bottom = before && isNext ? Math.max(own.bottom, before.top) : own.bottom;
+    if (before?.column === column - 1) {
+      top = Math.min(top, before.bottom);
+      bottom = Math.max(bottom, before.top);
+    }
     before = own;
     if (bottom - top < width) {
       const middle = (top + bottom) / 2;
       top = middle - half;
       bottom = middle + half;
     }
-    if (!isDrawn(column)) {
+    if (!isInDash((column + 0.5) * step, dash, period)) {
       finish();
       continue;
     }

@@ -237,7 +237,7 @@ TEST(ServiceSubscriptions, WaitLongerFromFailureToFailure) {
   Server server("counter", counter("a"));
   server.stop();
   Node node;
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = Clock::now();
   auto subscription = node.subscribe(server.url(), {.retry_delay = 10ms, .max_retry_delay = 80ms});
   Codes codes;
   const auto failed = subscription.on_failed(
