@@ -34,7 +34,6 @@ void give_to_system(LargeBlock block) noexcept {
   ::munmap(block.bytes, block.size);
 }
 
-
 // Blocks that were given back, the latest first.
 class SpareBlocks {
  public:
