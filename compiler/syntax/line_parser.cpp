@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/syntax/line_parser.hpp"
 
+#include <RobdefLexer.h>
+
 #include <utility>
 
 #include "compiler/syntax/faults.hpp"
@@ -11,17 +13,14 @@ namespace robdef::syntax {
 
 using Grammar = grammar::RobdefParser;
 
-// One lexer and parser serve all lines of a file: making them costs more than a line does.
+// One parser serves all lines of a file: making it costs more than a line does.
 struct LineParser::Machinery {
-  LineCharacters characters;
-  grammar::RobdefLexer lexer{&characters};
   LineTokens tokens;
   Grammar parser{&tokens};
   std::shared_ptr<FirstFault> faults = std::make_shared<FirstFault>(tokens);
   bool fits = false;  ///< the tokens are those of a line that fits the grammar
 
   Machinery() {
-    lexer.removeErrorListeners();
     parser.removeErrorListeners();
     parser.setErrorHandler(faults);
   }
@@ -29,12 +28,9 @@ struct LineParser::Machinery {
   // Reads a line by one rule and makes a node of it by `build(tree, context)`.
   template <class Context, class Build>
   auto read(const LogicalLine& line, Report& report, Context* (Grammar::*rule)(), Build build,
-            std::size_t mode = grammar::RobdefLexer::DEFAULT_MODE)
+            std::size_t mode = antlr4::Lexer::DEFAULT_MODE)
       -> std::optional<std::invoke_result_t<Build, LineTree&, Context*>> {
-    characters.set(line.text());
-    lexer.reset();
-    lexer.setMode(mode);
-    tokens.load(lexer);
+    tokens.load(line.text(), mode);
     parser.reset();
     fits = false;
     Context* context = nullptr;

@@ -78,38 +78,31 @@ ast::TokenKind kind_of(const antlr4::Token& token) {
 
 }  // namespace
 
-void LineCharacters::set(std::string_view text) {
-  text_ = text;
+void LineTokens::load(std::string_view text, std::size_t mode) {
+  count_ = 0;
   next_ = 0;
+  LineLexer lexer(text, mode);
+  while (true) {
+    const LexedToken token = lexer.next();
+    add(token);
+    if (token.type == Parser::NL) return;
+  }
 }
 
-size_t LineCharacters::LA(ssize_t offset) {
-  if (offset <= 0) return 0;
-  const std::size_t at = next_ + static_cast<std::size_t>(offset) - 1;
-  if (at < text_.size()) return static_cast<unsigned char>(text_[at]);
-  return at == text_.size() ? '\n' : antlr4::IntStream::EOF;
-}
-
-std::string LineCharacters::getText(const antlr4::misc::Interval& interval) {
-  const auto begin = static_cast<std::size_t>(interval.a);
-  const auto end = std::min(static_cast<std::size_t>(interval.b) + 1, text_.size());
-  return begin < end ? std::string(text_.substr(begin, end - begin)) : std::string();
-}
-
-void LineTokens::load(antlr4::Lexer& lexer) {
-  source_ = &lexer;
-  tokens_.clear();
-  next_ = 0;
-  do {
-    tokens_.push_back(lexer.nextToken());
-    auto& token = static_cast<antlr4::CommonToken&>(*tokens_.back());
-    token.setTokenIndex(tokens_.size() - 1);
-  } while (tokens_.back()->getType() != grammar::RobdefLexer::NL);
+void LineTokens::add(const LexedToken& token) {
+  if (count_ == tokens_.size()) {
+    tokens_.push_back(std::make_unique<antlr4::CommonToken>(token.type));
+  }
+  antlr4::CommonToken& added = *tokens_[count_];
+  added.setType(token.type);
+  added.setStartIndex(token.begin);
+  added.setStopIndex(token.end - 1);
+  added.setTokenIndex(count_++);
 }
 
 void LineTokens::append_to(const LogicalLine& line, std::vector<ast::Token>& tokens) const {
   const std::string_view text = line.text();
-  for (std::size_t index = 0; index + 1 < tokens_.size(); ++index) {
+  for (std::size_t index = 0; index + 1 < count_; ++index) {
     const antlr4::Token& token = *tokens_[index];
     std::size_t begin = token.getStartIndex();
     std::size_t end = token.getStopIndex() + 1;
@@ -121,14 +114,14 @@ void LineTokens::append_to(const LogicalLine& line, std::vector<ast::Token>& tok
 }
 
 void LineTokens::consume() {
-  if (next_ < tokens_.size()) ++next_;
+  if (next_ < count_) ++next_;
 }
 
 antlr4::Token* LineTokens::LT(ssize_t offset) {
   if (offset > 0) {
     // Behind the line's end there is nothing but the line's end.
     const std::size_t at = next_ + static_cast<std::size_t>(offset) - 1;
-    return tokens_[std::min(at, tokens_.size() - 1)].get();
+    return tokens_[std::min(at, count_ - 1)].get();
   }
   const auto back = static_cast<std::size_t>(-offset);
   return back == 0 || back > next_ ? nullptr : tokens_[next_ - back].get();

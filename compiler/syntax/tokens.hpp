@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <RobdefLexer.h>
 #include <RobdefParser.h>
 
 #include <cstddef>
@@ -11,36 +10,15 @@
 #include <vector>
 
 #include "compiler/syntax/faults.hpp"
+#include "compiler/syntax/line_lexer.hpp"
 
 namespace robdef::syntax {
-
-/// The characters of one logical line and its line end, for the lexer. Offsets are those of the
-/// line's text.
-class LineCharacters : public antlr4::CharStream {
- public:
-  void set(std::string_view text);
-
-  void consume() override { ++next_; }
-  size_t LA(ssize_t offset) override;
-  ssize_t mark() override { return 0; }
-  void release(ssize_t) override {}
-  size_t index() override { return next_; }
-  void seek(size_t index) override { next_ = index; }
-  size_t size() override { return text_.size() + 1; }
-  std::string getSourceName() const override { return {}; }
-  std::string getText(const antlr4::misc::Interval& interval) override;
-  std::string toString() const override { return std::string(text_); }
-
- private:
-  std::string_view text_;
-  std::size_t next_ = 0;
-};
 
 /// The tokens of one logical line, for the parser; the last one is the line's end.
 class LineTokens : public antlr4::TokenStream {
  public:
-  /// Reads all tokens up to the line's end.
-  void load(antlr4::Lexer& lexer);
+  /// Reads all tokens of a line's text, beginning in this mode of the lexer, and its end.
+  void load(std::string_view text, std::size_t mode);
 
   /// Adds them as parts of a file: without the line's end, and without the blanks that the grammar
   /// holds inside of tokens.
@@ -53,9 +31,10 @@ class LineTokens : public antlr4::TokenStream {
   void release(ssize_t) override {}
   size_t index() override { return next_; }
   void seek(size_t index) override { next_ = index; }
-  size_t size() override { return tokens_.size(); }
+  size_t size() override { return count_; }
   antlr4::Token* get(size_t index) const override { return tokens_[index].get(); }
-  antlr4::TokenSource* getTokenSource() const override { return source_; }
+  // The runtime wants it to make up tokens that are missing, and a line is given up before that.
+  antlr4::TokenSource* getTokenSource() const override { return nullptr; }
   std::string getSourceName() const override { return {}; }
   // No message is made by the runtime, so nobody asks for text.
   std::string getText(const antlr4::misc::Interval&) override { return {}; }
@@ -64,8 +43,11 @@ class LineTokens : public antlr4::TokenStream {
   std::string getText(antlr4::Token*, antlr4::Token*) override { return {}; }
 
  private:
-  std::vector<std::unique_ptr<antlr4::Token>> tokens_;
-  antlr4::TokenSource* source_ = nullptr;
+  void add(const LexedToken& token);
+
+  // Those behind `count_` are of earlier lines: they are used again.
+  std::vector<std::unique_ptr<antlr4::CommonToken>> tokens_;
+  std::size_t count_ = 0;
   std::size_t next_ = 0;
 };
 
