@@ -53,32 +53,34 @@ set(robdef_layers
   "runtime/cpp/include/rr/realtime/service.hpp: runtime/cpp/include/rr"
   "runtime/cpp/src/realtime: runtime/cpp/include/rr/crc32.hpp runtime/cpp/include/rr/error.hpp runtime/cpp/include/rr/realtime"
   "runtime/cpp/src/realtime/service: runtime/cpp/include/rr runtime/cpp/src/realtime runtime/cpp/src/node/testing"
-  "runtime/cpp/src/codec: runtime/cpp/include/rr"
+  # The seam: what differs between systems.
+  "runtime/cpp/src/platform: runtime/cpp/include/rr"
+  "runtime/cpp/src/codec: runtime/cpp/include/rr runtime/cpp/src/platform"
   "runtime/cpp/src/value: runtime/cpp/include/rr runtime/cpp/src/codec"
-  "runtime/cpp/src/channel: runtime/cpp/include/rr runtime/cpp/src/codec"
+  "runtime/cpp/src/channel: runtime/cpp/include/rr runtime/cpp/src/platform runtime/cpp/src/codec"
   "runtime/cpp/src/channel/budget_inside_test.cpp: runtime/cpp/include/rr runtime/cpp/src/channel runtime/cpp/src/codec runtime/cpp/src/node/testing"
   "runtime/cpp/src/endpoint: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel"
   "runtime/cpp/src/client: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint"
-  "runtime/cpp/src/service: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint"
+  "runtime/cpp/src/service: runtime/cpp/include/rr runtime/cpp/src/platform runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint"
   "runtime/cpp/src/subscription: runtime/cpp/include/rr runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/client"
-  "runtime/cpp/src/discovery: runtime/cpp/include/rr runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/client runtime/cpp/src/subscription"
+  "runtime/cpp/src/discovery: runtime/cpp/include/rr runtime/cpp/src/platform runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/client runtime/cpp/src/subscription"
   "runtime/cpp/src/discovery/find_inside_test.cpp: runtime/cpp/include/rr runtime/cpp/src/discovery runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/node/testing"
-  "runtime/cpp/src/discovery/flood_inside_test.cpp: runtime/cpp/include/rr runtime/cpp/src/discovery runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/node/testing"
+  "runtime/cpp/src/discovery/flood_inside_test.cpp: runtime/cpp/include/rr runtime/cpp/src/platform runtime/cpp/src/discovery runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/node/testing"
   "runtime/cpp/src/discovery/index_limits_inside_test.cpp: runtime/cpp/include/rr runtime/cpp/src/discovery runtime/cpp/src/endpoint runtime/cpp/src/node/testing"
   "runtime/cpp/src/discovery/local_nodes_inside_test.cpp: runtime/cpp/include/rr runtime/cpp/src/discovery runtime/cpp/src/channel runtime/cpp/src/node/testing"
   "runtime/cpp/src/discovery/credentials_test.cpp: runtime/cpp/include/rr runtime/cpp/src/discovery runtime/cpp/src/node/testing"
   "runtime/cpp/src/discovery/type_subscription_test.cpp: runtime/cpp/include/rr runtime/cpp/src/discovery runtime/cpp/src/node/testing"
   "runtime/cpp/src/discovery/networks_test.cpp: runtime/cpp/src/node/testing"
   "runtime/cpp/src/discovery/peer.cpp: runtime/cpp/include/rr runtime/cpp/src/node/testing"
-  "runtime/cpp/src/node: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/client runtime/cpp/src/service runtime/cpp/src/subscription runtime/cpp/src/discovery"
+  "runtime/cpp/src/node: runtime/cpp/include/rr runtime/cpp/src/platform runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/client runtime/cpp/src/service runtime/cpp/src/subscription runtime/cpp/src/discovery"
   # The compiler's model reads definitions here too.
   "runtime/cpp/src/dynamic: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/client compiler/diagnostics compiler/syntax compiler/model"
   "runtime/c: runtime/cpp/include/rr runtime/cpp/src/channel runtime/cpp/src/client runtime/cpp/src/endpoint runtime/cpp/src/service"
   "runtime/c/test: runtime/c/include runtime/cpp/include/rr runtime/cpp/src/node/testing runtime/cpp/src/client/definition_text.hpp runtime/cpp/src/discovery/testing.hpp"
   "runtime/matlab: runtime/cpp/include/rr"
   "runtime/matlab/test: runtime/cpp/include/rr runtime/cpp/src/dynamic/testing runtime/matlab/src/queue.hpp"
-  "runtime/cpp/src/tap: runtime/cpp/include/rr"
-  "runtime/cpp/src/replay: runtime/cpp/include/rr runtime/cpp/src/channel/capabilities.hpp runtime/cpp/src/channel/layer.hpp runtime/cpp/src/channel/socket.hpp"
+  "runtime/cpp/src/tap: runtime/cpp/include/rr runtime/cpp/src/platform"
+  "runtime/cpp/src/replay: runtime/cpp/include/rr runtime/cpp/src/platform runtime/cpp/src/channel/capabilities.hpp runtime/cpp/src/channel/layer.hpp runtime/cpp/src/channel/socket.hpp"
   "runtime/cpp/src/node/replay_test.cpp: runtime/cpp/include/rr runtime/cpp/src/node runtime/cpp/src/replay"
   "runtime/cpp/src/node/local_channel_test.cpp: runtime/cpp/include/rr runtime/cpp/src/node runtime/cpp/src/channel runtime/cpp/src/replay"
   "runtime/cpp/src/node/local_trust_test.cpp: runtime/cpp/include/rr runtime/cpp/src/node runtime/cpp/src/channel runtime/cpp/src/replay"
@@ -109,13 +111,22 @@ set(robdef_outside_headers
   "^boost/| cli/inspect_page.cpp runtime/cpp/include/rr/async runtime/cpp/fuzz/client_programs.cpp runtime/cpp/src/channel/web_socket.cpp runtime/cpp/src/channel/memory_stream.hpp"
   "^openssl/| runtime/cpp/src/channel runtime/cpp/src/service/password_hash.cpp conformance/harness/web_socket_recording.cpp"
   "^rr/async(\\.hpp$|/)| runtime/cpp/include/rr/async.hpp runtime/cpp/include/rr/async runtime/cpp/src runtime/cpp/fuzz runtime/cpp/stress examples conformance benchmarks compiler/backends"
-  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| compiler/plugin/program.cpp runtime/cpp/src/serial runtime/arduino/bench/tcp runtime/cpp/src/channel runtime/cpp/src/discovery runtime/cpp/src/endpoint runtime/cpp/src/realtime/udp_socket.cpp runtime/cpp/src/replay runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp examples/hardening/sandbox_probe.cpp conformance benchmarks"
+  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| compiler/plugin/program.cpp runtime/cpp/src/serial runtime/arduino/bench/tcp runtime/cpp/src/platform runtime/cpp/src/channel/testing runtime/cpp/src/discovery/testing.hpp runtime/cpp/src/realtime/udp_socket.cpp runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp examples/hardening/sandbox_probe.cpp conformance benchmarks"
   "^fmt/| cli compiler benchmarks"
   "^nlohmann/| compiler/lsp compiler/plugin/answer.cpp runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"
   "^toml\\+\\+/| compiler/project/toml_file.cpp"
   "^(mex\\.h|octave/)| runtime/matlab conformance/runners/matlab"
   "^histedit\\.h$| cli/live/line_reader.cpp"
   "^png\\.h$| examples")
+
+# Folders of the runtime above the platform seam, tests apart: they are the same for all systems. What they must not
+# include or name, and the only conditions of the preprocessor: they ask for a compiler or what it was asked for.
+set(robdef_above_seam_names channel endpoint service client node discovery codec tap replay subscription dynamic value)
+list(TRANSFORM robdef_above_seam_names PREPEND runtime/cpp/src/)
+set(robdef_system_headers
+  "^(sys|net|netinet|arpa|linux)/|^(netdb|unistd|fcntl|poll|pthread|dirent|ifaddrs|sched|signal|pwd|grp|dlfcn|malloc|windows|winsock2|ws2tcpip)\\.h$")
+set(robdef_system_names "(^|[^A-Za-z_])(epoll(_[a-z0-9_]+)?|futex|eventfd|MSG_[A-Z]+)([^A-Za-z_]|$)")
+set(robdef_allowed_conditions "__SANITIZE_|__has_feature|__GNUC__|__clang__")
 
 # A name of a folder or file that `path` is or lies below.
 function(robdef_is_below path folder result)
@@ -192,6 +203,29 @@ function(robdef_judge_include source folder allowed header result)
   endif()
 endfunction()
 
+# What a source above the platform seam has of one system alone: a list of `includes sys/a.h`, `names MSG_B`, `asks ...`.
+function(robdef_find_system_use root source result)
+  set(${result} "" PARENT_SCOPE)
+  robdef_is_below_any("${source}" "${robdef_above_seam_names}" is_above)
+  if(NOT is_above OR source MATCHES "_test\\.cpp$|/testing/|/testing\\.hpp$")
+    return()
+  endif()
+  set(found "")
+  file(STRINGS "${root}/${source}" lines REGEX "${robdef_system_names}|^[ \t]*#[ \t]*(el)?if|^[ \t]*#[ \t]*include[ \t]*<")
+  foreach(line IN LISTS lines)
+    if(line MATCHES "^[ \t]*#[ \t]*include[ \t]*<([^>]+)>")
+      if(CMAKE_MATCH_1 MATCHES "${robdef_system_headers}")
+        list(APPEND found "includes ${line}")
+      endif()
+    elseif(line MATCHES "${robdef_system_names}")
+      list(APPEND found "names ${CMAKE_MATCH_2}")
+    elseif(line MATCHES "#[ \t]*(el)?if" AND NOT line MATCHES "${robdef_allowed_conditions}")
+      list(APPEND found "asks ${line}")
+    endif()
+  endforeach()
+  set(${result} "${found}" PARENT_SCOPE)
+endfunction()
+
 # robdef_check_layers(ROOT RESULT): one line per finding, `file: includes header: why`.
 function(robdef_check_layers root result)
   set(findings "")
@@ -212,6 +246,10 @@ function(robdef_check_layers root result)
       list(APPEND findings "${source}: its folder has no row in Layers.cmake")
       continue()
     endif()
+    robdef_find_system_use("${root}" "${source}" uses)
+    foreach(use IN LISTS uses)
+      list(APPEND findings "${source}: ${use}: that is for runtime/cpp/src/platform alone")
+    endforeach()
     file(STRINGS "${root}/${source}" lines REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]")
     foreach(line IN LISTS lines)
       string(REGEX MATCH "[<\"]([^>\"]+)[>\"]" header "${line}")

@@ -6,6 +6,7 @@
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/remote_address.hpp"
 #include "runtime/cpp/src/channel/stream_connection.hpp"
+#include "runtime/cpp/src/platform/memory.hpp"
 
 namespace rr::channel {
 namespace {
@@ -37,7 +38,7 @@ void account_for(StreamConnection& connection, const ChannelContext& context,
 std::shared_ptr<Connection> accept_connection(const ChannelContext& context, Descriptor socket,
                                               LinkTerms terms, std::unique_ptr<Carrier> carrier,
                                               const AcceptHandler& accept) {
-  if (context.options->budget.fixes_heap_thresholds) fix_heap_thresholds();
+  if (context.options->budget.fixes_heap_thresholds) platform::fix_heap_thresholds();
   // The socket of a carrier that is not TCP or local tells nothing of the other side.
   std::string from =
       carrier == nullptr ? remote_key(remote_address_of(socket.get())) : std::string();

@@ -9,6 +9,7 @@
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/private_files.hpp"
+#include "runtime/cpp/src/platform/clock.hpp"
 
 namespace rr::channel {
 namespace {
@@ -20,9 +21,7 @@ constexpr std::string_view revoked_mark = "revoked ";
 constexpr const char* time_form = "%Y-%m-%dT%H:%M:%SZ";
 
 std::string text_of_time(WallClock::time_point time) {
-  const std::time_t seconds = WallClock::to_time_t(time);
-  std::tm parts{};
-  gmtime_r(&seconds, &parts);
+  const std::tm parts = platform::utc(WallClock::to_time_t(time));
   std::array<char, 64> text{};
   return {text.data(), std::strftime(text.data(), text.size(), time_form, &parts)};
 }

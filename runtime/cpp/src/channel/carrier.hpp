@@ -9,7 +9,9 @@
 #include "runtime/cpp/src/channel/scratch.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 
-struct iovec;
+namespace rr::platform {
+struct Buffer;
+}
 
 namespace rr::channel {
 
@@ -24,18 +26,17 @@ class Carrier {
 
   /// True when it carries whole messages, which receive() gives, and not bytes.
   [[nodiscard]] virtual bool carries_messages() const = 0;
-  /// As recv() of the socket: bytes, 0 at the end, -1 with errno. What is not bytes for the
+  /// As platform::receive(): bytes, 0 at the end, nothing_now or broken. What is not bytes for the
   /// connection, but moves things on, is not told of.
   virtual std::ptrdiff_t receive(std::span<std::byte> room, bool may_block) = 0;
-  /// The same for a whole message: 1, 0 or -1.
+  /// The same for a whole message, which counts as 1.
   virtual std::ptrdiff_t receive(Frame& message, bool may_block) = 0;
   /// True when receive() has something without asking the socket: of bytes never more than fit into
   /// a scratch.
   [[nodiscard]] virtual bool has_received() const = 0;
 
-  /// As sendmsg() of a socket, without blocking: how many bytes were taken, 0 when there is no room
-  /// now, -1 when the connection is broken.
-  virtual std::ptrdiff_t send(std::span<const iovec> pieces) = 0;
+  /// Without blocking: how many bytes were taken, 0 when there is no room now, platform::broken.
+  virtual std::ptrdiff_t send(std::span<const platform::Buffer> pieces) = 0;
   /// Bytes that were taken, and wait for the socket. One that carries bytes may have some of its
   /// own, and be asked by any thread.
   [[nodiscard]] virtual std::size_t unsent() const = 0;

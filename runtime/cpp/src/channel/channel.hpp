@@ -30,8 +30,6 @@ struct Pools {
 Pools make_pools(const NodeOptions& options);
 /// Gives memory back to the system when much has been given back to the pools (memory_return.cpp).
 void watch_pools(const Pools& pools, const std::shared_ptr<Reactor>& reactor);
-/// See Budget::fixes_heap_thresholds. Once for the process.
-void fix_heap_thresholds();
 
 /// What channels work with.
 struct ChannelContext {

@@ -17,9 +17,9 @@
 #include "rr/wire.hpp"
 #include "rr/writer.hpp"
 #include "runtime/cpp/src/channel/account.hpp"
-#include "runtime/cpp/src/channel/sleep_word.hpp"
 #include "runtime/cpp/src/channel/thread_share.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
+#include "runtime/cpp/src/platform/sleep_word.hpp"
 
 namespace rr::channel {
 
@@ -59,8 +59,8 @@ struct Waiter {
   static constexpr std::uint32_t answered = 2;  ///< it will be done in a moment
   static constexpr std::uint32_t done = 4;      ///< it may go, and its memory with it
 
-  SleepWord state{0};      // reader and answered are written under the connection's lock
-  Waiter* next = nullptr;  // guarded by the connection
+  platform::SleepWord state{0};  // reader and answered are written under the connection's lock
+  Waiter* next = nullptr;        // guarded by the connection
 
   [[nodiscard]] bool is_done() const { return (state.load(std::memory_order_acquire) & done) != 0; }
   [[nodiscard]] bool is_reader() const {

@@ -8,8 +8,8 @@ namespace rr::channel {
 
 void ConnectionTap::open(int socket) {
   if (tap_ == nullptr) return;
-  const std::string own = url_of(local_address(socket));
-  const std::string remote = url_of(remote_address(socket));
+  const std::string own = url_of(platform::local_address(socket));
+  const std::string remote = url_of(platform::remote_address(socket));
   number_ = tap_->opened({.side = is_client_ ? TapSide::client : TapSide::service,
                           .client_url = is_client_ ? own : remote,
                           .service_url = is_client_ ? remote : own});

@@ -6,29 +6,14 @@
 #include <string>
 #include <string_view>
 
-#include "runtime/cpp/src/channel/socket.hpp"
+#include "runtime/cpp/src/platform/files.hpp"
+#include "runtime/cpp/src/platform/node_folders.hpp"
 
 /// The folders and files that nodes of one machine share (04, section 7).
 namespace rr::channel {
 
 /// The name of the user that the process runs as; throws rr::Error (system_resource_error).
 std::string own_user_name();
-/// The run directories of the system and of the user, by the environment.
-std::filesystem::path system_run_directory();
-std::filesystem::path user_run_directory();
-
-/// All of them.
-struct NodeDirectories {
-  std::filesystem::path user_run;
-  std::filesystem::path system_run;
-  std::filesystem::path user_config;
-  std::filesystem::path user_state;
-  bool is_root = false;
-
-  /// Of this process. Throws rr::Error (system_resource_error) when the user has no home.
-  static NodeDirectories of_user();
-};
-
 /// `key: value` lines; the first of a key counts, other lines are not heeded. Empty for a file that
 /// cannot be read, is larger, or is a link.
 std::map<std::string, std::string> read_info_file(const std::filesystem::path& file);
@@ -47,7 +32,7 @@ class LockedFile {
   static bool is_held(const std::filesystem::path& file);
 
  private:
-  Descriptor file_;
+  platform::File file_;
   std::string name_;
 };
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/flusher.hpp"
 
-#include <sched.h>
-
 #include <system_error>
 #include <utility>
+
+#include "runtime/cpp/src/platform/threads.hpp"
 
 namespace rr::channel {
 
@@ -38,8 +38,7 @@ void Flusher::stop() {
 void Flusher::run() {
   // Woken on the producer's own processor it would send one message at a time; it may wait there
   // until the producer pauses, or has gathered enough to send itself.
-  const sched_param none{};
-  sched_setscheduler(0, SCHED_BATCH, &none);
+  platform::prefer_throughput();
   std::vector<std::shared_ptr<Flushable>> due;
   std::unique_lock lock(mutex_);
   while (true) {

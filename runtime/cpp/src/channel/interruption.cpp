@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/interruption.hpp"
 
-#include <sys/eventfd.h>
-
-#include <cerrno>
-#include <cstring>
 #include <string>
 #include <utility>
 
@@ -17,14 +13,14 @@ thread_local const Interruption* current_interruption = nullptr;
 
 }  // namespace
 
-Interruption::Interruption() : event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-  if (!event_) {
-    throw Error(ErrorCode::system_resource_error, std::string("eventfd: ") + std::strerror(errno));
+Interruption::Interruption(std::error_code error) : bell_(error) {
+  if (error) {
+    throw Error(ErrorCode::system_resource_error, "an interruption: " + error.message());
   }
 }
 
 void Interruption::interrupt() {
-  if (!is_interrupted_.exchange(true)) eventfd_write(event_.get(), 1);
+  if (!is_interrupted_.exchange(true)) bell_.ring();
 }
 
 Interruption::Scope::Scope(const Interruption& interruption)

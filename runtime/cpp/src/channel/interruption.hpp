@@ -3,7 +3,7 @@
 
 #include <atomic>
 
-#include "runtime/cpp/src/channel/socket.hpp"
+#include "runtime/cpp/src/platform/waiting.hpp"
 
 namespace rr::channel {
 
@@ -12,7 +12,7 @@ namespace rr::channel {
 class Interruption {
  public:
   /// Throws rr::Error (system_resource_error) when there are no descriptors left.
-  Interruption();
+  Interruption() : Interruption(std::error_code()) {}
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
@@ -20,7 +20,7 @@ class Interruption {
   void interrupt();
   [[nodiscard]] bool is_interrupted() const { return is_interrupted_.load(); }
   /// Becomes readable when interrupted.
-  [[nodiscard]] int descriptor() const { return event_.get(); }
+  [[nodiscard]] int descriptor() const { return bell_.descriptor(); }
 
   /// While it exists, connecting on this thread can be interrupted.
   class Scope {
@@ -37,7 +37,9 @@ class Interruption {
   static const Interruption* current();
 
  private:
-  const Descriptor event_;
+  explicit Interruption(std::error_code error);
+
+  const platform::Bell bell_;
   std::atomic<bool> is_interrupted_{false};
 };
 

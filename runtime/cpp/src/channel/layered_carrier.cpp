@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/layered_carrier.hpp"
 
-#include <poll.h>
-#include <sys/socket.h>
-#include <sys/uio.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstring>
 #include <utility>
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/socket.hpp"
+#include "runtime/cpp/src/channel/watcher.hpp"
 
 namespace rr::channel {
 namespace {
@@ -124,10 +120,8 @@ void LayeredCarrier::say(std::size_t layers, Bytes bytes) {
 bool LayeredCarrier::flush_under_lock() {
   bool is_broken = false;
   while (unsent_at_ != unsent_.size()) {
-    const ssize_t sent = ::send(socket_, unsent_.data() + unsent_at_, unsent_.size() - unsent_at_,
-                                MSG_DONTWAIT | MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR) continue;
-    is_broken = sent < 0 && errno != EAGAIN && errno != EWOULDBLOCK;
+    const std::ptrdiff_t sent = platform::send(socket_, std::span(unsent_).subspan(unsent_at_));
+    is_broken = sent == platform::broken;
     if (sent <= 0) break;
     unsent_at_ += static_cast<std::size_t>(sent);
   }
@@ -145,8 +139,7 @@ bool LayeredCarrier::flush() {
 }
 
 std::ptrdiff_t LayeredCarrier::receive(Frame& /*message*/, bool /*may_block*/) {
-  errno = EINVAL;
-  return -1;
+  return platform::broken;  // it has no messages
 }
 
 std::ptrdiff_t LayeredCarrier::receive(std::span<std::byte> room, bool may_block) {
@@ -161,7 +154,8 @@ std::ptrdiff_t LayeredCarrier::receive(std::span<std::byte> room, bool may_block
       }
     }
     std::array<std::byte, chunk> wire;
-    const ssize_t size = recv(socket_, wire.data(), wire.size(), may_block ? 0 : MSG_DONTWAIT);
+    const auto wait = may_block ? platform::Wait::some : platform::Wait::none;
+    const std::ptrdiff_t size = platform::receive(socket_, wire, wait);
     if (size <= 0) return size;
     const std::lock_guard lock(mutex_);
     pass(std::span(wire).first(static_cast<std::size_t>(size)), 0);
@@ -172,21 +166,21 @@ std::ptrdiff_t LayeredCarrier::receive(std::span<std::byte> room, bool may_block
   return static_cast<std::ptrdiff_t>(size);
 }
 
-std::ptrdiff_t LayeredCarrier::send(std::span<const iovec> pieces) {
+std::ptrdiff_t LayeredCarrier::send(std::span<const platform::Buffer> pieces) {
   const std::lock_guard lock(mutex_);
   std::ptrdiff_t taken = 0;
   Bytes plain;
   std::size_t piece = 0;
   std::size_t at = 0;
   while (true) {
-    if (!flush_under_lock()) return -1;
+    if (!flush_under_lock()) return platform::broken;
     if (!unsent_.empty() || (!layers_.empty() && !layers_.back()->is_open())) return taken;
     plain.clear();
     while (piece != pieces.size() && plain.size() != sent_at_once) {
-      const std::size_t part = std::min(pieces[piece].iov_len - at, sent_at_once - plain.size());
-      append(plain, {static_cast<const std::byte*>(pieces[piece].iov_base) + at, part});
+      const std::size_t part = std::min(pieces[piece].size - at, sent_at_once - plain.size());
+      append(plain, {pieces[piece].data + at, part});
       at += part;
-      if (at != pieces[piece].iov_len) break;
+      if (at != pieces[piece].size) break;
       ++piece;
       at = 0;
     }
@@ -196,6 +190,8 @@ std::ptrdiff_t LayeredCarrier::send(std::span<const iovec> pieces) {
   }
 }
 
-void LayeredCarrier::wait_for_room(Time deadline) { wait_for(socket_, POLLOUT, deadline); }
+void LayeredCarrier::wait_for_room(Time deadline) {
+  platform::wait_for(socket_, ready::room, deadline);
+}
 
 }  // namespace rr::channel

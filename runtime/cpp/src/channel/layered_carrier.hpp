@@ -36,7 +36,7 @@ class LayeredCarrier final : public Carrier {
   std::ptrdiff_t receive(std::span<std::byte> room, bool may_block) override;
   std::ptrdiff_t receive(Frame& message, bool may_block) override;
   [[nodiscard]] bool has_received() const override { return plain_at_ != plain_.size(); }
-  std::ptrdiff_t send(std::span<const iovec> pieces) override;
+  std::ptrdiff_t send(std::span<const platform::Buffer> pieces) override;
   [[nodiscard]] std::size_t unsent() const override {
     return unsent_size_.load(std::memory_order_relaxed);
   }

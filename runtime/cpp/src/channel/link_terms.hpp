@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -11,6 +9,7 @@
 
 #include "rr/channel.hpp"
 #include "rr/options.hpp"
+#include "runtime/cpp/src/platform/users.hpp"
 
 namespace rr::channel {
 
@@ -29,7 +28,7 @@ struct LinkTerms {
   std::shared_ptr<WebSockets> web_sockets{};
   std::shared_ptr<const Tls> tls{};
   /// Of local sockets: this user and root may connect, nobody else; nothing: all who can.
-  std::optional<uid_t> only_user{};
+  std::optional<platform::UserId> only_user{};
   /// Nothing but TLS is served.
   bool is_tls_required = false;
 };

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/listening_socket.hpp"
 
-#include <fcntl.h>
-#include <sys/socket.h>
-
-#include <cerrno>
 #include <system_error>
 #include <utility>
 
@@ -23,7 +19,10 @@ constexpr Milliseconds giving_way{200};
 // nobody but those who connect.
 constexpr int accepts_at_once = 16;
 
-Descriptor any_descriptor() { return Descriptor(::open("/dev/null", O_RDONLY | O_CLOEXEC)); }
+bool is_for_want_of_descriptors(const std::error_code& error) {
+  return error == std::errc::too_many_files_open ||
+         error == std::errc::too_many_files_open_in_system;
+}
 
 }  // namespace
 
@@ -33,7 +32,7 @@ ListeningSocket::ListeningSocket(ChannelContext context, Descriptor socket, Link
       socket_(std::move(socket)),
       terms_(std::move(terms)),
       accept_(std::move(accept)),
-      spare_(any_descriptor()) {}
+      spare_(platform::open_spare()) {}
 
 ListeningSocket::~ListeningSocket() { context_.reactor->cancel(*this); }
 
@@ -42,7 +41,7 @@ void ListeningSocket::start() { context_.reactor->add(socket_.get(), ready::inpu
 void ListeningSocket::stop() {
   is_stopped_ = true;
   context_.reactor->remove(socket_.get());
-  ::shutdown(socket_.get(), SHUT_RDWR);
+  platform::shut_down(socket_.get());
   context_.reactor->retire(shared_from_this());
 }
 
@@ -57,14 +56,14 @@ void ListeningSocket::on_ready(std::uint32_t /*events*/) {
       context_.reactor->schedule(*this, weak_from_this(), Clock::now() + accept_pause);
       return;
     }
-    Descriptor accepted(accept4(socket_.get(), nullptr, nullptr, SOCK_CLOEXEC));
+    std::error_code error;
+    Descriptor accepted = platform::accept_one(socket_.get(), error);
     if (accepted) {
       take(std::move(accepted));
       continue;
     }
-    if (errno == EINTR || errno == ECONNABORTED) continue;
-    if (errno == EAGAIN || errno == EWOULDBLOCK || is_stopped_) return;
-    if ((errno == EMFILE || errno == ENFILE) && take_with_spare()) {
+    if (error == std::errc::operation_would_block || is_stopped_) return;
+    if (is_for_want_of_descriptors(error) && take_with_spare()) {
       look_again();  // when the one that gave way has released its descriptor
     } else {
       context_.reactor->schedule(*this, weak_from_this(), Clock::now() + accept_pause);
@@ -75,7 +74,7 @@ void ListeningSocket::on_ready(std::uint32_t /*events*/) {
 
 bool ListeningSocket::keep_spare() {
   const std::lock_guard lock(mutex_);
-  if (!spare_) spare_ = any_descriptor();
+  if (!spare_) spare_ = platform::open_spare();
   return static_cast<bool>(spare_);
 }
 
@@ -94,8 +93,9 @@ bool ListeningSocket::take_with_spare() {
   {
     const std::lock_guard lock(mutex_);
     gave_way_ = Clock::now();
-    spare_ = Descriptor();
-    accepted = Descriptor(accept4(socket_.get(), nullptr, nullptr, SOCK_CLOEXEC));
+    spare_ = platform::File();
+    std::error_code error;
+    accepted = platform::accept_one(socket_.get(), error);
   }
   const bool has_room = context_.accepted->give_way();
   if (accepted && has_room) {
@@ -125,8 +125,8 @@ void ListeningSocket::look_again() {
 // Whoever may write to a private folder is still not its user.
 bool ListeningSocket::is_welcome(const Descriptor& accepted) const {
   if (!terms_.only_user) return true;
-  const auto client = peer_user(accepted.get());
-  if (client && (*client == *terms_.only_user || *client == 0)) return true;
+  const auto client = platform::peer_user(accepted.get());
+  if (client && (*client == *terms_.only_user || *client == platform::system_user)) return true;
   if (context_.options->log) {
     context_.options->log(LogLevel::warning,
                           "a local connection was refused: it is of user " +

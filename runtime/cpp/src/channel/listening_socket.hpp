@@ -9,6 +9,7 @@
 #include "runtime/cpp/src/channel/link_terms.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/channel/socket.hpp"
+#include "runtime/cpp/src/platform/files.hpp"
 
 namespace rr::channel {
 
@@ -26,7 +27,7 @@ class ListeningSocket final : public Pollable,
   void start();
   /// The end: nobody can connect from now on.
   void stop();
-  [[nodiscard]] Address address() const { return local_address(socket_.get()); }
+  [[nodiscard]] Address address() const { return platform::local_address(socket_.get()); }
 
   void on_ready(std::uint32_t events) override;
 
@@ -46,7 +47,7 @@ class ListeningSocket final : public Pollable,
   const AcceptHandler accept_;
   std::atomic<bool> is_stopped_{false};
   std::mutex mutex_;  // guards what follows
-  Descriptor spare_;
+  platform::File spare_;
   Time gave_way_{};
 };
 

@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Local sockets (04, section 7).
-#include <sys/socket.h>
-#include <sys/stat.h>
-#include <sys/un.h>
-#include <unistd.h>
-
-#include <array>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "rr/error.hpp"
@@ -20,90 +13,32 @@
 #include "runtime/cpp/src/channel/node_files.hpp"
 #include "runtime/cpp/src/channel/tcp_connect.hpp"
 #include "runtime/cpp/src/channel/texts.hpp"
-#include "runtime/cpp/src/channel/trusted_folder.hpp"
+#include "runtime/cpp/src/platform/local_socket.hpp"
+#include "runtime/cpp/src/platform/trusted_folder.hpp"
 
 namespace rr::channel {
 namespace {
 
-constexpr int backlog = 1024;
 constexpr int attempts = 4;
 
+using platform::PlacedSocket;
+
+[[noreturn]] void refuse_path(const std::string& path) {
+  throw Error(ErrorCode::invalid_argument, "the path of the socket `" + path + "` is longer than " +
+                                               std::to_string(platform::longest_local_path()) +
+                                               " bytes");
+}
+
 Address address_of(const std::string& path) {
-  Address address;
-  auto& local = reinterpret_cast<sockaddr_un&>(address.storage);
-  if (path.size() >= sizeof local.sun_path) {
-    throw Error(ErrorCode::invalid_argument,
-                "the path of the socket `" + path + "` is longer than " +
-                    std::to_string(sizeof local.sun_path - 1) + " bytes");
-  }
-  local.sun_family = AF_UNIX;
-  std::memcpy(local.sun_path, path.c_str(), path.size() + 1);
-  address.size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + path.size() + 1);
-  return address;
+  auto address = platform::local_socket_address(path);
+  if (!address) refuse_path(path);
+  return std::move(*address);
 }
 
-[[noreturn]] void fail(const std::string& path, int error) {
-  throw Error(ErrorCode::connection_error,
-              "cannot listen at `" + path + "`: " + std::strerror(error));
+[[noreturn]] void fail(const std::string& path, const std::error_code& error) {
+  if (error == std::errc::filename_too_long) refuse_path(path);
+  throw Error(ErrorCode::connection_error, "cannot listen at `" + path + "`: " + error.message());
 }
-
-// A socket that a node of this user has left behind: nobody answers there. Anything else is not
-// ours to remove.
-bool is_dead(const std::string& path, const Address& address) {
-  struct stat found {};
-  if (lstat(path.c_str(), &found) != 0 || !S_ISSOCK(found.st_mode) || found.st_uid != geteuid()) {
-    return false;
-  }
-  const Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  return connect(socket.get(), reinterpret_cast<const sockaddr*>(&address.storage), address.size) !=
-             0 &&
-         errno == ECONNREFUSED;
-}
-
-// A socket that listens, and its place in the file system, which goes with it.
-class PlacedSocket {
- public:
-  // Throws rr::Error when there is something already, unless it may be replaced and is dead.
-  PlacedSocket(std::string path, mode_t mode, bool may_replace) : path_(std::move(path)) {
-    const Address address = address_of(path_);
-    socket_ = Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-    if (!socket_) fail(path_, errno);
-    const auto* const at = reinterpret_cast<const sockaddr*>(&address.storage);
-    int result = bind(socket_.get(), at, address.size);
-    if (result != 0 && errno == EADDRINUSE && may_replace && is_dead(path_, address)) {
-      unlink(path_.c_str());
-      result = bind(socket_.get(), at, address.size);
-    }
-    if (result != 0) fail(path_, errno);
-    struct stat made {};
-    lstat(path_.c_str(), &made);
-    device_ = made.st_dev;
-    number_ = made.st_ino;
-    // Before it listens, so that nobody comes in whom the mask would have let.
-    if (chmod(path_.c_str(), mode) != 0 || ::listen(socket_.get(), backlog) != 0) {
-      const int error = errno;
-      remove();
-      fail(path_, error);
-    }
-  }
-  PlacedSocket(PlacedSocket&&) = default;
-
-  [[nodiscard]] const std::string& path() const { return path_; }
-  Descriptor take() { return std::move(socket_); }
-  // Another node may have put its own there since.
-  void remove() const {
-    struct stat found {};
-    if (lstat(path_.c_str(), &found) == 0 && found.st_dev == device_ && found.st_ino == number_) {
-      unlink(path_.c_str());
-    }
-  }
-
- private:
-  std::string path_;
-  Descriptor socket_;
-  dev_t device_ = 0;
-  ino_t number_ = 0;
-};
 
 LinkTerms local_terms(const NodeOptions& options) {
   LinkTerms terms;
@@ -116,16 +51,25 @@ LinkTerms local_terms(const NodeOptions& options) {
   return terms;
 }
 
-PlacedSocket open_at(const std::string& path, mode_t mode) {
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  if (!open_trusted_folder(folder, {})) fail(path, ENOENT);
-  return {path, mode, true};
+PlacedSocket place(const std::string& path, bool may_replace) {
+  std::error_code error;
+  PlacedSocket socket(path, may_replace, error);
+  if (error) fail(path, error);
+  return socket;
 }
 
-PlacedSocket open_any(const NodeFolder& folder, mode_t mode) {
+PlacedSocket open_at(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  if (!platform::open_trusted_folder(folder, {})) {
+    fail(path, std::make_error_code(std::errc::no_such_file_or_directory));
+  }
+  return place(path, true);
+}
+
+PlacedSocket open_any(const NodeFolder& folder) {
   for (int attempt = 1;; ++attempt) {
     try {
-      return {folder.sockets + "/" + random_letters() + ".sock", mode, false};
+      return place(folder.sockets + "/" + random_letters() + ".sock", false);
     } catch (const Error& error) {
       if (attempt == attempts || error.code() == ErrorCode::invalid_argument) throw;
     }
@@ -137,17 +81,15 @@ class LocalListener final : public Listener {
   LocalListener(const ChannelContext& context, const Url& url, AcceptHandler accept) {
     const NodeOptions& options = *context.options;
     const bool is_public = url.query.find("public=true") != std::string::npos;
-    // The user's group too, as far as the folder lets it in: who may connect is asked again.
-    constexpr mode_t mode = 0770;
     if (url.path.size() > 1) {
-      socket_.emplace(open_at(url.path, mode));
+      socket_.emplace(open_at(url.path));
       url_ = "rr+local://" + url.path;
     } else {
       const NodeFolder folder =
           is_public ? public_folder(options.local, own_user_name()) : private_folder(options.local);
       make_folder(folder);
       clean_up(folder);
-      socket_.emplace(open_any(folder, mode));
+      socket_.emplace(open_any(folder));
       url_ = is_public ? "rr+local://" + own_user_name() + "@localhost" : "rr+local://";
       try {
         files_ = std::make_unique<NodeFiles>(folder, options.id, options.name, socket_->path(),
@@ -158,7 +100,7 @@ class LocalListener final : public Listener {
       }
     }
     LinkTerms terms = local_terms(options);
-    if (!is_public) terms.only_user = geteuid();
+    if (!is_public) terms.only_user = platform::current_user();
     listening_ = std::make_shared<ListeningSocket>(context, socket_->take(), std::move(terms),
                                                    std::move(accept));
     listening_->start();

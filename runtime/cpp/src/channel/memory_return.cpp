@@ -2,14 +2,12 @@
 // Memory that peers have made a node hold goes back to the system when they have gone: large blocks
 // that wait to be used again, and what is free in the heaps of the C library, which keeps it unless
 // it is at the end of one.
-#include <malloc.h>
-
 #include <atomic>
-#include <cstdlib>
 #include <utility>
 
 #include "runtime/cpp/src/channel/channel.hpp"
 #include "runtime/cpp/src/codec/large_block.hpp"
+#include "runtime/cpp/src/platform/memory.hpp"
 
 namespace rr::channel {
 namespace {
@@ -19,8 +17,6 @@ namespace {
 // when nothing more has come in that time.
 constexpr std::size_t worthwhile = 4 * 1024 * 1024;
 constexpr Milliseconds pause{1000};
-constexpr int mmap_threshold = 1024 * 1024;
-constexpr int trim_threshold = 128 * 1024;  // as it is at first
 
 class MemoryReturn final : public Timer, public std::enable_shared_from_this<MemoryReturn> {
  public:
@@ -46,9 +42,7 @@ class MemoryReturn final : public Timer, public std::enable_shared_from_this<Mem
     if (fallen < worthwhile && fallen != std::exchange(fallen_before_, fallen)) return begin(0);
     fallen_ = 0;
     fallen_before_ = 0;
-#if defined(__GLIBC__)
-    malloc_trim(0);
-#endif
+    platform::trim_heap();
   }
 
   const std::weak_ptr<Reactor> reactor_;
@@ -84,23 +78,6 @@ class SpareDrop final : public Timer, public std::enable_shared_from_this<SpareD
 };
 
 }  // namespace
-
-// glibc raises both thresholds when a program frees a large block. Each heap may then keep tens of
-// megabytes at its end, where malloc_trim() looks in the main one only.
-void fix_heap_thresholds() {
-#if defined(__GLIBC__)
-  static const bool is_set_outside = [] {
-    for (const char* name :
-         {"GLIBC_TUNABLES", "MALLOC_TRIM_THRESHOLD_", "MALLOC_MMAP_THRESHOLD_"}) {
-      if (std::getenv(name) != nullptr) return true;
-    }
-    mallopt(M_MMAP_THRESHOLD, mmap_threshold);
-    mallopt(M_TRIM_THRESHOLD, trim_threshold);
-    return false;
-  }();
-  static_cast<void>(is_set_outside);
-#endif
-}
 
 void watch_pools(const Pools& pools, const std::shared_ptr<Reactor>& reactor) {
   const auto memory_return = std::make_shared<MemoryReturn>(reactor);

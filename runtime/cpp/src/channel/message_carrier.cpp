@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/message_carrier.hpp"
 
-#include <sys/socket.h>
-#include <sys/uio.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -107,7 +103,7 @@ class MessageCarrier::User final : public LinkUser {
       on_room_ = nullptr;
     }
     room_.notify_all();
-    ::shutdown(bell_.get(), SHUT_RDWR);
+    platform::shut_down(bell_.get());
   }
 
   // All that waits; true when the link is to be told that there is room.
@@ -138,8 +134,7 @@ class MessageCarrier::User final : public LinkUser {
   void ring() {
     const std::byte mark{};
     // A full buffer holds marks enough.
-    [[maybe_unused]] const ssize_t sent =
-        ::send(bell_.get(), &mark, sizeof mark, MSG_DONTWAIT | MSG_NOSIGNAL);
+    platform::send(bell_.get(), {&mark, 1});
   }
 
   const Descriptor bell_;
@@ -157,12 +152,11 @@ namespace {
 
 // The end that rings; the other one becomes `socket`.
 Descriptor make_bell(Descriptor& socket) {
-  std::array<int, 2> ends{-1, -1};
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
-    throw Error(ErrorCode::system_resource_error, std::strerror(errno));
+  Descriptor bell;
+  if (const std::error_code error = platform::make_pair(socket, bell)) {
+    throw Error(ErrorCode::system_resource_error, error.message());
   }
-  socket = Descriptor(ends[0]);
-  return Descriptor(ends[1]);
+  return bell;
 }
 
 }  // namespace
@@ -177,22 +171,20 @@ MessageCarrier::MessageCarrier(std::unique_ptr<MessageLink> link, Descriptor& so
 MessageCarrier::~MessageCarrier() { end(); }
 
 std::ptrdiff_t MessageCarrier::receive(std::span<std::byte> /*room*/, bool /*may_block*/) {
-  errno = EINVAL;
-  return -1;
+  return platform::broken;  // it has no bytes
 }
 
 std::ptrdiff_t MessageCarrier::receive(Frame& message, bool may_block) {
   if (!has_received()) {
     std::array<std::byte, 64> marks;
-    const ssize_t size = recv(socket_, marks.data(), marks.size(), may_block ? 0 : MSG_DONTWAIT);
-    if (size < 0) return -1;
+    const auto wait = may_block ? platform::Wait::some : platform::Wait::none;
+    const std::ptrdiff_t size = platform::receive(socket_, marks, wait);
+    if (size < 0) return size;
     taken_.clear();
     next_ = 0;
     if (user_->take(taken_)) link_->resume();
-    if (taken_.empty()) {
-      errno = EAGAIN;  // taken together with those before
-      return size == 0 ? 0 : -1;
-    }
+    // Otherwise it was taken together with those before.
+    if (taken_.empty()) return size == 0 ? 0 : platform::nothing_now;
   }
   message = std::move(taken_[next_++]);
   return 1;
@@ -207,15 +199,15 @@ bool MessageCarrier::flush() {
   return true;
 }
 
-std::ptrdiff_t MessageCarrier::send(std::span<const iovec> pieces) {
+std::ptrdiff_t MessageCarrier::send(std::span<const platform::Buffer> pieces) {
   flush();
   std::ptrdiff_t sent = 0;
-  for (const iovec& piece : pieces) {
-    std::span<const std::byte> bytes(static_cast<const std::byte*>(piece.iov_base), piece.iov_len);
+  for (const platform::Buffer& piece : pieces) {
+    std::span<const std::byte> bytes(piece.data, piece.size);
     while (!bytes.empty()) {
       if (gather_.is_whole()) return sent;
       const std::size_t taken = gather_.add(bytes);
-      if (taken == 0) return -1;  // no message
+      if (taken == 0) return platform::broken;  // no message
       bytes = bytes.subspan(taken);
       sent += static_cast<std::ptrdiff_t>(taken);
       flush();

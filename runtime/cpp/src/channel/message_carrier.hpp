@@ -52,7 +52,7 @@ class MessageCarrier final : public Carrier {
   std::ptrdiff_t receive(std::span<std::byte> room, bool may_block) override;
   std::ptrdiff_t receive(Frame& message, bool may_block) override;
   [[nodiscard]] bool has_received() const override { return next_ != taken_.size(); }
-  std::ptrdiff_t send(std::span<const iovec> pieces) override;
+  std::ptrdiff_t send(std::span<const platform::Buffer> pieces) override;
   [[nodiscard]] std::size_t unsent() const override {
     return gather_.is_whole() ? gather_.message().bytes.size() : 0;
   }

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Channels that carry whole messages: those of programs, and the one inside the process.
-#include <poll.h>
-#include <sys/uio.h>
-
 #include <array>
-#include <cerrno>
 #include <utility>
 
 #include "rr/channel.hpp"
@@ -86,7 +82,7 @@ class MessageLinks final : public Channel, public std::enable_shared_from_this<M
 
   void agree(const Url& url, Time deadline, Agreed& agreed) const {
     agreed.request = create_connection_request(url, *context_.options);
-    const iovec piece{agreed.request.data(), agreed.request.size()};
+    const platform::Buffer piece{agreed.request.data(), agreed.request.size()};
     if (agreed.carrier->send({&piece, 1}) != static_cast<std::ptrdiff_t>(agreed.request.size())) {
       throw Error(ErrorCode::connection_error, "the connection by `" + scheme_ + "` broke");
     }
@@ -97,7 +93,7 @@ class MessageLinks final : public Channel, public std::enable_shared_from_this<M
         check_create_connection(answer.bytes, url, *context_.options, "`" + scheme_ + "`", agreed);
         return;
       }
-      if (size == 0 || (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)) {
+      if (size != platform::nothing_now) {
         throw Error(ErrorCode::connection_error, "the other side closed the connection");
       }
       wait(agreed.socket.get(), deadline);
@@ -105,14 +101,15 @@ class MessageLinks final : public Channel, public std::enable_shared_from_this<M
   }
 
   void wait(int socket, Time deadline) const {
-    std::array<pollfd, 2> wanted{{{socket, POLLIN, 0}, {-1, POLLIN, 0}}};
+    using platform::ready::input;
+    std::array<platform::Awaited, 2> wanted{{{socket, input}, {-1, input}}};
     const Interruption* const interruption = Interruption::current();
-    if (interruption != nullptr) wanted[1].fd = interruption->descriptor();
-    const int found = poll(wanted.data(), wanted.size(), poll_milliseconds(deadline));
+    if (interruption != nullptr) wanted[1].socket = interruption->descriptor();
+    const bool is_found = platform::wait_for_any(wanted, deadline);
     if (interruption != nullptr && interruption->is_interrupted()) {
       throw Error(ErrorCode::operation_cancelled, "connecting was given up");
     }
-    if (found == 0) {
+    if (!is_found) {
       throw Error(ErrorCode::connection_error, "no answer by `" + scheme_ + "` in time");
     }
   }

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/node_files.hpp"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <filesystem>
 #include <optional>
 #include <utility>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/platform/trusted_folder.hpp"
 
 namespace rr::channel {
 namespace {
@@ -26,7 +24,7 @@ std::string socket_of(const InfoText& info) {
 NodeFiles::NodeFiles(const NodeFolder& folder, const NodeId& id, const std::string& name,
                      const std::string& socket, const std::string& nonce)
     : text_{{"nodeid", id.text_with_braces()},
-            {"pid", std::to_string(getpid())},
+            {"pid", std::to_string(platform::process_id())},
             {"socket", socket},
             {"username", own_user_name()},
             {"ServiceStateNonce", nonce}} {
@@ -102,25 +100,25 @@ std::string socket_in(const NodeFolder& folder, const Url& url) {
 }
 
 // Nothing when it does not exist.
-std::optional<FoundSocket> trusted_socket(const std::string& path, const FolderRule& rule) {
-  const auto folder = open_trusted_folder(std::filesystem::path(path).parent_path().string(), rule);
+std::optional<FoundSocket> trusted_socket(const std::string& path,
+                                          const platform::FolderRule& rule) {
+  const std::string name = std::filesystem::path(path).parent_path().string();
+  const auto folder = platform::open_trusted_folder(name, rule);
   if (!folder) return std::nullopt;
-  return FoundSocket{path, {0, geteuid(), folder->owner}};
+  return FoundSocket{path, {platform::system_user, platform::current_user(), folder->owner}};
 }
 
 // Who names a path means what its folder's owner has there.
 std::vector<FoundSocket> socket_at(const std::string& path) {
-  struct stat folder {};
-  const std::string name = std::filesystem::path(path).parent_path().string();
-  FolderRule rule;
-  if (stat(name.c_str(), &folder) == 0) rule.owner = folder.st_uid;
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const platform::FolderRule rule{.owner = platform::owner_of(folder)};
   auto socket = trusted_socket(path, rule);
   if (!socket) return {};
   return {std::move(*socket)};
 }
 
 std::optional<FoundSocket> socket_in_trusted(const NodeFolder& folder, const Url& url) {
-  if (!open_trusted_folder(folder.base, folder.rule)) return std::nullopt;
+  if (!platform::open_trusted_folder(folder.base, folder.rule)) return std::nullopt;
   const std::string path = socket_in(folder, url);
   if (!path.starts_with('/')) return std::nullopt;
   return trusted_socket(path, folder.rule);

@@ -12,7 +12,7 @@
 #include "rr/url.hpp"
 #include "runtime/cpp/src/channel/directories.hpp"
 #include "runtime/cpp/src/channel/run_directories.hpp"
-#include "runtime/cpp/src/channel/socket.hpp"
+#include "runtime/cpp/src/platform/users.hpp"
 
 /// The files that local nodes are found by (04, sections 7.2 and 7.3).
 namespace rr::channel {
@@ -46,7 +46,7 @@ struct FoundSocket {
   std::string path;
   /// Who may listen there: the system and the folder's owner. Somebody else has taken the place of
   /// the one who is wanted.
-  std::vector<uid_t> servers;
+  std::vector<platform::UserId> servers;
 };
 /// Those of the node of a URL, in the order in which to try them. Throws rr::Error:
 /// invalid_argument when the URL names no node, system_resource_error when it is in none of the

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/opening.hpp"
 
-#include <sys/socket.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
+#include <system_error>
 #include <utility>
 
 #include "rr/error.hpp"
@@ -39,33 +36,31 @@ Opening::Opening(const Address& address, const Url& url, const ChannelContext& c
       context_(context),
       options_(*context.options),
       steps_(opening_steps(url.scheme)),
-      socket_(::socket(address.family(), SOCK_STREAM | SOCK_CLOEXEC, 0)),
       place_(address.text()),
       servers_(address.servers) {
-  if (!socket_) fail(std::strerror(errno));
-  // The socket blocks, which connecting must not.
-  const timeval no_time{0, 1};
-  setsockopt(socket_.get(), SOL_SOCKET, SO_SNDTIMEO, &no_time, sizeof no_time);
-  if (connect(socket_.get(), reinterpret_cast<const sockaddr*>(&address.storage), address.size) ==
-      0) {
-    connected();
-  } else if (errno != EINPROGRESS && errno != EAGAIN && errno != EINTR) {
-    fail("cannot connect to " + place_ + ": " + std::strerror(errno));
+  std::error_code error;
+  switch (platform::begin_connect(address, socket_, error)) {
+    case platform::Connecting::done:
+      connected();
+      break;
+    case platform::Connecting::begun:
+      break;
+    case platform::Connecting::failed:
+      fail_connecting(error);
   }
 }
 
-pollfd Opening::wanted() const {
+platform::Awaited Opening::wanted() const {
+  using namespace platform::ready;
   const bool has_unsent = carrier_ != nullptr && carrier_->unsent() != 0;
-  const int events = is_connected_ ? POLLIN | (has_unsent ? POLLOUT : 0) : POLLOUT;
-  return {socket_.get(), static_cast<short>(events), 0};
+  return {socket_.get(), is_connected_ ? input | (has_unsent ? room : 0) : room};
 }
 
 std::optional<Agreed> Opening::go_on() {
   if (!is_connected_) {
-    int error = 0;
-    socklen_t size = sizeof error;
-    getsockopt(socket_.get(), SOL_SOCKET, SO_ERROR, &error, &size);
-    if (error != 0) fail("cannot connect to " + place_ + ": " + std::strerror(error));
+    if (const std::error_code error = platform::connect_result(socket_.get())) {
+      fail_connecting(error);
+    }
     connected();
     return std::nullopt;
   }
@@ -89,19 +84,21 @@ std::optional<Agreed> Opening::go_on() {
   return finish();
 }
 
+void Opening::fail_connecting(const std::error_code& error) const {
+  fail("cannot connect to " + place_ + ": " + error.message());
+}
+
 void Opening::connected() {
   is_connected_ = true;
   check_server();
-  const timeval for_ever{};
-  setsockopt(socket_.get(), SOL_SOCKET, SO_SNDTIMEO, &for_ever, sizeof for_ever);
-  set_stream_options(socket_.get());
+  platform::set_stream_options(socket_.get());
   next_step();
 }
 
 // Before anything is said: another user can have put a socket where there was none.
 void Opening::check_server() const {
   if (servers_.empty()) return;
-  const auto server = peer_user(socket_.get());
+  const auto server = platform::peer_user(socket_.get());
   if (server && std::find(servers_.begin(), servers_.end(), *server) != servers_.end()) return;
   fail(place_ + " is served by " +
        (server ? "user " + std::to_string(*server) : std::string("nobody who can be named")) +
@@ -142,10 +139,10 @@ void Opening::next_step() {
 void Opening::send(std::span<const std::byte> message) {
   std::ptrdiff_t sent = 0;
   if (carrier_) {
-    const iovec piece{const_cast<std::byte*>(message.data()), message.size()};
+    const platform::Buffer piece{message.data(), message.size()};
     sent = carrier_->send({&piece, 1});
   } else {
-    sent = ::send(socket_.get(), message.data(), message.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    sent = platform::send(socket_.get(), message);
   }
   if (sent != static_cast<std::ptrdiff_t>(message.size())) {
     fail("the connection to " + place_ + " broke");
@@ -155,11 +152,10 @@ void Opening::send(std::span<const std::byte> message) {
 std::ptrdiff_t Opening::receive(std::span<std::byte> room) {
   const std::ptrdiff_t size = carrier_
                                   ? carrier_->receive(room, false)
-                                  : recv(socket_.get(), room.data(), room.size(), MSG_DONTWAIT);
-  const int error = errno;
+                                  : platform::receive(socket_.get(), room, platform::Wait::none);
   if (carrier_) carrier_->flush();
   if (size > 0) return size;
-  if (size < 0 && (error == EAGAIN || error == EWOULDBLOCK || error == EINTR)) return 0;
+  if (size == platform::nothing_now) return 0;
   fail_reading(size);
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <poll.h>
-
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -27,12 +25,13 @@ class Opening {
   Opening(const Address& address, const Url& url, const ChannelContext& context);
 
   /// What it waits for.
-  [[nodiscard]] pollfd wanted() const;
-  /// What came of it, once poll() has found something.
+  [[nodiscard]] platform::Awaited wanted() const;
+  /// What came of it, once something of that was found.
   std::optional<Agreed> go_on();
 
  private:
   void connected();
+  [[noreturn]] void fail_connecting(const std::error_code& error) const;
   void check_server() const;
   void next_step();
   void begin_layer(std::unique_ptr<Layer> layer);
@@ -52,7 +51,7 @@ class Opening {
   Descriptor socket_;
   std::unique_ptr<LayeredCarrier> carrier_;
   std::string place_;
-  const std::vector<uid_t> servers_;
+  const std::vector<platform::UserId> servers_;
   bool is_connected_ = false;
   NodeId said_node_;  // what the other side claimed before TLS
   std::vector<std::byte> request_;

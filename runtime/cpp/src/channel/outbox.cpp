@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/outbox.hpp"
 
-#include <sys/socket.h>
-#include <sys/uio.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstring>
 #include <iterator>
 #include <limits>
@@ -14,6 +10,7 @@
 
 #include "rr/reader.hpp"
 #include "runtime/cpp/src/channel/carrier.hpp"
+#include "runtime/cpp/src/platform/sockets.hpp"
 
 namespace rr::channel {
 namespace {
@@ -25,22 +22,8 @@ constexpr std::size_t pieces_at_once = 64;
 // Messages were checked before they came here.
 constexpr Limits any_size{.message_size = std::numeric_limits<std::uint32_t>::max()};
 
-iovec as_iovec(const std::byte* data, std::size_t size) {
-  return {const_cast<std::byte*>(data), size};
-}
-
-// Sends without blocking. 0 when the socket takes nothing now, -1 when it is broken.
-std::ptrdiff_t send_pieces(int socket, std::span<iovec> pieces) {
-  msghdr message{};
-  message.msg_iov = pieces.data();
-  message.msg_iovlen = pieces.size();
-  while (true) {
-    const ssize_t sent = sendmsg(socket, &message, MSG_DONTWAIT | MSG_NOSIGNAL);
-    if (sent >= 0) return sent;
-    if (errno == EAGAIN || errno == EWOULDBLOCK) return 0;
-    if (errno != EINTR) return -1;
-  }
-}
+// Of what is sent: how much the socket takes now, or platform::broken.
+std::ptrdiff_t taken(std::ptrdiff_t sent) { return sent == platform::nothing_now ? 0 : sent; }
 
 }  // namespace
 
@@ -224,18 +207,15 @@ void Outbox::fill(Segment& segment, Writer& message) {
 [[gnu::hot]] std::ptrdiff_t Outbox::send(int socket, std::span<const Piece> more,
                                          Carrier* carrier) {
   if (empty() && more.size() == 1 && carrier == nullptr) {  // nearly always
-    const ssize_t sent = ::send(socket, more[0].data, more[0].size, MSG_DONTWAIT | MSG_NOSIGNAL);
-    if (sent == static_cast<ssize_t>(more[0].size)) return sent;
-    if (sent >= 0 || errno == EAGAIN || errno == EWOULDBLOCK) return std::max<ssize_t>(sent, 0);
-    if (errno != EINTR) return -1;
+    return taken(platform::send(socket, {more[0].data, more[0].size}));
   }
   std::size_t more_sent = 0;
   while (true) {
-    std::array<iovec, pieces_at_once> pieces;
+    std::array<platform::Buffer, pieces_at_once> pieces;
     std::size_t count = 0;
     std::size_t wanted = 0;
     const auto add_piece = [&](const std::byte* data, std::size_t size) {
-      pieces[count++] = as_iovec(data, size);
+      pieces[count++] = {data, size};
       wanted += size;
     };
     for (std::size_t i = first_; i < segments_.size() && count < pieces.size(); ++i) {
@@ -252,8 +232,8 @@ void Outbox::fill(Segment& segment, Writer& message) {
     if (count == 0) break;
     const std::span used(pieces.data(), count);
     const std::ptrdiff_t result =
-        carrier == nullptr ? send_pieces(socket, used) : carrier->send(used);
-    if (result < 0) return -1;
+        carrier == nullptr ? taken(platform::send_gathered(socket, used)) : carrier->send(used);
+    if (result < 0) return platform::broken;
     const auto sent = static_cast<std::size_t>(result);
     drop(std::min(sent, own));
     more_sent += sent - std::min(sent, own);

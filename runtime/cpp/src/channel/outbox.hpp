@@ -41,7 +41,7 @@ class Outbox {
 
   /// Sends on a socket: what waits, then `more`, without blocking, in as few calls as possible.
   /// What is sent of the outbox is dropped from it. Returns the bytes of `more` that were sent, or
-  /// -1, with errno, when the connection is broken. With a carrier it is that which takes them.
+  /// platform::broken. With a carrier it is that which takes them.
   std::ptrdiff_t send(int socket, std::span<const Piece> more, Carrier* carrier = nullptr);
 
   void clear();

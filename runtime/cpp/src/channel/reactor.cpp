@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/reactor.hpp"
 
-#include <sys/epoll.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <iterator>
 #include <system_error>
 #include <utility>
@@ -16,9 +11,6 @@
 namespace rr::channel {
 namespace {
 
-static_assert(ready::input == EPOLLIN && ready::room == EPOLLOUT && ready::closing == EPOLLRDHUP &&
-              ready::end == (EPOLLRDHUP | EPOLLHUP | EPOLLERR));
-
 // How often the polling thread is looked at while it is active; in how many looks it must be found
 // in the same handler before another thread takes over; after how many looks without anything new
 // the watching thread sleeps.
@@ -27,10 +19,6 @@ constexpr int looks_until_stuck = 2;
 constexpr int looks_until_quiet = 10;
 // Of so many threads one is kept for sessions that hold none.
 constexpr unsigned threads_for_one_in_reserve = 8;
-
-[[noreturn]] void fail(const char* what) {
-  throw std::system_error(errno, std::generic_category(), what);
-}
 
 }  // namespace
 
@@ -42,33 +30,17 @@ Reactor::Reactor(Terms terms)
       max_threads_(std::max(terms_.max_threads, duties)),
       max_stays_(std::min(std::max(std::thread::hardware_concurrency(), 1U), max_threads_ / 4)),
       reserve_(max_threads_ / threads_for_one_in_reserve),
-      events_(std::make_unique<epoll_event[]>(events_at_once)) {
-  epoll_ = epoll_create1(EPOLL_CLOEXEC);
-  if (epoll_ < 0) fail("epoll_create1");
-  wake_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  epoll_event event{};
-  event.events = EPOLLIN | EPOLLET;
-  if (wake_ < 0 || epoll_ctl(epoll_, EPOLL_CTL_ADD, wake_, &event) != 0) {
-    const int error = errno;
-    if (wake_ >= 0) ::close(wake_);
-    ::close(epoll_);
-    errno = error;
-    fail("eventfd");
-  }
-}
+      events_(std::make_unique<Event[]>(events_at_once)) {}
 
-Reactor::~Reactor() {
-  stop();
-  ::close(wake_);
-  ::close(epoll_);
-}
+Reactor::~Reactor() { stop(); }
 
 void Reactor::start() {
   const std::lock_guard lock(mutex_);
   if (is_stopping_) return;
   while (live_threads_ < duties) {
     if (!add_thread()) {
-      throw std::system_error(EAGAIN, std::generic_category(), "the node's threads");
+      throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again),
+                              "the node's threads");
     }
   }
 }
@@ -105,24 +77,15 @@ bool Reactor::is_stopping() const {
 
 bool Reactor::is_own_thread() const { return current_reactor == this || late_.is_own_thread(); }
 
-void Reactor::add(int descriptor, std::uint32_t events, Pollable& pollable) {
-  epoll_event event{};
-  event.events = events | EPOLLET;
-  event.data.ptr = &pollable;
-  if (epoll_ctl(epoll_, EPOLL_CTL_ADD, descriptor, &event) != 0) fail("epoll_ctl");
+void Reactor::add(int socket, std::uint32_t events, Pollable& pollable) {
+  sockets_.add(socket, events, &pollable);
 }
 
-void Reactor::change(int descriptor, std::uint32_t events, Pollable& pollable) {
-  epoll_event event{};
-  event.events = events | EPOLLET;
-  event.data.ptr = &pollable;
-  if (epoll_ctl(epoll_, EPOLL_CTL_MOD, descriptor, &event) != 0) fail("epoll_ctl");
+void Reactor::change(int socket, std::uint32_t events, Pollable& pollable) {
+  sockets_.change(socket, events, &pollable);
 }
 
-void Reactor::remove(int descriptor) {
-  epoll_event event{};
-  epoll_ctl(epoll_, EPOLL_CTL_DEL, descriptor, &event);
-}
+void Reactor::remove(int socket) { sockets_.remove(socket); }
 
 void Reactor::retire(std::shared_ptr<Pollable> pollable) {
   {
@@ -162,11 +125,7 @@ void Reactor::wait_for_connections() {
   no_connection_.wait(lock, [&] { return connections_ == 0; });
 }
 
-void Reactor::wake_polling_thread() {
-  const std::uint64_t one = 1;
-  // Can fail only when the counter is full, and then there is an event already.
-  [[maybe_unused]] const ssize_t written = ::write(wake_, &one, sizeof one);
-}
+void Reactor::wake_polling_thread() { sockets_.wake(); }
 
 void Reactor::wake_watching_thread() {
   // The lock makes sure that the thread is really waiting.
@@ -186,9 +145,7 @@ void Reactor::poll(Polling& polling) {
     if (next_event_ != event_count_) continue;  // find_others() has found some meanwhile
     const bool must_go_on = has_work_.load(std::memory_order_acquire);
     if (must_go_on) yield_processor(yield_at);
-    const int patience = must_go_on ? 0 : -1;
-    const int found = epoll_wait(epoll_, events_.get(), events_at_once, patience);
-    event_count_ = found > 0 ? static_cast<std::size_t>(found) : 0;
+    event_count_ = sockets_.wait({events_.get(), events_at_once}, !must_go_on);
     next_event_ = 0;
   }
   current_polling = nullptr;
@@ -212,9 +169,9 @@ bool Reactor::leave(Polling& polling) {
 
 bool Reactor::handle_events(Polling& polling) {
   while (next_event_ != event_count_) {
-    const epoll_event& event = events_[next_event_++];
-    if (event.data.ptr == nullptr) continue;  // a wake-up; edge-triggered, so it need not be read
-    auto* const pollable = static_cast<Pollable*>(event.data.ptr);
+    const Event& event = events_[next_event_++];
+    if (event.key == nullptr) continue;  // a wake-up
+    auto* const pollable = static_cast<Pollable*>(event.key);
     const std::uint32_t events = event.events;
     enter(polling, pollable);
     pollable->on_ready(events);
@@ -245,26 +202,26 @@ bool Reactor::is_posted_for_others(const Pollable* own) const {
 bool Reactor::find_others(const Pollable* own) {
   if (has_work_.load(std::memory_order_acquire) && is_posted_for_others(own)) return true;
   bool is_found = false;
-  epoll_event* kept = nullptr;
-  const auto look_at = [&](epoll_event& event) {
-    if (event.data.ptr == nullptr) return;
-    if (event.data.ptr != own) {
+  Event* kept = nullptr;
+  const auto look_at = [&](Event& event) {
+    if (event.key == nullptr) return;
+    if (event.key != own) {
       is_found = true;
     } else if (kept == nullptr) {
       kept = &event;
     } else {
       kept->events |= event.events;
-      event.data.ptr = nullptr;
+      event.key = nullptr;
     }
   };
   for (std::size_t i = next_event_; i < event_count_; ++i) look_at(events_[i]);
   if (is_found) return true;
-  const int room = static_cast<int>(events_at_once - event_count_);
-  const int found = room == 0 ? 0 : epoll_wait(epoll_, &events_[event_count_], room, 0);
-  for (int i = 0; i < found; ++i) look_at(events_[event_count_ + static_cast<std::size_t>(i)]);
+  const std::span room(events_.get() + event_count_, events_at_once - event_count_);
+  const std::size_t found = room.empty() ? 0 : sockets_.wait(room, false);
+  for (std::size_t i = 0; i < found; ++i) look_at(room[i]);
   // What was the last one, and has been merged, leaves its place to others.
-  if (found > 0) event_count_ += static_cast<std::size_t>(found);
-  while (event_count_ > next_event_ && events_[event_count_ - 1].data.ptr == nullptr) {
+  event_count_ += found;
+  while (event_count_ > next_event_ && events_[event_count_ - 1].key == nullptr) {
     --event_count_;
   }
   return is_found;

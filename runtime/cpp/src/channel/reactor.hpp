@@ -24,8 +24,7 @@
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/channel/timer_heap.hpp"
 #include "runtime/cpp/src/channel/watcher.hpp"
-
-struct epoll_event;
+#include "runtime/cpp/src/platform/poller.hpp"
 
 namespace rr::channel {
 
@@ -46,8 +45,8 @@ class Pollable {
 
 /// Waits for many descriptors with few threads.
 ///
-/// One thread polls and handles what it finds in place, so that a request costs one epoll_wait, one
-/// recv and one send. Another watches it: when the polling thread has been inside user code for
+/// One thread polls and handles what it finds in place, so that a request costs one wait, one
+/// receive and one send. Another watches it: when the polling thread has been inside user code for
 /// some milliseconds, the watching one takes over polling, and a third, made when there is none,
 /// watches. A slow handler therefore holds up nobody but its own client. The watching thread also
 /// runs the timers, so that polling needs no time-outs; it sleeps while there is nothing to watch.
@@ -57,7 +56,7 @@ class Pollable {
 /// others; what comes on top waits for one to be released (thread_share.hpp).
 ///
 /// A thread that has found one busy connection alone may stay with it, in receive calls that block,
-/// which are a third cheaper than epoll's; somebody else polls from then on.
+/// which are a third cheaper than the poller's; somebody else polls from then on.
 class RR_INSIDE Reactor final : public Watcher {
  public:
   /// What a program, or a test, says of the threads.
@@ -85,9 +84,9 @@ class RR_INSIDE Reactor final : public Watcher {
   /// True on a thread that belongs to this reactor, work posted after stop() included.
   [[nodiscard]] bool is_own_thread() const;
 
-  void add(int descriptor, std::uint32_t events, Pollable& pollable) override;
-  void change(int descriptor, std::uint32_t events, Pollable& pollable) override;
-  void remove(int descriptor) override;
+  void add(int socket, std::uint32_t events, Pollable& pollable) override;
+  void change(int socket, std::uint32_t events, Pollable& pollable) override;
+  void remove(int socket) override;
   /// Keeps what is no longer watched until no event can name it any more.
   void retire(std::shared_ptr<Pollable> pollable);
 
@@ -215,8 +214,7 @@ class RR_INSIDE Reactor final : public Watcher {
   const unsigned reserve_;  // threads for sessions that hold none
   Flusher flusher_;
   Readers readers_;
-  int epoll_ = -1;
-  int wake_ = -1;
+  platform::Poller sockets_;
 
   // The turn to poll. It counts what is done with it: one up when a handler is entered, one when it
   // is left or the turn is taken from it. Odd while the thread that has it is in a handler.
@@ -225,8 +223,9 @@ class RR_INSIDE Reactor final : public Watcher {
   std::atomic<bool> has_work_{false};  // posted or retired
 
   // Of the thread whose turn it is; handed over with turn_.
-  static constexpr std::size_t events_at_once = 64;
-  std::unique_ptr<epoll_event[]> events_;
+  using Event = platform::Poller::Event;
+  static constexpr std::size_t events_at_once = platform::Poller::most_events;
+  std::unique_ptr<Event[]> events_;
   std::size_t next_event_ = 0;
   std::size_t event_count_ = 0;
   Pollable* handling_ = nullptr;

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The threads of a reactor: how they are made and end, and who may hold them.
-#include <sched.h>
-#include <sys/syscall.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <system_error>
@@ -11,6 +7,7 @@
 
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/channel/reactor_polling.hpp"
+#include "runtime/cpp/src/platform/threads.hpp"
 
 namespace rr::channel {
 namespace {
@@ -19,28 +16,6 @@ namespace {
 constexpr std::chrono::seconds idle_time{2};
 // When no thread could be made it is tried again after this time.
 constexpr std::chrono::seconds thread_retry{1};
-
-// As <linux/sched/types.h> has it, which cannot be included beside <sched.h>.
-struct SchedulingAttributes {
-  std::uint32_t size = sizeof(SchedulingAttributes);
-  std::uint32_t policy = 0;
-  std::uint64_t flags = 0;
-  std::int32_t nice = 0;
-  std::uint32_t priority = 0;
-  std::uint64_t runtime = 0;  // nanoseconds; of ordinary threads: the slice
-  std::uint64_t deadline = 0;
-  std::uint64_t period = 0;
-};
-
-// Since Linux 6.12 a thread may say how long it wants to run when others want its processor, too.
-// One that asks for little gets it soon, and gives it back soon. Older kernels leave it as it is.
-void ask_for_short_slices() {
-  SchedulingAttributes attributes;
-  if (::syscall(SYS_sched_getattr, 0, &attributes, sizeof attributes, 0) != 0) return;
-  if (attributes.policy != SCHED_OTHER) return;
-  attributes.runtime = 100'000;
-  ::syscall(SYS_sched_setattr, 0, &attributes, 0);
-}
 
 }  // namespace
 
@@ -113,7 +88,7 @@ void Reactor::reap() {
 
 void Reactor::run_thread() {
   current_reactor = this;
-  ask_for_short_slices();
+  platform::ask_for_short_slices();
   std::unique_lock lock(mutex_);
   while (!is_stopping_) {
     if (!is_polled_) {

@@ -31,7 +31,7 @@ bool ReadLease::unfollow(Waiter& waiter) {
   return false;
 }
 
-const SleepWord* ReadLease::pass_on() {
+const platform::SleepWord* ReadLease::pass_on() {
   if (followers_ == nullptr) return nullptr;
   Waiter* oldest = followers_;
   while (oldest->next != nullptr) oldest = oldest->next;
@@ -70,7 +70,7 @@ void ReadLease::wake_answered() {
   while (waiter != nullptr) {
     Waiter* const next = waiter->next;
     waiter->state.fetch_or(Waiter::done, std::memory_order_release);  // it may be gone now
-    wake(&waiter->state);
+    platform::wake(&waiter->state);
     waiter = next;
   }
 }

@@ -50,7 +50,7 @@ class ReadLease {
   bool unfollow(Waiter& waiter);
   /// The lease goes from the calling thread to the follower that has waited longest, which is to be
   /// woken there. Null when nobody follows.
-  const SleepWord* pass_on();
+  const platform::SleepWord* pass_on();
   /// Whether this thread is to look for a leader; it has to, then.
   bool begin_search() { return lacks_reader_.exchange(false) && !is_taken_; }
   /// The waiter is done. True when it sleeps: the caller of this wakes it after the lock.

@@ -10,7 +10,7 @@ namespace rr::channel {
 /// `fe80::1%eth0`), for a local socket the user that the kernel names (`uid 1000`). Empty for
 /// what is no socket, or is not connected any more. An IPv4 address in IPv6 form is written as
 /// IPv4.
-std::string remote_address_of(int descriptor);
+std::string remote_address_of(int socket);
 
 /// What limits for one remote address go by: the address, but for IPv6 its first 64 bits, as a
 /// single computer may use all the others.

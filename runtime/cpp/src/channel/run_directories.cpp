@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/run_directories.hpp"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
+#include <system_error>
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/directories.hpp"
+#include "runtime/cpp/src/platform/files.hpp"
+#include "runtime/cpp/src/platform/users.hpp"
 
 namespace rr::channel {
 namespace {
@@ -20,16 +18,6 @@ namespace {
 }
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-
-void make_shared_directory(const std::string& path) {
-  constexpr mode_t mode = S_ISGID | 0750;
-  if (mkdir(path.c_str(), mode) == 0) {
-    // Without what the mask took away.
-    if (chmod(path.c_str(), mode) != 0) fail(path, std::strerror(errno));
-    return;
-  }
-  if (errno != EEXIST) fail(path, std::strerror(errno));
-}
 
 }  // namespace
 
@@ -41,13 +29,14 @@ bool is_user_name(std::string_view text) {
 }
 
 std::string system_run_directory(const LocalOptions& options) {
-  return options.system_run_dir.empty() ? system_run_directory().string() : options.system_run_dir;
+  return options.system_run_dir.empty() ? platform::system_run_folder().string()
+                                        : options.system_run_dir;
 }
 
 std::string user_run_directory(const LocalOptions& options) {
   if (!options.user_run_dir.empty()) return options.user_run_dir;
-  if (geteuid() == 0) return system_run_directory(options) + "/root";
-  return user_run_directory().string();
+  if (platform::is_system_process()) return system_run_directory(options) + "/root";
+  return platform::user_run_folder().string();
 }
 
 NodeFolder private_folder(const LocalOptions& options) {
@@ -58,7 +47,7 @@ NodeFolder private_folder(const LocalOptions& options) {
 NodeFolder public_folder(const LocalOptions& options, std::string_view user) {
   const std::string run = system_run_directory(options);
   const std::string base = run + "/transport/local/" + std::string(user);
-  return {base, base + "/socket", run, true, {.owner = user_of(std::string(user))}};
+  return {base, base + "/socket", run, true, {.owner = platform::user_of(std::string(user))}};
 }
 
 std::vector<NodeFolder> folders_for_host(const LocalOptions& options, std::string_view host) {
@@ -82,15 +71,17 @@ void make_folder(const NodeFolder& folder) {
   const std::array parts = {folder.base + "/by-nodeid", folder.base + "/by-nodename",
                             folder.sockets};
   if (!folder.is_public) {
-    for (const std::string& part : parts) make_trusted_folder(part, folder.rule, folder.run);
+    for (const std::string& part : parts)
+      platform::make_trusted_folder(part, folder.rule, folder.run);
     return;
   }
-  if (!open_trusted_folder(folder.base, folder.rule)) {
+  if (!platform::open_trusted_folder(folder.base, folder.rule)) {
     fail(folder.base, "it does not exist; the machine's administrator makes it for public nodes");
   }
   for (const std::string& part : parts) {
-    make_shared_directory(part);
-    open_trusted_folder(part, folder.rule);  // one that was there may be another's
+    const std::error_code error = platform::make_shared_folder(part);
+    if (error) fail(part, error.message());
+    platform::open_trusted_folder(part, folder.rule);  // one that was there may be another's
   }
 }
 

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <sys/types.h>
-
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "rr/options.hpp"
-#include "runtime/cpp/src/channel/trusted_folder.hpp"
+#include "runtime/cpp/src/platform/trusted_folder.hpp"
 
 /// Where nodes of one machine leave what others find them by (04, section 7.1).
 namespace rr::channel {
@@ -26,7 +24,7 @@ struct NodeFolder {
   std::string sockets;
   std::string run;  ///< both are in it
   bool is_public = false;
-  FolderRule rule{};  ///< whom it may belong to
+  platform::FolderRule rule{};  ///< whom it may belong to
 };
 NodeFolder private_folder(const LocalOptions& options);
 NodeFolder public_folder(const LocalOptions& options, std::string_view user);

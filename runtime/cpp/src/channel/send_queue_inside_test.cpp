@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <sys/uio.h>
 
 #include <algorithm>
 #include <atomic>
@@ -13,6 +12,7 @@
 #include "runtime/cpp/src/channel/carrier.hpp"
 #include "runtime/cpp/src/channel/connection_tap.hpp"
 #include "runtime/cpp/src/channel/send_queue.hpp"
+#include "runtime/cpp/src/platform/sockets.hpp"
 
 namespace rr::channel {
 namespace {
@@ -29,13 +29,13 @@ class FakeSocket final : public Carrier {
   std::ptrdiff_t receive(std::span<std::byte> /*room*/, bool /*may_block*/) override { return 0; }
   std::ptrdiff_t receive(Frame& /*message*/, bool /*may_block*/) override { return 0; }
   [[nodiscard]] bool has_received() const override { return false; }
-  std::ptrdiff_t send(std::span<const iovec> pieces) override {
+  std::ptrdiff_t send(std::span<const platform::Buffer> pieces) override {
     ++calls;
-    if (is_broken) return -1;
+    if (is_broken) return platform::broken;
     std::ptrdiff_t sent = 0;
-    for (const iovec& piece : pieces) {
-      const std::size_t size = std::min(room, piece.iov_len);
-      taken.append(static_cast<const char*>(piece.iov_base), size);
+    for (const platform::Buffer& piece : pieces) {
+      const std::size_t size = std::min(room, piece.size);
+      taken.append(reinterpret_cast<const char*>(piece.data), size);
       room -= size;
       sent += static_cast<std::ptrdiff_t>(size);
     }

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // How callers share a connection: one of them reads it while they wait, and the others follow.
-#include <poll.h>
-
 #include <algorithm>
 #include <thread>
 #include <utility>
@@ -51,14 +49,14 @@ void StreamConnection::begin_lead(Waiter& waiter) {
 }
 
 void StreamConnection::find_reader() {
-  const SleepWord* next = nullptr;
+  const platform::SleepWord* next = nullptr;
   {
     const std::lock_guard lock(mutex_);
     if (!lease_.begin_search() || is_closing_) return;
     if (may_callers_read()) next = lease_.pass_on();
     if (next == nullptr) end_call();
   }
-  if (next != nullptr) wake(next);
+  if (next != nullptr) platform::wake(next);
 }
 
 // Returns true when the waiter is to read itself, false when it is done or out of time.
@@ -68,7 +66,7 @@ bool StreamConnection::follow(Waiter& waiter, Time deadline) {
   std::uint32_t state = 0;
   if (begin_following(waiter)) {
     while (((state = waiter.state.load(std::memory_order_acquire)) & woken) == 0) {
-      if (sleep_on(waiter.state, state, deadline)) continue;
+      if (platform::sleep_on(waiter.state, state, deadline)) continue;
       const std::lock_guard lock(mutex_);
       if (lease_.unfollow(waiter)) return false;
       deadline = never;  // it is being woken
@@ -153,10 +151,10 @@ void StreamConnection::wait_until_handled(const Waiter& waiter, Time deadline) {
   }
 }
 
-// A blocking receive would be late for a deadline that is near: then poll() waits for bytes.
+// A blocking receive would be late for a deadline that is near: then bytes are waited for first.
 bool StreamConnection::may_block_until(Time deadline) {
   if (deadline == never || deadline - Clock::now() > receive_pause) return true;
-  wait_for(socket_.get(), POLLIN, deadline);
+  platform::wait_for(socket_.get(), ready::input, deadline);
   return false;
 }
 
@@ -165,7 +163,7 @@ void StreamConnection::finish(Waiter& waiter) {
     const std::lock_guard lock(mutex_);
     if (!lease_.finish(waiter)) return;
   }
-  wake(&waiter.state);
+  platform::wake(&waiter.state);
 }
 
 // With the read lease, which is a caller's or the reactor's.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a connection receives through a carrier.
-#include <cerrno>
 #include <utility>
 
 #include "rr/printable.hpp"
@@ -8,14 +7,6 @@
 #include "runtime/cpp/src/channel/tls.hpp"
 
 namespace rr::channel {
-namespace {
-
-bool is_nothing_yet(std::ptrdiff_t size) {
-  return size < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR);
-}
-
-}  // namespace
-
 StreamConnection::Received StreamConnection::receive_carried(Scratch& scratch, bool may_block,
                                                              bool& is_full) {
   if (layers_.carrier()->carries_messages()) return receive_messages(scratch, may_block);
@@ -32,7 +23,7 @@ StreamConnection::Received StreamConnection::receive_messages(Scratch& scratch, 
   do {
     Frame frame;
     const std::ptrdiff_t size = carrier->receive(frame, may_block);
-    if (is_nothing_yet(size)) return result;
+    if (size == platform::nothing_now) return result;
     if (size <= 0) {
       return fail_reading({ErrorCode::connection_error, "the other side closed the connection"});
     }
@@ -58,7 +49,7 @@ StreamConnection::Received StreamConnection::receive_bytes(Scratch& scratch, boo
     // Another one when the bytes before asked for a layer.
     Carrier* const carrier = layers_.carrier();
     const std::ptrdiff_t size = carrier->receive(room, may_block);
-    if (is_nothing_yet(size)) return result;
+    if (size == platform::nothing_now) return result;
     if (size <= 0) {
       const std::string failure = carrier->failure();
       if (failure.empty()) {

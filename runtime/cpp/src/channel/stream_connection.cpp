@@ -2,8 +2,6 @@
 // The life of a connection: start, heartbeats and limits of time, end.
 #include "runtime/cpp/src/channel/stream_connection.hpp"
 
-#include <sys/socket.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -53,7 +51,7 @@ StreamConnection::StreamConnection(Role role, Descriptor socket, std::shared_ptr
       last_received_(coarse_now()),
       created_(coarse_now()),
       watch_(*reactor_, socket_.get(), *this) {
-  set_stream_options(socket_.get());
+  platform::set_stream_options(socket_.get());
   if (role_ == Role::server) threads_ = reactor_->open_share(remote_key(remote_address_));
   tap_.open(socket_.get());
 }
@@ -109,7 +107,7 @@ void StreamConnection::start(std::shared_ptr<Receiver> receiver) {
 
 std::string StreamConnection::local_url() const {
   if (!terms_.local_url.empty()) return terms_.local_url;
-  return url_of(local_address(socket_.get()), layers_.scheme());
+  return url_of(platform::local_address(socket_.get()), layers_.scheme());
 }
 
 ChannelTraits StreamConnection::traits() const {
@@ -191,7 +189,7 @@ void StreamConnection::begin_close(const Error& why) {
   is_closing_ = true;
   sending_.close();
   why_closed_ = std::make_unique<const Error>(why);
-  ::shutdown(socket_.get(), SHUT_RDWR);  // wakes a thread that receives
+  platform::shut_down(socket_.get());  // wakes a thread that receives
 }
 
 // With the read lease, which is not given back.

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How bytes become messages, and messages reach the receiver.
-#include <sys/socket.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 #include <string_view>
 #include <thread>
@@ -153,15 +150,11 @@ StreamConnection::Received StreamConnection::receive(Scratch& scratch, bool may_
   if (!inbox_.may_grow()) return wait_for_memory();
   if (layers_.carrier() != nullptr) return receive_carried(scratch, may_block, is_full);
   const std::span<std::byte> room = this->room(scratch);
-  int flags = may_block ? 0 : MSG_DONTWAIT;
-  if (may_block && inbox_.is_assembling()) flags = MSG_WAITALL;
-  ssize_t size = 0;
-  do {
-    size = recv(socket_.get(), room.data(), room.size(), flags);
-  } while (size < 0 && errno == EINTR && !may_block);
-  if (size < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR)) {
-    return Received::nothing;
-  }
+  using platform::Wait;
+  const Wait may_wait = inbox_.is_assembling() ? Wait::all : Wait::some;
+  const std::ptrdiff_t size =
+      platform::receive(socket_.get(), room, may_block ? may_wait : Wait::none);
+  if (size == platform::nothing_now) return Received::nothing;
   if (size <= 0) {
     return fail_reading({ErrorCode::connection_error, size == 0
                                                           ? "the other side closed the connection"
@@ -243,8 +236,7 @@ void StreamConnection::refuse_stream(const Scratch& scratch, std::size_t size) {
       std::memcmp(scratch.bytes.data(), magic.data(), std::min(size, magic.size())) == 0) {
     return;
   }
-  ::send(socket_.get(), not_our_protocol.data(), not_our_protocol.size(),
-         MSG_DONTWAIT | MSG_NOSIGNAL);
+  platform::send(socket_.get(), std::as_bytes(std::span(not_our_protocol)));
 }
 
 // Reads a message and does with it what does not have to wait. False when it is none.
@@ -308,7 +300,7 @@ bool StreamConnection::take_packet(Scratch& scratch, const Frame& frame) {
   bool is_again = false;
   bool is_end = false;
   const Handling admission = reactor_->admission(threads_);
-  const SleepWord* next = nullptr;
+  const platform::SleepWord* next = nullptr;
   {
     const std::lock_guard lock(mutex_);
     has_strand = hand_on(scratch, may_dispatch && admission != Handling::later, must_post);
@@ -323,7 +315,7 @@ bool StreamConnection::take_packet(Scratch& scratch, const Frame& frame) {
       if (!watch_.is_pinned()) watch_input();
     }
   }
-  if (next != nullptr) wake(next);
+  if (next != nullptr) platform::wake(next);
   if (is_end) finish_close();
   if (must_post) drain_soon();
   if (!scratch.deferred.empty()) run_deferred(scratch.deferred, admission);

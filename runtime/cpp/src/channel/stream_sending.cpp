@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // How messages leave a connection.
-#include <poll.h>
-
 #include <algorithm>
 
 #include "rr/error.hpp"
@@ -207,7 +205,7 @@ bool StreamConnection::wait_sent(std::size_t bytes, Time deadline) {
     if (Carrier* const carrier = sending_.carrier()) {
       carrier->wait_for_room(until);
     } else {
-      wait_for(socket_.get(), POLLOUT, until);
+      platform::wait_for(socket_.get(), ready::room, until);
     }
   }
   return false;

@@ -52,7 +52,7 @@ void StreamConnection::look_at_watch() {
 
 // With the read lease.
 void StreamConnection::limit_receive_time() {
-  if (!has_receive_timeout_) set_receive_timeout(socket_.get(), receive_pause);
+  if (!has_receive_timeout_) platform::set_receive_timeout(socket_.get(), receive_pause);
   has_receive_timeout_ = true;
 }
 
@@ -61,7 +61,9 @@ void StreamConnection::limit_receive_time() {
 // acknowledges with what it says next, or after some more packets; this asks for the same. The
 // kernel goes back when nothing has come for 40 ms. Channels without TCP refuse, and have nothing
 // to acknowledge.
-void StreamConnection::acknowledge_late() { acknowledge_with_next_segment(socket_.get()); }
+void StreamConnection::acknowledge_late() {
+  platform::acknowledge_with_next_segment(socket_.get());
+}
 
 // Pinned threads
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/tcp_connect.hpp"
 
-#include <poll.h>
-#include <sys/socket.h>
-
 #include <algorithm>
 #include <exception>
 #include <optional>
@@ -34,17 +31,18 @@ class Attempts {
   [[nodiscard]] bool empty() const { return attempts_.empty(); }
 
   std::optional<Agreed> wait(Time until) {
-    std::vector<pollfd> wanted;
+    std::vector<platform::Awaited> wanted;
     for (const auto& attempt : attempts_) wanted.push_back(attempt->wanted());
     const Interruption* const interruption = Interruption::current();
-    if (interruption != nullptr) wanted.push_back({interruption->descriptor(), POLLIN, 0});
-    poll(wanted.data(), wanted.size(), poll_milliseconds(until));
+    if (interruption != nullptr)
+      wanted.push_back({interruption->descriptor(), platform::ready::input});
+    platform::wait_for_any(wanted, until);
     if (interruption != nullptr && interruption->is_interrupted()) {
       fail(ErrorCode::operation_cancelled, "connecting was given up");
     }
     std::optional<Agreed> agreed;
     for (std::size_t i = 0; i < attempts_.size() && !agreed; ++i) {
-      if (wanted[i].revents == 0) continue;
+      if (wanted[i].found == 0) continue;
       if (!keep_failure([&] { agreed = attempts_[i]->go_on(); })) attempts_[i].reset();
     }
     std::erase(attempts_, nullptr);

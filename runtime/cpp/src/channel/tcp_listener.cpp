@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/tcp_listener.hpp"
 
-#include <netinet/in.h>
-#include <sys/socket.h>
-
-#include <cerrno>
-#include <cstring>
+#include <system_error>
 #include <utility>
 
 #include "rr/error.hpp"
@@ -16,26 +12,6 @@ namespace {
 
 // The port that URLs without a port mean belongs to a helper that shares it (04, section 1).
 constexpr std::uint16_t shared_port = 48653;
-constexpr int backlog = 1024;
-
-// Returns nothing, with errno, when it cannot listen there.
-Descriptor open_listening(const Address& address) {
-  Descriptor socket(::socket(address.family(), SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  if (!socket) return {};
-  const int on = 1;
-  setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  if (address.family() == AF_INET6) {
-    setsockopt(socket.get(), IPPROTO_IPV6, IPV6_V6ONLY, &on, sizeof on);
-  }
-  if (bind(socket.get(), reinterpret_cast<const sockaddr*>(&address.storage), address.size) != 0 ||
-      ::listen(socket.get(), backlog) != 0) {
-    const int error = errno;
-    socket = Descriptor();
-    errno = error;
-    return {};
-  }
-  return socket;
-}
 
 // One socket for each address, all on one port. Throws rr::Error.
 std::vector<Descriptor> open_all(std::vector<Address> addresses, std::uint16_t wanted_port) {
@@ -44,30 +20,33 @@ std::vector<Descriptor> open_all(std::vector<Address> addresses, std::uint16_t w
   for (int attempt = 1;; ++attempt) {
     std::vector<Descriptor> sockets;
     std::uint16_t port = wanted_port;
-    int error = 0;
+    std::error_code error;
     for (Address& address : addresses) {
       address.set_port(port);
-      Descriptor socket = open_listening(address);
+      std::error_code failure;
+      Descriptor socket = platform::listen_at(address, failure);
       if (socket) {
-        port = local_address(socket.get()).port();
+        port = platform::local_address(socket.get()).port();
         if (port == shared_port) {
           shared = std::move(socket);
-          error = EADDRINUSE;
+          error = std::make_error_code(std::errc::address_in_use);
           break;
         }
         sockets.push_back(std::move(socket));
         continue;
       }
       // A machine may lack a family.
-      if (address.family() == AF_INET6 && (errno == EAFNOSUPPORT || errno == EADDRNOTAVAIL))
+      if (address.family() == Family::v6 && (failure == std::errc::address_family_not_supported ||
+                                             failure == std::errc::address_not_available)) {
         continue;
-      error = errno;
+      }
+      error = failure;
       // A port that is free for one family need not be so for the other.
-      if (error == EADDRINUSE && wanted_port == 0 && attempt < attempts) break;
+      if (error == std::errc::address_in_use && wanted_port == 0 && attempt < attempts) break;
       throw Error(ErrorCode::connection_error,
-                  "cannot listen at " + address.text() + ": " + std::strerror(error));
+                  "cannot listen at " + address.text() + ": " + error.message());
     }
-    if (error == 0) return sockets;
+    if (!error) return sockets;
     if (attempt == attempts) {
       throw Error(ErrorCode::connection_error, "there is no free port to listen at");
     }

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
-#include <ctime>
 #include <mutex>
+
+#include "runtime/cpp/src/platform/clock.hpp"
 
 /// The runtime's clocks.
 namespace rr::channel {
@@ -17,12 +18,7 @@ using Milliseconds = std::chrono::milliseconds;
 /// Later than everything.
 inline constexpr Time never = Time::max();
 
-/// Clock::now() to a few milliseconds, for a quarter of its price.
-inline Time coarse_now() {
-  timespec time{};
-  clock_gettime(CLOCK_MONOTONIC_COARSE, &time);
-  return Time(std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec));
-}
+using platform::coarse_now;
 
 /// As long as for ever: what a span is cut to, so that it can be added, compared and enlarged
 /// without overflow.

@@ -6,9 +6,10 @@
 #include <utility>
 
 #include "rr/error.hpp"
-#include "runtime/cpp/src/channel/environment.hpp"
 #include "runtime/cpp/src/channel/issuing.hpp"
 #include "runtime/cpp/src/channel/tls_layer.hpp"
+#include "runtime/cpp/src/platform/environment.hpp"
+#include "runtime/cpp/src/platform/files.hpp"
 
 namespace rr::channel {
 namespace {
@@ -35,9 +36,9 @@ std::shared_ptr<SSL_CTX> make_context() {
 
 std::vector<std::string> authority_files_of(const TlsOptions& options) {
   std::vector<std::string> files = options.authority_files;
-  const std::string file = environment("ROBOTRACONTEUR_SSL_CERT_FILE");
+  const std::string file = platform::environment("ROBOTRACONTEUR_SSL_CERT_FILE");
   if (!file.empty()) files.push_back(file);
-  const std::string folder = environment("ROBOTRACONTEUR_SSL_CERT_DIR");
+  const std::string folder = platform::environment("ROBOTRACONTEUR_SSL_CERT_DIR");
   std::error_code error;
   std::vector<std::string> of_folder;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
@@ -64,13 +65,8 @@ std::string day_of(WallClock::time_point time) {
 }  // namespace
 
 WatchedFiles::Mark WatchedFiles::mark_of(const std::string& name) {
-  struct stat found {};
-  if (::stat(name.c_str(), &found) != 0) return {};
-  const auto nanoseconds = [](const timespec& time) {
-    return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-  };
-  return {found.st_dev, found.st_ino, found.st_size, nanoseconds(found.st_mtim),
-          nanoseconds(found.st_ctim)};
+  const platform::FileState found = platform::state_of(name);
+  return {found.device, found.number, found.size, found.written, found.changed};
 }
 
 bool WatchedFiles::have_changed(const std::vector<std::string>& names, bool thoroughly) {

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/web_page.hpp"
 
-#include <arpa/inet.h>
-#include <unistd.h>
-
-#include <array>
 #include <fstream>
 #include <iterator>
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/texts.hpp"
+#include "runtime/cpp/src/platform/address.hpp"
+#include "runtime/cpp/src/platform/users.hpp"
 
 namespace rr::channel {
 namespace {
@@ -42,11 +40,7 @@ std::string headers_of(std::string_view content) {
          "Cache-Control: no-cache\r\nConnection: close\r\n\r\n";
 }
 
-bool is_address(const std::string& host) {
-  std::array<unsigned char, 16> room{};
-  return inet_pton(AF_INET, host.c_str(), room.data()) == 1 ||
-         inet_pton(AF_INET6, host.c_str(), room.data()) == 1;
-}
+bool is_address(const std::string& host) { return platform::parse_ip(host).has_value(); }
 
 }  // namespace
 
@@ -62,9 +56,8 @@ bool is_own_host(std::string_view host) {
   }
   const std::string name = in_lower_case(host.substr(0, host.find(':')));
   if (name == "localhost" || is_address(name)) return true;
-  std::array<char, 256> own{};
-  if (gethostname(own.data(), own.size() - 1) != 0 || own.front() == '\0') return false;
-  const std::string machine = in_lower_case(own.data());
+  const std::string machine = in_lower_case(platform::machine_name());
+  if (machine.empty()) return false;
   const std::string first = machine.substr(0, machine.find('.'));
   return name == first || name == first + ".local";
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/codec/large_block.hpp"
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <array>
 #include <mutex>
@@ -10,13 +8,15 @@
 #include <thread>
 #include <utility>
 
+#include "runtime/cpp/src/platform/memory.hpp"
+
 namespace rr::codec {
 namespace {
 
-constexpr std::size_t page = 4096;
+using platform::page_size;
 
 std::size_t whole_pages(std::size_t size) {
-  const std::size_t whole = (size + page - 1) / page * page;
+  const std::size_t whole = (size + page_size - 1) / page_size * page_size;
   if (whole < size) throw std::bad_alloc();
   return whole;
 }
@@ -27,11 +27,11 @@ void give_to_system(LargeBlock block) noexcept {
   if (block.bytes == nullptr) return;
   constexpr std::size_t part = std::size_t{512} * 1024;
   while (block.size > part) {
+    platform::unmap_pages(block.bytes, block.size, block.size - part);
     block.size -= part;
-    ::munmap(block.bytes + block.size, part);
     std::this_thread::yield();
   }
-  ::munmap(block.bytes, block.size);
+  platform::unmap_pages(block.bytes, block.size, 0);
 }
 
 // Blocks that were given back, the latest first.
@@ -132,10 +132,9 @@ LargeBlock take_large_block(std::size_t size) {
 
 LargeBlock take_fresh_block(std::size_t size) {
   const std::size_t whole = whole_pages(size);
-  void* const bytes =
-      ::mmap(nullptr, whole, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (bytes == MAP_FAILED) throw std::bad_alloc();
-  return {static_cast<std::byte*>(bytes), whole};
+  std::byte* const bytes = platform::map_pages(whole);
+  if (bytes == nullptr) throw std::bad_alloc();
+  return {bytes, whole};
 }
 
 void give_back_large_block(LargeBlock block) noexcept {

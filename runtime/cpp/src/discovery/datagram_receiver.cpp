@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/discovery/datagram_receiver.hpp"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-
-#include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/discovery/interfaces.hpp"
 #include "runtime/cpp/src/discovery/packets.hpp"
+#include "runtime/cpp/src/platform/datagrams.hpp"
 
 namespace rr::discovery {
 namespace {
@@ -65,20 +60,15 @@ class DatagramReceiver::Socket final : public channel::Pollable,
     std::array<char, longest_packet + 1> bytes;
     for (int i = 0; i < datagrams_in_a_row && !is_stopped_; ++i) {
       channel::Address sender;
-      sender.size = sizeof sender.storage;
-      const ssize_t size = recvfrom(socket_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT,
-                                    reinterpret_cast<sockaddr*>(&sender.storage), &sender.size);
+      const std::ptrdiff_t size = platform::receive_datagram(socket_.get(), bytes, sender);
       if (size >= 0) {
         handler_(std::string_view(bytes.data(), static_cast<std::size_t>(size)), sender);
         continue;
       }
-      if (errno != EAGAIN && errno != EWOULDBLOCK) continue;  // an error that was waiting is taken
+      if (size == platform::broken) continue;  // an error that was waiting is taken
       is_busy_ = false;
       // One may have come between the two, and its event have been passed over.
-      char one = 0;
-      if (recv(socket_.get(), &one, 1, MSG_DONTWAIT | MSG_PEEK) < 0 || is_busy_.exchange(true)) {
-        return;
-      }
+      if (!platform::has_datagram(socket_.get()) || is_busy_.exchange(true)) return;
     }
     if (!is_stopped_) {
       reactor_->schedule(*this, weak_from_this(), channel::Clock::now() + rest);
@@ -98,39 +88,27 @@ DatagramReceiver::DatagramReceiver(std::shared_ptr<channel::Reactor> reactor,
 
 DatagramReceiver::~DatagramReceiver() { stop(); }
 
-// Null, with errno, when the family cannot be listened to.
-std::shared_ptr<DatagramReceiver::Socket> DatagramReceiver::open(int family) {
-  channel::Descriptor socket(::socket(family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+// Null when the family cannot be listened to.
+std::shared_ptr<DatagramReceiver::Socket> DatagramReceiver::open(channel::Family family,
+                                                                 std::error_code& error) {
+  channel::Descriptor socket =
+      platform::open_datagrams(platform::any_address(family, network_.port), std::nullopt, error);
   if (!socket) return nullptr;
-  const int on = 1;
-  setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  channel::Address any;
-  any.storage.ss_family = static_cast<sa_family_t>(family);
-  if (family == AF_INET6) {
-    setsockopt(socket.get(), IPPROTO_IPV6, IPV6_V6ONLY, &on, sizeof on);
-    any.size = sizeof(sockaddr_in6);
-  } else {
-    setsockopt(socket.get(), SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
-    any.size = sizeof(sockaddr_in);
-  }
-  any.set_port(network_.port);
-  if (bind(socket.get(), reinterpret_cast<const sockaddr*>(&any.storage), any.size) != 0) {
-    return nullptr;
-  }
   return std::make_shared<Socket>(reactor_, std::move(socket), handler_);
 }
 
 void DatagramReceiver::start() {
   {
     const std::lock_guard lock(mutex_);
-    const auto v4 = open(AF_INET);
+    std::error_code error;
+    const auto v4 = open(channel::Family::v4, error);
     if (!v4) {
       throw Error(ErrorCode::connection_error, "cannot listen to discovery at port " +
                                                    std::to_string(network_.port) + ": " +
-                                                   std::strerror(errno));
+                                                   error.message());
     }
     sockets_.push_back(v4);
-    v6_ = open(AF_INET6);
+    v6_ = open(channel::Family::v6, error);
     if (v6_) sockets_.push_back(v6_);
     for (const auto& socket : sockets_) socket->start();
   }
@@ -156,10 +134,8 @@ void DatagramReceiver::join_groups() {
     present.insert(local.interface_number);
     if (joined_.contains(local.interface_number)) continue;
     for (const char* const group : groups_of(network_, false)) {
-      ipv6_mreq wanted{};
-      inet_pton(AF_INET6, group, &wanted.ipv6mr_multiaddr);
-      wanted.ipv6mr_interface = local.interface_number;
-      setsockopt(v6_->descriptor(), IPPROTO_IPV6, IPV6_JOIN_GROUP, &wanted, sizeof wanted);
+      platform::join_group(v6_->descriptor(), platform::parse_ip(group).value(),
+                           local.interface_number);
     }
   }
   joined_ = std::move(present);

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <set>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "rr/discovery.hpp"
@@ -34,7 +35,7 @@ class DatagramReceiver : public std::enable_shared_from_this<DatagramReceiver> {
 
  private:
   class Socket;
-  std::shared_ptr<Socket> open(int family);
+  std::shared_ptr<Socket> open(channel::Family family, std::error_code& error);
 
   const std::shared_ptr<channel::Reactor> reactor_;
   const DiscoveryNetwork network_;

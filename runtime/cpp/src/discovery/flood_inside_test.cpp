@@ -2,7 +2,6 @@
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
-#include <poll.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -53,12 +52,12 @@ std::string forged_packet(std::uint32_t number) {
 }
 
 channel::Address sender(std::uint32_t number) {
-  channel::Address address;
-  auto& v4 = reinterpret_cast<sockaddr_in&>(address.storage);
-  v4.sin_family = AF_INET;
-  v4.sin_addr.s_addr = htonl(0x7F000001 + number % 65536);
-  address.size = sizeof v4;
-  return address;
+  platform::IpAddress ip = platform::parse_ip("127.0.0.0").value();
+  const std::uint32_t host = 1 + number % 65536;
+  ip.bytes[1] = static_cast<std::uint8_t>(host >> 16);
+  ip.bytes[2] = static_cast<std::uint8_t>(host >> 8);
+  ip.bytes[3] = static_cast<std::uint8_t>(host);
+  return platform::address_of(ip, 0);
 }
 
 TEST(Flood, AMillionForgedAnnouncementsLeaveTheTableBounded) {
@@ -159,7 +158,8 @@ TEST(Flood, RequestsWithoutEndAreAnsweredOnceASecond) {
     sendto(socket.get(), packet.data(), packet.size(), MSG_DONTWAIT,
            reinterpret_cast<const sockaddr*>(&place), sizeof place);
     std::array<char, 4096> bytes{};
-    if (!channel::wait_for(ear.get(), POLLIN, channel::Clock::now() + 1ms)) continue;
+    if (!platform::wait_for(ear.get(), platform::ready::input, channel::Clock::now() + 1ms))
+      continue;
     const ssize_t size = recv(ear.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
     if (size > 0 &&
         std::string_view(bytes.data(), static_cast<std::size_t>(size)).find(asked.id().text()) !=

@@ -10,8 +10,9 @@
 #include "rr/error.hpp"
 #include "rr/url.hpp"
 #include "runtime/cpp/src/channel/directories.hpp"
-#include "runtime/cpp/src/channel/trusted_folder.hpp"
 #include "runtime/cpp/src/endpoint/service_index_types.hpp"
+#include "runtime/cpp/src/platform/trusted_folder.hpp"
+#include "runtime/cpp/src/platform/users.hpp"
 
 namespace rr::discovery {
 namespace {
@@ -53,14 +54,14 @@ std::map<NodeId, std::string> names_in(const fs::path& base) {
 
 // Somebody else can have made the folder, and said in it what he likes.
 bool is_trusted(const fs::path& base, const std::string& user) {
-  channel::FolderRule rule;
+  platform::FolderRule rule;
   if (user.empty()) {
     rule.is_private = true;
   } else {
-    rule.owner = channel::user_of(user);
+    rule.owner = platform::user_of(user);
   }
   try {
-    return channel::open_trusted_folder(base.string(), rule).has_value();
+    return platform::open_trusted_folder(base.string(), rule).has_value();
   } catch (const Error&) {
     return false;
   }
@@ -89,7 +90,7 @@ void add_nodes_in(const fs::path& base, const std::string& user, std::vector<Ann
 std::vector<Announcement> find_local_nodes() {
   std::vector<Announcement> nodes;
   try {
-    const auto directories = channel::NodeDirectories::of_user();
+    const auto directories = platform::node_folders();
     const fs::path below = fs::path("transport") / "local";
     add_nodes_in(directories.user_run / below, {}, nodes);
     for (const fs::path& folder : entries_of(directories.system_run / below)) {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/discovery/packets.hpp"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-
+#include <algorithm>
 #include <utility>
 
 #include "rr/error.hpp"
@@ -31,24 +29,19 @@ std::string_view take_line(std::string_view& rest) {
   return trimmed(line);
 }
 
-bool is_site_local(const in6_addr& address) {
-  return address.s6_addr[0] == 0xfe && (address.s6_addr[1] & 0xc0) == 0xc0;
+bool is_site_local(const platform::IpAddress& ip) {
+  return ip.bytes[0] == 0xfe && (ip.bytes[1] & 0xc0) == 0xc0;
 }
 
 // Whether a node at `sender` may say that it is at `host`.
 bool may_be_at(const std::string& host, const channel::Address& sender) {
-  in_addr v4{};
-  if (inet_pton(AF_INET, host.c_str(), &v4) == 1) {
-    const std::uint32_t wanted = ntohl(v4.s_addr);
-    if (wanted >> 24 == 127) return true;
-    if (sender.family() != AF_INET) return false;
-    const auto& from = reinterpret_cast<const sockaddr_in&>(sender.storage);
-    return wanted >> 16 == ntohl(from.sin_addr.s_addr) >> 16;
-  }
-  in6_addr v6{};
-  if (inet_pton(AF_INET6, host.substr(0, host.find('%')).c_str(), &v6) != 1) return false;
-  if (IN6_IS_ADDR_LOOPBACK(&v6)) return true;
-  return sender.family() == AF_INET6 && (IN6_IS_ADDR_LINKLOCAL(&v6) || is_site_local(v6));
+  const auto ip = platform::parse_ip(host.substr(0, host.find('%')));
+  if (!ip) return false;
+  if (ip->is_loopback()) return true;
+  const auto from = sender.ip();
+  if (!from || from->is_v6 != ip->is_v6) return false;
+  if (ip->is_v6) return ip->is_link_local() || is_site_local(*ip);
+  return std::equal(ip->bytes.begin(), ip->bytes.begin() + 2, from->bytes.begin());
 }
 
 }  // namespace

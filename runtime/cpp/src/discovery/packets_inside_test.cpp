@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
 
 #include <algorithm>
 #include <cctype>
@@ -21,17 +19,7 @@ const NodeId some_node = *NodeId::parse("11111111-2222-3333-4444-555555555555");
 const std::string sender_text = "11111111-2222-3333-4444-555555555555";
 
 channel::Address at(const char* text) {
-  channel::Address address;
-  auto& v4 = reinterpret_cast<sockaddr_in&>(address.storage);
-  auto& v6 = reinterpret_cast<sockaddr_in6&>(address.storage);
-  if (inet_pton(AF_INET, text, &v4.sin_addr) == 1) {
-    v4.sin_family = AF_INET;
-    address.size = sizeof v4;
-  } else if (inet_pton(AF_INET6, text, &v6.sin6_addr) == 1) {
-    v6.sin6_family = AF_INET6;
-    address.size = sizeof v6;
-  }
-  return address;
+  return platform::address_of(platform::parse_ip(text).value(), 0);
 }
 
 // The packet of 05, section 2.1, with this host.

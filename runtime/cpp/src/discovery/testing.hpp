@@ -21,7 +21,7 @@ inline DiscoveryNetwork loopback_network() {
   return {.link_local = false,
           .ipv4_broadcast = true,
           .interfaces = {"lo"},
-          .port = channel::local_address(socket.get()).port()};
+          .port = platform::local_address(socket.get()).port()};
 }
 
 /// Listens there, to nothing else.

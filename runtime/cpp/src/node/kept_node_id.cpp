@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/node/kept_node_id.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -10,7 +8,8 @@
 
 #include "rr/error.hpp"
 #include "rr/url.hpp"
-#include "runtime/cpp/src/channel/trusted_folder.hpp"
+#include "runtime/cpp/src/platform/trusted_folder.hpp"
+#include "runtime/cpp/src/platform/users.hpp"
 
 namespace rr {
 namespace {
@@ -32,32 +31,32 @@ std::optional<std::string> read_trimmed(const fs::path& file) {
   return text;
 }
 
-fs::path id_file(const channel::NodeDirectories& directories, const std::string& name) {
+fs::path id_file(const platform::NodeFolders& directories, const std::string& name) {
   const fs::path configured = directories.user_config / "nodeids" / name;
   std::error_code error;
-  if (!directories.is_root || fs::exists(configured, error)) return configured;
+  if (!platform::is_system_process() || fs::exists(configured, error)) return configured;
   return directories.user_state / "nodeids" / name;
 }
 
 }  // namespace
 
-void KeptNodeId::lock(const std::string& name, const channel::NodeDirectories& directories) {
+void KeptNodeId::lock(const std::string& name, const platform::NodeFolders& directories) {
   // It becomes the name of a file.
   if (!Url::is_node_name(name)) {
     throw Error(ErrorCode::invalid_argument, "`" + name + "` is no name for a node");
   }
-  channel::make_trusted_folder((directories.user_run / "nodeids").string(), {.is_private = true},
-                               directories.user_run.string());
+  platform::make_trusted_folder((directories.user_run / "nodeids").string(), {.is_private = true},
+                                directories.user_run.string());
   lock_.emplace(directories.user_run / "nodeids" / (name + ".pid"), "the node name `" + name + "`");
-  lock_->write(std::to_string(::getpid()));
+  lock_->write(std::to_string(platform::process_id()));
 }
 
 KeptNodeId::KeptNodeId(const std::string& name, const NodeId& id) : id_(id) {
-  lock(name, channel::NodeDirectories::of_user());
+  lock(name, platform::node_folders());
 }
 
 KeptNodeId::KeptNodeId(const std::string& name) {
-  const auto directories = channel::NodeDirectories::of_user();
+  const auto directories = platform::node_folders();
   lock(name, directories);
   const fs::path file = id_file(directories, name);
   const auto text = read_trimmed(file);

@@ -22,7 +22,7 @@ class KeptNodeId {
   [[nodiscard]] const NodeId& id() const { return id_; }
 
  private:
-  void lock(const std::string& name, const channel::NodeDirectories& directories);
+  void lock(const std::string& name, const platform::NodeFolders& directories);
 
   std::optional<channel::LockedFile> lock_;  // while this lives
   NodeId id_;

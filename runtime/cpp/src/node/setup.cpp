@@ -11,8 +11,8 @@
 #include "rr/error.hpp"
 #include "rr/wire.hpp"
 #include "runtime/cpp/src/channel/components.hpp"
-#include "runtime/cpp/src/channel/directories.hpp"
 #include "runtime/cpp/src/node/kept_node_id.hpp"
+#include "runtime/cpp/src/platform/node_folders.hpp"
 
 namespace rr {
 namespace {
@@ -71,7 +71,7 @@ void apply_tls(const SetupOptions& setup, TlsOptions& tls) {
 
 // Where the existing implementations keep the certificate of a node.
 std::string certificate_of(const NodeId& id) {
-  const auto folder = channel::NodeDirectories::of_user().user_config / "certificates";
+  const auto folder = platform::node_folders().user_config / "certificates";
   for (const std::string& name : {id.text(), id.text_with_braces()}) {
     std::error_code error;
     const auto file = folder / (name + ".p12");

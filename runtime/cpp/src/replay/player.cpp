@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/replay/player.hpp"
 
-#include <poll.h>
-
 #include <algorithm>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/platform/waiting.hpp"
 #include "runtime/cpp/src/replay/played_line.hpp"
 #include "runtime/cpp/src/replay/script.hpp"
 #include "runtime/cpp/src/replay/words.hpp"
@@ -194,15 +193,16 @@ class Player {
   // Whatever comes on any connection, for so long at most, or until something has come.
   void receive(Milliseconds limit) {
     bool has_any = false;
-    std::vector<pollfd> wanted;
+    std::vector<platform::Awaited> wanted;
     for (auto& [number, each] : lines_) {
       if (!each.played.is_open()) continue;
       has_any = each.played.receive_all() || has_any;
-      if (each.played.is_open()) wanted.push_back({each.played.descriptor(), POLLIN, 0});
+      if (each.played.is_open())
+        wanted.push_back({each.played.descriptor(), platform::ready::input});
     }
     if (has_any || limit.count() <= 0) return;
-    constexpr std::int64_t longest = 1000;
-    ::poll(wanted.data(), wanted.size(), static_cast<int>(std::min(limit.count(), longest)));
+    constexpr Milliseconds longest{1000};
+    platform::wait_for_any(wanted, Clock::now() + std::min(limit, longest));
     for (auto& [number, each] : lines_) {
       if (each.played.is_open()) each.played.receive_all();
     }

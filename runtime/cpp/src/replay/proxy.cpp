@@ -1,28 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/replay/proxy.hpp"
 
-#include <fcntl.h>
-#include <poll.h>
-#include <sys/eventfd.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cerrno>
 #include <list>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "runtime/cpp/src/channel/socket.hpp"
+#include "runtime/cpp/src/platform/waiting.hpp"
 #include "runtime/cpp/src/replay/cutter.hpp"
 #include "runtime/cpp/src/replay/passing.hpp"
 #include "runtime/cpp/src/replay/stream.hpp"
 
 namespace rr::replay {
 namespace {
+
+namespace ready = platform::ready;
 
 constexpr std::size_t bytes_at_once = 64 * 1024;
 
@@ -31,14 +28,14 @@ class Way {
  public:
   Way(int from, int to, Direction direction) : from_(from), to_(to), direction_(direction) {}
 
-  [[nodiscard]] short wants_of(int descriptor) const {
+  [[nodiscard]] std::uint32_t wants_of(int descriptor) const {
     if (is_done_) return 0;
     const bool has_rest = sent_ != bytes_.size();
-    if (descriptor == from_ && !has_rest) return POLLIN;
-    return static_cast<short>(descriptor == to_ && has_rest ? POLLOUT : 0);
+    if (descriptor == from_ && !has_rest) return ready::input;
+    return descriptor == to_ && has_rest ? ready::room : 0;
   }
 
-  // After poll() has found something that it wanted.
+  // Once something was found that it wanted.
   void go_on(Tap& tap, std::uint32_t connection) {
     if (sent_ == bytes_.size()) read(tap, connection);
     write();
@@ -52,14 +49,13 @@ class Way {
   void read(Tap& tap, std::uint32_t connection) {
     sent_ = 0;
     bytes_.resize(bytes_at_once);
-    const ssize_t size = ::recv(from_, bytes_.data(), bytes_.size(), MSG_DONTWAIT);
-    const int error = errno;
-    bytes_.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
-    if (size < 0 && (error == EAGAIN || error == EWOULDBLOCK || error == EINTR)) return;
+    const std::ptrdiff_t size = platform::receive(from_, bytes_, platform::Wait::none);
+    bytes_.resize(static_cast<std::size_t>(std::max<std::ptrdiff_t>(size, 0)));
+    if (size == platform::nothing_now) return;
     if (size < 0) {
       is_broken_ = is_done_ = true;
     } else if (size == 0) {
-      ::shutdown(to_, SHUT_WR);
+      platform::shut_down_sending(to_);
       is_done_ = true;
     } else {
       // First the tap: the other side may answer as soon as it has the bytes.
@@ -71,10 +67,8 @@ class Way {
 
   void write() {
     while (sent_ != bytes_.size()) {
-      const ssize_t size =
-          ::send(to_, bytes_.data() + sent_, bytes_.size() - sent_, MSG_DONTWAIT | MSG_NOSIGNAL);
-      if (size < 0 && errno == EINTR) continue;
-      if (size < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return;
+      const std::ptrdiff_t size = platform::send(to_, std::span(bytes_).subspan(sent_));
+      if (size == platform::nothing_now) return;
       if (size < 0) {
         is_broken_ = is_done_ = true;
         return;
@@ -102,15 +96,14 @@ class Proxy::Work {
         service_(std::move(service)),
         options_(std::move(options)),
         listener_(listening(options_)),
-        stop_(Descriptor(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK))),
+        stop_(make_bell()),
         thread_([this] { accept_all(); }) {}
   ~Work() { stop(); }
 
   [[nodiscard]] int port() const { return listener_.port(); }
 
   void stop() {
-    const std::uint64_t one = 1;
-    if (::write(stop_.get(), &one, sizeof one) < 0) return;
+    stop_.ring();
     if (thread_.joinable()) thread_.join();
   }
 
@@ -119,6 +112,13 @@ class Proxy::Work {
     std::thread thread;
     std::atomic<bool> is_done{false};
   };
+
+  static platform::Bell make_bell() {
+    std::error_code error;
+    platform::Bell bell(error);
+    if (error) throw Error(ErrorCode::system_resource_error, error.message());
+    return bell;
+  }
 
   static Listener listening(const ProxyOptions& options) {
     try {
@@ -152,15 +152,16 @@ class Proxy::Work {
 
   // False when the end is wanted.
   bool wait_for(int descriptor) const {
-    std::array<pollfd, 2> wanted = {{{stop_.get(), POLLIN, 0}, {descriptor, POLLIN, 0}}};
-    while (::poll(wanted.data(), wanted.size(), -1) < 0 && errno == EINTR) continue;
-    return wanted[0].revents == 0;
+    std::array<platform::Awaited, 2> wanted = {
+        {{stop_.descriptor(), ready::input}, {descriptor, ready::input}}};
+    platform::wait_for_any(wanted, channel::never);
+    return wanted[0].found == 0;
   }
 
   void pass(Stream client) {
     const std::uint32_t number = tap_->opened(
         {.side = TapSide::between,
-         .client_url = channel::url_of(channel::remote_address(client.descriptor())),
+         .client_url = channel::url_of(platform::remote_address(client.descriptor())),
          .service_url = "rr+tcp://" + host_text() + ":" + std::to_string(service_.port)});
     std::string reason;
     try {
@@ -180,16 +181,17 @@ class Proxy::Work {
     std::string reason;
     bool has_warned = false;
     while (!ways[0].is_done() || !ways[1].is_done()) {
-      std::array<pollfd, 3> wanted = {{{stop_.get(), POLLIN, 0}, {client, 0, 0}, {service, 0, 0}}};
+      std::array<platform::Awaited, 3> wanted = {
+          {{stop_.descriptor(), ready::input}, {client}, {service}}};
       for (const Way& way : ways) {
-        for (pollfd& each : wanted) {
-          each.events = static_cast<short>(each.events | way.wants_of(each.fd));
-        }
+        for (platform::Awaited& each : wanted) each.wanted |= way.wants_of(each.socket);
       }
       // Nothing is to be told of the end of a side that nothing is wanted of.
-      for (pollfd& each : wanted) each.fd = each.events == 0 ? -1 : each.fd;
-      if (::poll(wanted.data(), wanted.size(), -1) < 0) continue;
-      if (wanted[0].revents != 0) return "the recording ended";
+      for (platform::Awaited& each : wanted) {
+        if (each.wanted == 0) each.socket = -1;
+      }
+      if (!platform::wait_for_any(wanted, channel::never)) continue;
+      if (wanted[0].found != 0) return "the recording ended";
       for (Way& way : ways) {
         if (!way.is_done()) way.go_on(*tap_, number);
         if (way.is_broken()) return reason.empty() ? "the connection broke" : reason;
@@ -214,7 +216,7 @@ class Proxy::Work {
   const HostPort service_;
   const ProxyOptions options_;
   Listener listener_;
-  const Descriptor stop_;
+  const platform::Bell stop_;
   std::list<Line> lines_;
   std::thread thread_;  // last: it uses the rest
 };

@@ -1,31 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/replay/stream.hpp"
 
-#include <arpa/inet.h>
-#include <netdb.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
+#include <system_error>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/platform/local_socket.hpp"
+#include "runtime/cpp/src/platform/waiting.hpp"
 
 namespace rr::replay {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-void send_at_once(int socket) {
-  const int on = 1;
-  ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-}
 
 // What a message says of its own size, in its first eight bytes.
 std::uint32_t announced_size(const Bytes& bytes) {
@@ -36,51 +24,42 @@ std::uint32_t announced_size(const Bytes& bytes) {
 
 constexpr std::size_t smallest_message = 16;
 
-sockaddr_un local_address(const std::filesystem::path& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  const std::string name = path.string();
-  if (name.size() >= sizeof address.sun_path) {
-    throw std::runtime_error("no local socket can have the path " + name);
-  }
-  std::memcpy(address.sun_path, name.data(), name.size());
-  return address;
+// What is not there may not answer for minutes.
+constexpr Milliseconds longest_connecting{5'000};
+
+// Not open when it cannot connect.
+Descriptor connect_to(const platform::Address& address) {
+  platform::Descriptor socket;
+  std::error_code error;
+  const auto state = platform::begin_connect(address, socket, error);
+  if (state == platform::Connecting::failed) return {};
+  const bool is_connected =
+      state == platform::Connecting::done ||
+      (platform::wait_for(socket.get(), platform::ready::room, Clock::now() + longest_connecting) &&
+       !platform::connect_result(socket.get()));
+  return is_connected ? Descriptor(socket.release()) : Descriptor();
 }
 
 }  // namespace
 
 void Descriptor::close() {
-  if (number_ >= 0) ::close(std::exchange(number_, -1));
+  if (number_ >= 0) platform::close_socket(std::exchange(number_, -1));
 }
 
 bool wait_readable(int descriptor, Milliseconds limit) {
-  const auto end = Clock::now() + limit;
-  while (true) {
-    pollfd wanted{descriptor, POLLIN, 0};
-    const auto left = std::chrono::ceil<Milliseconds>(end - Clock::now()).count();
-    const int ready = ::poll(&wanted, 1, left < 0 ? 0 : static_cast<int>(left));
-    if (ready >= 0 || errno != EINTR) return ready > 0;
-  }
+  return platform::wait_for(descriptor, platform::ready::input, Clock::now() + limit);
 }
 
-Stream::Stream(Descriptor socket) : socket_(std::move(socket)) { send_at_once(socket_.get()); }
+Stream::Stream(Descriptor socket) : socket_(std::move(socket)) {
+  platform::set_stream_options(socket_.get());
+}
 
 Stream Stream::connect(const std::string& host, int port) {
-  addrinfo hints{};
-  hints.ai_socktype = SOCK_STREAM;
-  addrinfo* list = nullptr;
-  if (::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &list) != 0) {
-    throw std::runtime_error("unknown host " + host);
-  }
-  const std::unique_ptr<addrinfo, void (*)(addrinfo*)> owner(list, ::freeaddrinfo);
-  for (const addrinfo* each = list; each != nullptr; each = each->ai_next) {
-    Descriptor socket(::socket(each->ai_family, each->ai_socktype | SOCK_CLOEXEC, 0));
-    // What is not there may not answer for minutes.
-    const timeval limit{5, 0};
-    ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
-    if (socket.is_open() && ::connect(socket.get(), each->ai_addr, each->ai_addrlen) == 0) {
-      const timeval none{};
-      ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &none, sizeof none);
+  const std::vector<platform::Address> addresses = platform::look_up(host, platform::LookUp::all);
+  if (addresses.empty()) throw std::runtime_error("unknown host " + host);
+  for (platform::Address address : addresses) {
+    address.set_port(static_cast<std::uint16_t>(port));
+    if (Descriptor socket = connect_to(address); socket.is_open()) {
       return Stream(std::move(socket));
     }
   }
@@ -88,11 +67,10 @@ Stream Stream::connect(const std::string& host, int port) {
 }
 
 Stream Stream::connect(const std::filesystem::path& local) {
-  const sockaddr_un address = local_address(local);
-  Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  if (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-    throw std::runtime_error("nobody listens at " + local.string());
-  }
+  const auto address = platform::local_socket_address(local.string());
+  if (!address) throw std::runtime_error("no local socket can have the path " + local.string());
+  Descriptor socket = connect_to(*address);
+  if (!socket.is_open()) throw std::runtime_error("nobody listens at " + local.string());
   return Stream(std::move(socket));
 }
 
@@ -133,9 +111,12 @@ void Stream::send_through(std::size_t count, Bytes bytes) {
 
 void Stream::write(std::span<const std::byte> bytes) {
   while (is_open() && !bytes.empty()) {
-    const ssize_t sent = ::send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR) continue;
-    if (sent < 0) return;
+    const std::ptrdiff_t sent = platform::send(socket_.get(), bytes);
+    if (sent == platform::broken) return;
+    if (sent == platform::nothing_now) {
+      platform::wait_for(socket_.get(), platform::ready::room, platform::Time::max());
+      continue;
+    }
     bytes = bytes.subspan(static_cast<std::size_t>(sent));
   }
 }
@@ -169,8 +150,8 @@ Arrival Stream::receive(Bytes& message, Milliseconds limit) {
 bool Stream::read() {
   std::byte buffer[65536];
   while (true) {
-    const ssize_t count = ::recv(socket_.get(), buffer, sizeof buffer, 0);
-    if (count < 0 && errno == EINTR) continue;
+    const std::ptrdiff_t count = platform::receive(socket_.get(), buffer, platform::Wait::some);
+    if (count == platform::nothing_now) continue;
     if (count <= 0) {
       close();
       return false;
@@ -203,37 +184,34 @@ void Stream::take(Bytes bytes, std::size_t first_layer) {
 }
 
 Listener::Listener(int port, bool any_interface) {
-  socket_ = Descriptor(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  const int on = 1;
-  ::setsockopt(socket_.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  address.sin_addr.s_addr = htonl(any_interface ? INADDR_ANY : INADDR_LOOPBACK);
-  auto* plain = reinterpret_cast<sockaddr*>(&address);
-  socklen_t size = sizeof address;
-  if (::bind(socket_.get(), plain, size) != 0 || ::listen(socket_.get(), 16) != 0 ||
-      ::getsockname(socket_.get(), plain, &size) != 0) {
+  platform::IpAddress ip;
+  if (!any_interface) ip = platform::parse_ip("127.0.0.1").value();
+  std::error_code error;
+  platform::Descriptor socket =
+      platform::listen_at(platform::address_of(ip, static_cast<std::uint16_t>(port)), error);
+  if (!socket) {
     throw std::runtime_error("cannot listen on port " + std::to_string(port) + ": " +
-                             std::strerror(errno));
+                             error.message());
   }
-  port_ = ntohs(address.sin_port);
+  socket_ = Descriptor(socket.release());
+  port_ = platform::local_address(socket_.get()).port();
 }
 
 Listener::Listener(const std::filesystem::path& local) {
-  const sockaddr_un address = local_address(local);
-  socket_ = Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  if (::bind(socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-      ::listen(socket_.get(), 16) != 0) {
-    throw std::runtime_error("cannot listen at " + local.string() + ": " + std::strerror(errno));
+  std::error_code error;
+  platform::PlacedSocket placed(local.string(), false, error);
+  if (error) {
+    throw std::runtime_error("cannot listen at " + local.string() + ": " + error.message());
   }
+  socket_ = Descriptor(placed.take().release());
 }
 
 std::optional<Stream> Listener::accept(Milliseconds limit) {
   if (!wait_readable(socket_.get(), limit)) return std::nullopt;
-  Descriptor accepted(::accept4(socket_.get(), nullptr, nullptr, SOCK_CLOEXEC));
-  if (!accepted.is_open()) return std::nullopt;
-  return Stream(std::move(accepted));
+  std::error_code error;
+  platform::Descriptor accepted = platform::accept_one(socket_.get(), error);
+  if (!accepted) return std::nullopt;
+  return Stream(Descriptor(accepted.release()));
 }
 
 }  // namespace rr::replay

@@ -20,7 +20,7 @@ namespace rr::replay {
 using Bytes = std::vector<std::byte>;
 using Milliseconds = std::chrono::milliseconds;
 
-/// An open file descriptor, closed at the end.
+/// A socket, closed at the end.
 class Descriptor {
  public:
   Descriptor() = default;

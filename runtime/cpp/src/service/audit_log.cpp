@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Events as lines of JSON in a file.
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <array>
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <ctime>
 #include <mutex>
+#include <system_error>
 #include <utility>
 
 #include "rr/audit.hpp"
 #include "rr/error.hpp"
+#include "runtime/cpp/src/platform/clock.hpp"
+#include "runtime/cpp/src/platform/files.hpp"
 
 namespace rr {
 namespace {
@@ -79,9 +76,7 @@ void add_member(std::string& line, std::string_view name, std::string_view text)
 std::string time_text(std::chrono::system_clock::time_point time) {
   const auto since = std::chrono::floor<std::chrono::microseconds>(time.time_since_epoch());
   const auto seconds = std::chrono::floor<std::chrono::seconds>(since);
-  const auto whole = static_cast<std::time_t>(seconds.count());
-  std::tm parts{};
-  gmtime_r(&whole, &parts);
+  const std::tm parts = platform::utc(static_cast<std::time_t>(seconds.count()));
   std::array<char, 64> text{};
   const std::size_t size = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &parts);
   std::snprintf(text.data() + size, text.size() - size, ".%06dZ",
@@ -89,8 +84,8 @@ std::string time_text(std::chrono::system_clock::time_point time) {
   return text.data();
 }
 
-std::string failure(const std::string& path, const char* what) {
-  return "cannot " + std::string(what) + " `" + path + "`: " + std::strerror(errno);
+std::string failure(const std::string& path, const char* what, const std::error_code& error) {
+  return "cannot " + std::string(what) + " `" + path + "`: " + error.message();
 }
 
 }  // namespace
@@ -124,56 +119,46 @@ std::string AuditLog::line(const AuditEvent& event) {
 class AuditLog::File {
  public:
   File(std::string path, Options options) : path_(std::move(path)), options_(options) { open(); }
-  ~File() { ::close(file_); }
   File(const File&) = delete;
   File& operator=(const File&) = delete;
 
   void write(std::string_view line) {
     const std::lock_guard lock(mutex_);
     if (size_ != 0 && size_ + line.size() > options_.max_size) rotate();
-    while (!line.empty()) {
-      const ssize_t written = ::write(file_, line.data(), line.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) throw Error(ErrorCode::io_error, failure(path_, "write"));
-      size_ += static_cast<std::size_t>(written);
-      line.remove_prefix(static_cast<std::size_t>(written));
-    }
+    const auto bytes = std::as_bytes(std::span(line));
+    const std::error_code error = platform::write_all(file_.get(), bytes);
+    if (error) throw Error(ErrorCode::io_error, failure(path_, "write", error));
+    size_ += line.size();
   }
 
  private:
   void open() {
-    const int flags = O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK;
-    const int file = ::open(path_.c_str(), flags, S_IRUSR | S_IWUSR);
-    if (file < 0) throw Error(ErrorCode::invalid_configuration, failure(path_, "open"));
-    struct stat status {};
-    const bool is_known = ::fstat(file, &status) == 0;
-    const bool is_fit = is_known && S_ISREG(status.st_mode) && status.st_uid == ::geteuid() &&
-                        ::fchmod(file, S_IRUSR | S_IWUSR) == 0;
-    if (!is_fit) {
-      ::close(file);
+    std::error_code error;
+    platform::OpenLog log = platform::open_log(path_, error);
+    if (error) throw Error(ErrorCode::invalid_configuration, failure(path_, "open", error));
+    if (log.is_foreign) {
       throw Error(ErrorCode::invalid_configuration,
                   "`" + path_ + "` is no regular file of this user");
     }
-    if (file_ >= 0) ::close(file_);
-    file_ = file;
-    size_ = static_cast<std::size_t>(status.st_size);
+    file_ = std::move(log.file);
+    size_ = log.size;
   }
 
   // What cannot be renamed grows on.
   void rotate() {
     for (unsigned i = options_.kept_files; i > 1; --i) {
-      ::rename((path_ + "." + std::to_string(i - 1)).c_str(),
-               (path_ + "." + std::to_string(i)).c_str());
+      platform::rename_file(path_ + "." + std::to_string(i - 1), path_ + "." + std::to_string(i));
     }
-    const int status = options_.kept_files == 0 ? ::unlink(path_.c_str())
-                                                : ::rename(path_.c_str(), (path_ + ".1").c_str());
-    if (status == 0) open();
+    const std::error_code error = options_.kept_files == 0
+                                      ? platform::remove_file(path_)
+                                      : platform::rename_file(path_, path_ + ".1");
+    if (!error) open();
   }
 
   const std::string path_;
   const Options options_;
   std::mutex mutex_;
-  int file_ = -1;
+  platform::File file_;
   std::size_t size_ = 0;
 };
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/service/logins.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <condition_variable>
 #include <deque>
@@ -16,6 +14,7 @@
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/remote_address.hpp"
+#include "runtime/cpp/src/platform/threads.hpp"
 
 namespace rr::service {
 namespace {
@@ -55,13 +54,6 @@ std::string text_of(const std::exception_ptr& error) {
 unsigned threads_of(const LoginOptions& options) {
   if (options.threads != 0) return options.threads;
   return std::thread::hardware_concurrency() > 2 ? 2 : 1;
-}
-
-// Hashing is not to take the processor from the node's other threads, but to get on where other
-// programs want it as well.
-void be_modest() {
-  constexpr int niceness = 5;
-  setpriority(PRIO_PROCESS, 0, niceness);  // of this thread only, on Linux
 }
 
 }  // namespace
@@ -296,7 +288,9 @@ std::shared_ptr<Logins::Attempt> Logins::State::next(Time now, Time& due) {
 }
 
 void Logins::State::run() {
-  be_modest();
+  // Hashing is not to take the processor from the node's other threads, but to get on where other
+  // programs want it as well.
+  platform::lower_priority();
   std::unique_lock lock(mutex);
   runners.push_back(std::this_thread::get_id());
   Time idle_since = Clock::now();

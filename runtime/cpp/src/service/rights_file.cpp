@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/service/rights_file.hpp"
 
-#include <sys/stat.h>
-
 #include <utility>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/platform/files.hpp"
 
 namespace rr::service {
 namespace {
@@ -20,9 +19,8 @@ RightsFile::RightsFile(std::shared_ptr<endpoint::Core> core, std::string path)
 RightsFile::~RightsFile() { core_->reactor().cancel(*this); }
 
 RightsFile::State RightsFile::state() const {
-  struct stat status {};
-  if (::stat(path_.c_str(), &status) != 0) return {};
-  return {status.st_mtim.tv_sec, status.st_mtim.tv_nsec, status.st_size, status.st_ino};
+  const platform::FileState found = platform::state_of(path_);
+  return {found.written, found.size, found.number};
 }
 
 // The state is taken first: what changes while the file is read is seen the next time.
@@ -32,8 +30,7 @@ std::shared_ptr<const Rights> RightsFile::read() {
     const std::lock_guard lock(mutex_);
     seen_ = now;
   }
-  struct stat status {};
-  if (::stat(path_.c_str(), &status) == 0 && (status.st_mode & (S_IWGRP | S_IWOTH)) != 0) {
+  if (platform::state_of(path_).may_others_write) {
     core_->log(LogLevel::warning, "`" + path_ + "` can be written by others than its owner: they " +
                                       "decide who may do what");
   }

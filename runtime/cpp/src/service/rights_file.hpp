@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -30,9 +28,8 @@ class RightsFile final : public channel::Timer, public std::enable_shared_from_t
  private:
   // What tells one state of the file from another.
   struct State {
-    std::int64_t seconds = 0;
-    std::int64_t nanoseconds = 0;
-    std::int64_t size = -1;  // there is none
+    std::int64_t written = 0;  // nanoseconds
+    std::int64_t size = -1;    // there is none
     std::uint64_t file = 0;
     bool operator==(const State&) const = default;
   };

@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fcntl.h>
-#include <pthread.h>
-#include <signal.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <chrono>
 #include <condition_variable>
 #include <cstring>
 #include <limits>
 #include <mutex>
 #include <set>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "rr/tap.hpp"
+#include "runtime/cpp/src/platform/files.hpp"
+#include "runtime/cpp/src/platform/threads.hpp"
 #include "runtime/cpp/src/tap/credentials.hpp"
 #include "runtime/cpp/src/tap/format.hpp"
 
@@ -27,26 +23,15 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Bytes = std::vector<std::byte>;
 
-Error cannot_write(const std::string& path, int error) {
-  return {ErrorCode::io_error, "cannot write " + path + ": " + std::strerror(error)};
+Error cannot_write(const std::string& path, const std::string& why) {
+  return {ErrorCode::io_error, "cannot write " + path + ": " + why};
 }
 
-[[noreturn]] void refuse(const std::string& path, const std::string& why) {
-  throw Error(ErrorCode::io_error, "cannot write " + path + ": " + why);
-}
-
-// A file for its user alone, in place of one that is there. Others may have put something else
-// there, in a folder that all may write to, or have the old file open.
-int open_tape(const std::string& path) {
-  struct stat found {};
-  if (::lstat(path.c_str(), &found) == 0) {
-    if (S_ISLNK(found.st_mode)) refuse(path, "it is a symbolic link");
-    if (!S_ISREG(found.st_mode)) refuse(path, "it is no regular file");
-    if (found.st_uid != ::geteuid()) refuse(path, "it belongs to another user");
-    if (::unlink(path.c_str()) != 0) refuse(path, std::strerror(errno));
-  }
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
-  if (file < 0) refuse(path, std::strerror(errno));
+// A file for its user alone, in place of one that is there.
+platform::File open_tape(const std::string& path) {
+  std::string why;
+  platform::File file = platform::open_anew(path, why);
+  if (!file) throw cannot_write(path, why);
   return file;
 }
 
@@ -61,22 +46,16 @@ Tap::~Tap() = default;
 // The file, the buffer in front of it, and the thread between them.
 class Recorder::Tape {
  public:
-  // Takes over the file.
-  Tape(std::string path, int file, RecorderOptions options)
-      : path_(std::move(path)), options_(options), file_(file), start_(Clock::now()) {
+  Tape(std::string path, platform::File file, RecorderOptions options)
+      : path_(std::move(path)), options_(options), file_(std::move(file)), start_(Clock::now()) {
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     const auto header = tap::bytes_of(tap::FileHeader{
         .start = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()});
-    if (const int error = write_all(header)) {
-      ::close(file_);
-      throw cannot_write(path_, error);
-    }
+    const std::error_code error = platform::write_all(file_.get(), header);
+    if (error) throw cannot_write(path_, error.message());
     thread_ = std::thread([this] { write_on(); });
   }
-  ~Tape() {
-    close();
-    ::close(file_);
-  }
+  ~Tape() { close(); }
   Tape(const Tape&) = delete;
   Tape& operator=(const Tape&) = delete;
 
@@ -204,9 +183,7 @@ class Recorder::Tape {
 
   void write_on() {
     // Signals are for the program's own threads, and a pipe that nobody reads is an error here.
-    sigset_t signals;
-    sigfillset(&signals);
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    platform::leave_signals_to_others();
     Bytes writing;
     std::unique_lock lock(mutex_);
     while (true) {
@@ -221,11 +198,12 @@ class Recorder::Tape {
       lock.unlock();
       if (!options_.keeps_credentials) mask(writing);
       sum_up(writing);
-      const int error = is_well ? write_all(writing) : 0;
+      std::error_code error;
+      if (is_well) error = platform::write_all(file_.get(), writing);
       shrink(writing);
       lock.lock();
       written_ += std::exchange(writing_size_, 0);
-      if (error != 0) failure_ = cannot_write(path_, error).message();
+      if (error) failure_ = cannot_write(path_, error.message()).message();
       has_written_.notify_all();
     }
   }
@@ -262,20 +240,9 @@ class Recorder::Tape {
     if (buffer.capacity() > options_.buffer_size) Bytes().swap(buffer);
   }
 
-  // 0, or what errno says.
-  int write_all(std::span<const std::byte> bytes) const {
-    while (!bytes.empty()) {
-      const ssize_t size = ::write(file_, bytes.data(), bytes.size());
-      if (size < 0 && errno == EINTR) continue;
-      if (size < 0) return errno;
-      bytes = bytes.subspan(static_cast<std::size_t>(size));
-    }
-    return 0;
-  }
-
   const std::string path_;
   const RecorderOptions options_;
-  const int file_;
+  const platform::File file_;
   const Clock::time_point start_;
 
   mutable std::mutex mutex_;  // guards what follows
@@ -300,8 +267,8 @@ class Recorder::Tape {
 Recorder::Recorder(const std::filesystem::path& path, RecorderOptions options)
     : tape_(std::make_unique<Tape>(path.string(), open_tape(path.string()), options)) {}
 Recorder::Recorder(int descriptor, RecorderOptions options)
-    : tape_(std::make_unique<Tape>("descriptor " + std::to_string(descriptor), descriptor,
-                                   options)) {}
+    : tape_(std::make_unique<Tape>("descriptor " + std::to_string(descriptor),
+                                   platform::File(descriptor), options)) {}
 Recorder::~Recorder() = default;
 
 std::uint32_t Recorder::opened(const ConnectionOpened& connection) {

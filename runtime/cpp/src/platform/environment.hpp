@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string>
 
-namespace rr::channel {
+namespace rr::platform {
 
 /// A variable of the environment; empty when it is not set.
 inline std::string environment(const char* name) {
@@ -12,4 +12,4 @@ inline std::string environment(const char* name) {
   return value == nullptr ? std::string() : std::string(value);
 }
 
-}  // namespace rr::channel
+}  // namespace rr::platform

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <sys/types.h>
-
 #include <optional>
 #include <string>
 
-#include "runtime/cpp/src/channel/socket.hpp"
+#include "runtime/cpp/src/platform/users.hpp"
 
 /// Folders in which no other user can have put what is found there, nor exchange it.
-namespace rr::channel {
+namespace rr::platform {
 
 /// Who may own the parts of a path, and write to them.
 struct FolderRule {
   /// May own parts of it, besides the system and the user of this process.
-  std::optional<uid_t> owner{};
+  std::optional<UserId> owner{};
   /// The last part belongs to the user of this process, and no group that has others in it may
   /// write to any part.
   bool is_private = false;
@@ -23,8 +21,7 @@ struct FolderRule {
 /// A folder that was walked to part by part: each is a folder, or a link, of somebody who may own
 /// it, and where everybody may write, nobody can rename what others have (the sticky bit).
 struct TrustedFolder {
-  Descriptor at;  ///< opened with O_PATH
-  uid_t owner = 0;
+  UserId owner = system_user;
 };
 
 /// Nothing when a part does not exist. Throws rr::Error (system_resource_error), which names the
@@ -36,7 +33,4 @@ std::optional<TrustedFolder> open_trusted_folder(const std::string& path, const 
 TrustedFolder make_trusted_folder(const std::string& path, const FolderRule& rule,
                                   const std::string& private_from);
 
-/// The user that a name belongs to.
-std::optional<uid_t> user_of(const std::string& name);
-
-}  // namespace rr::channel
+}  // namespace rr::platform

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/cpp/src/channel/trusted_folder.hpp"
+#include "runtime/cpp/src/platform/trusted_folder.hpp"
 
 #include <fcntl.h>
-#include <pwd.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -16,8 +15,9 @@
 #include <vector>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/platform/files.hpp"
 
-namespace rr::channel {
+namespace rr::platform {
 namespace {
 
 constexpr int most_links = 40;  // as the system has it
@@ -61,12 +61,12 @@ class Walk {
       if (!step(name)) return std::nullopt;
     }
     if (rule_.is_private && here_.st_uid != geteuid()) fail(path_, "it belongs to another user");
-    return TrustedFolder{std::move(at_), here_.st_uid};
+    return TrustedFolder{here_.st_uid};
   }
 
  private:
   void begin_at_root() {
-    at_ = Descriptor(open("/", folder_flags));
+    at_ = File(open("/", folder_flags));
     path_.clear();
     if (!at_ || fstat(at_.get(), &here_) != 0) fail("/", std::strerror(errno));
   }
@@ -84,7 +84,7 @@ class Walk {
       follow(name, path);
       return true;
     }
-    Descriptor next(openat(at_.get(), name.c_str(), folder_flags));
+    File next(openat(at_.get(), name.c_str(), folder_flags));
     if (!next || fstat(next.get(), &here_) != 0) {
       fail(path, errno == ENOTDIR || errno == ELOOP ? "it is no folder" : std::strerror(errno));
     }
@@ -136,7 +136,7 @@ class Walk {
   std::vector<std::string> rest_;  // the next one last
   bool makes_ = false;
   std::size_t private_parts_ = 0;  // the last ones
-  Descriptor at_;
+  File at_;
   struct stat here_ {};
   std::string path_;
   uid_t system_owner_ = 0;  // root may have another number where users have
@@ -158,15 +158,4 @@ TrustedFolder make_trusted_folder(const std::string& path, const FolderRule& rul
   return std::move(*folder);
 }
 
-std::optional<uid_t> user_of(const std::string& name) {
-  std::array<char, 16 * 1024> bytes{};
-  passwd entry{};
-  passwd* found = nullptr;
-  if (getpwnam_r(name.c_str(), &entry, bytes.data(), bytes.size(), &found) != 0 ||
-      found == nullptr) {
-    return std::nullopt;
-  }
-  return entry.pw_uid;
-}
-
-}  // namespace rr::channel
+}  // namespace rr::platform

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/cpp/src/channel/sleep_word.hpp"
+#include "runtime/cpp/src/platform/sleep_word.hpp"
 
 #include <linux/futex.h>
 #include <sys/syscall.h>
@@ -10,7 +10,12 @@
 #include <chrono>
 #include <ctime>
 
-namespace rr::channel {
+namespace rr::platform {
+namespace {
+
+constexpr Time never = Time::max();
+
+}  // namespace
 
 static_assert(sizeof(SleepWord) == sizeof(std::uint32_t) && SleepWord::is_always_lock_free,
               "the kernel looks at the word");
@@ -34,4 +39,4 @@ void wake(const SleepWord* word) {
   syscall(SYS_futex, word, FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0);
 }
 
-}  // namespace rr::channel
+}  // namespace rr::platform

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs of nodes in a build of the core alone: by TCP.
+#include <filesystem>
+#include <string>
+
+#include "runtime/cpp/src/node/testing/test_channel.hpp"
+
+namespace rr::testing {
+
+std::string test_channel() { return "tcp"; }
+
+std::string test_folder() { return std::filesystem::temp_directory_path().string(); }
+
+NodeOptions with_channel(NodeOptions options, const std::string& /*channel*/) { return options; }
+
+std::string listen_by_channel(Node& node, std::uint16_t& port, const std::string& channel) {
+  port = node.listen_tcp(0, "127.0.0.1");
+  return "rr+" + channel + "://127.0.0.1:" + std::to_string(port) + "/?";
+}
+
+}  // namespace rr::testing
