@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Generates C# for definitions, and builds a project of this folder with it.
+# Generates C# for definitions, and builds a project of this folder, or in another one, with it.
 #   build.sh ROBDEF NATIVE_DIR ARTIFACTS PROJECT [OPTION...] DEFINITIONS...
 # Packages come from the sources that the machine's NuGet has, or from the folder ROBDEF_NUGET_SOURCE.
 set -eu
@@ -20,5 +20,9 @@ else
   set --
 fi
 export DOTNET_CLI_TELEMETRY_OPTOUT=1 DOTNET_NOLOGO=1
-dotnet build "$here/$project" -c Release -m:2 --artifacts-path "$artifacts" -warnaserror "$@" \
+case $project in
+  /*) ;;
+  *) project=$here/$project ;;
+esac
+dotnet build "$project" -c Release -m:2 --artifacts-path "$artifacts" -warnaserror "$@" \
   -p:GeneratedDir="$generated" -p:NativeDir="$native"

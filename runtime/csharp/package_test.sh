@@ -23,6 +23,12 @@ dotnet pack "$here/Robdef.Runtime" -c Release -m:2 --artifacts-path "$work/runti
   "-p:RobdefFrameworks=\"$frameworks\"" -p:RunAnalyzers=false -p:NativeDir="$native" -p:RobdefCompiler="$robdef" \
   -p:RobdefProjectUrl=https://example.org/robdef -p:RobdefRepositoryUrl=https://example.org/robdef.git
 
+dotnet pack "$here/Robdef.Hosting" -c Release -m:2 --artifacts-path "$work/runtime" -o "$work/feed" \
+  "-p:RobdefFrameworks=\"$frameworks\"" -p:RunAnalyzers=false -p:NativeDir="$native" -p:RobdefCompiler="$robdef"
+python3 -m zipfile -e "$work/feed/Robdef.Hosting.$version.nupkg" "$work/unpacked-hosting"
+grep -q "<dependency id=\"Robdef.Runtime\" version=\"$version\"" "$work/unpacked-hosting/Robdef.Hosting.nuspec" ||
+  fail "the package for hosts does not want the runtime"
+
 [ -f "$work/feed/Robdef.Runtime.$version.snupkg" ] || fail "there are no symbols"
 python3 -m zipfile -e "$work/feed/Robdef.Runtime.$version.nupkg" "$work/unpacked"
 for line in '<projectUrl>https://example.org/robdef</projectUrl>' '<icon>icon.png</icon>' '<readme>README.md</readme>' \

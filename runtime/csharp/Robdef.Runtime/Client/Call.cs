@@ -80,7 +80,26 @@ public ref struct Call
         return OpenLater(handle => new GeneratorFilter<TIn, TOut>(new GeneratorHandle(handle), target, taken, given), cancel);
     }
 
-    private unsafe nint Send(CancellationToken cancel)
+    private nint Send(CancellationToken cancel)
+    {
+        if (Measure.OfCall(_object, _member, _request) is not { } measure)
+        {
+            return SendUnmeasured(cancel);
+        }
+        try
+        {
+            nint answer = SendUnmeasured(cancel);
+            measure.End(null);
+            return answer;
+        }
+        catch (Exception exception)
+        {
+            measure.End(exception);
+            throw;
+        }
+    }
+
+    private unsafe nint SendUnmeasured(CancellationToken cancel)
     {
         using RemoteUse target = _object.Use();
         var cancellation = new NativeCancellation(cancel);
@@ -106,7 +125,7 @@ public ref struct Call
             return refused;
         }
         using RemoteUse target = _object.Use();
-        var completion = new AnswerCompletion<T>(_object.Types, codec, cancel);
+        var completion = new AnswerCompletion<T>(_object.Types, codec, cancel) { Measure = Measure.OfCall(_object, _member, _request) };
         ElementWriter? writer = _writer;
         fixed (byte* name = _member, first = writer is null ? default : writer.Written)
         {
@@ -120,7 +139,26 @@ public ref struct Call
         }
     }
 
-    private unsafe GeneratorHandle OpenNow(CancellationToken cancel)
+    private GeneratorHandle OpenNow(CancellationToken cancel)
+    {
+        if (Measure.OfCall(_object, _member, _request) is not { } measure)
+        {
+            return OpenUnmeasured(cancel);
+        }
+        try
+        {
+            GeneratorHandle generator = OpenUnmeasured(cancel);
+            measure.End(null);
+            return generator;
+        }
+        catch (Exception exception)
+        {
+            measure.End(exception);
+            throw;
+        }
+    }
+
+    private unsafe GeneratorHandle OpenUnmeasured(CancellationToken cancel)
     {
         using RemoteUse target = _object.Use();
         var cancellation = new NativeCancellation(cancel);
@@ -146,7 +184,7 @@ public ref struct Call
             return refused;
         }
         using RemoteUse target = _object.Use();
-        var completion = new TaskCompletion<T>(_object.Types, convert, cancel);
+        var completion = new TaskCompletion<T>(_object.Types, convert, cancel) { Measure = Measure.OfCall(_object, _member, _request) };
         ElementWriter? writer = _writer;
         fixed (byte* name = _member, first = writer is null ? default : writer.Written)
         {

@@ -59,7 +59,7 @@ internal abstract unsafe class CallbackSink(Session session, string member)
     protected abstract void Answer(ServedRequest request);
 
     private ServedRequest Request(nint request, in RrRequestInfo info) =>
-        new(request, info, session.Types, session.Node.Callbacks, member);
+        new(request, info, session.Types, session.Node.Callbacks, member, null);
 }
 
 internal sealed class CallbackSink<TFunction, TResult>(Session session, string member, TFunction function,

@@ -67,6 +67,9 @@ internal abstract unsafe class Completion
 
     public nint Cancellation => _cancellation.Handle;
 
+    /// <summary>Ends with the call; null for none.</summary>
+    public Measure? Measure { get; init; }
+
     /// <summary>To be given to the call; ends with it, or with Abandon.</summary>
     public RrCompletion Native => new() { Context = Context.Of(this), Done = &OnDone };
 
@@ -75,7 +78,9 @@ internal abstract unsafe class Completion
     {
         Context.Free(native.Context);
         _cancellation.End();
-        return Failure.Take(status, error, Types);
+        RobdefException failure = Failure.Take(status, error, Types);
+        Measure?.End(failure);
+        return failure;
     }
 
     protected abstract void Succeed(nint result);
@@ -92,12 +97,14 @@ internal abstract unsafe class Completion
             if (error == 0)
             {
                 completion._cancellation.End();
+                completion.Measure?.End(null);
                 completion.Succeed(result);
                 return;
             }
             RobdefException failure = Failure.Take((int)ErrorCode.UnknownError, error, completion.Types);
             Exception seen = completion._cancellation.Failed(failure);
             completion._cancellation.End();
+            completion.Measure?.End(seen);
             completion.Fail(seen);
         }
         catch (Exception exception)

@@ -37,7 +37,7 @@ internal abstract class GeneratorSteps
     {
         GeneratorSteps steps = Context.Get<GeneratorSteps>(context);
         GeneratorOrigin origin = steps._origin;
-        var request = new ServedRequest(native, *info, origin.Types, origin.Session, origin.Member);
+        var request = new ServedRequest(native, *info, origin.Types, origin.Session, origin.Member, null);
         try
         {
             _ = steps.StepAsync(request);

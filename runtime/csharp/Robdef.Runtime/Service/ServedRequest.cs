@@ -23,19 +23,22 @@ public readonly struct ServedRequest
     private readonly KnownTypes _types;
     private readonly ServedSession _session;
     private readonly string _name;
+    private readonly Measure? _measure;
 
     /// <param name="request">The native request, which belongs to this.</param>
     /// <param name="info">What it says.</param>
     /// <param name="types">That may be in its values.</param>
     /// <param name="session">Of the client that asks.</param>
     /// <param name="name">Of the member.</param>
-    internal ServedRequest(nint request, in RrRequestInfo info, KnownTypes types, ServedSession session, string name)
+    /// <param name="measure">Ends when this is answered; null for none.</param>
+    internal ServedRequest(nint request, in RrRequestInfo info, KnownTypes types, ServedSession session, string name, Measure? measure)
     {
         _request = request;
         _info = info;
         _types = types;
         _session = session;
         _name = name;
+        _measure = measure;
     }
 
     /// <summary>The member's place in the table of its object.</summary>
@@ -159,6 +162,7 @@ public readonly struct ServedRequest
 
     internal void Fail(Exception exception)
     {
+        _measure?.End(exception);
         Failure.Send(_request, _session.Tell(exception, _name));
         Functions.rr_request_release(_request);
     }
@@ -189,7 +193,7 @@ public readonly struct ServedRequest
         nint error;
         int status = Functions.rr_request_answer_object(_request, skeleton.RrServe(), skeleton.RrIsPerClient ? 1 : 0, &error);
         Failure.Check(status, error, _types);
-        Functions.rr_request_release(_request);
+        Finish(status);
     }
 
     private unsafe ValueTask AnswerGenerator(GeneratorSteps steps)
@@ -203,8 +207,9 @@ public readonly struct ServedRequest
             Drop = &GeneratorSteps.OnDrop,
         };
         nint error;
-        Failure.Check(Functions.rr_request_answer_generator(_request, &native, &error), error, _types);
-        Functions.rr_request_release(_request);
+        int status = Functions.rr_request_answer_generator(_request, &native, &error);
+        Failure.Check(status, error, _types);
+        Finish(status);
         return default;
     }
 
@@ -212,6 +217,7 @@ public readonly struct ServedRequest
     private void Finish(int status)
     {
         _ = status;
+        _measure?.End(null);
         Functions.rr_request_release(_request);
     }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 using System;
 using System.Collections.Concurrent;
+using System.Collections.Generic;
 using System.Threading;
 using System.Threading.Tasks;
 
@@ -26,8 +27,15 @@ internal sealed class ServedSession(string place, Faults faults)
     public static ServedSession Find(ulong number) =>
         number != 0 && s_sessions.TryGetValue(number, out ServedSession? session) ? session : None;
 
+    /// <summary>Empty outside of services.</summary>
+    private string Service { get; init; } = "";
+
     /// <summary>A client has connected.</summary>
-    public static void Begin(ulong number, string place, Faults faults) => s_sessions[number] = new ServedSession(place, faults);
+    public static void Begin(ulong number, string service, Faults faults)
+    {
+        s_sessions[number] = new ServedSession($"of the service `{service}`", faults) { Service = service };
+        RobdefTelemetry.Sessions.Add(1, Tag(service));
+    }
 
     /// <summary>The client waits no more: what its handlers do is to be broken off. They go on elsewhere than in this thread.</summary>
     public static void Leave(ulong number)
@@ -43,6 +51,7 @@ internal sealed class ServedSession(string place, Faults faults)
     {
         if (s_sessions.TryRemove(number, out ServedSession? session))
         {
+            RobdefTelemetry.Sessions.Add(-1, Tag(session.Service));
             _ = session.CancelQuietly();
         }
     }
@@ -50,6 +59,8 @@ internal sealed class ServedSession(string place, Faults faults)
     /// <summary>What the client is told of an exception that a member's handler has thrown.</summary>
     public RobdefException Tell(Exception exception, string member) =>
         faults.Tell(exception, $"the member `{member}` {place}");
+
+    private static KeyValuePair<string, object?> Tag(string service) => new("robdef.service", service);
 
     private async Task CancelQuietly()
     {

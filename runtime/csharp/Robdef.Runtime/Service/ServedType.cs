@@ -34,6 +34,9 @@ public sealed unsafe class ServedType
     /// <summary>In the order of their numbers.</summary>
     public IReadOnlyList<ServedMember> Members { get; }
 
+    /// <summary>`example.PanTilt`</summary>
+    internal string QualifiedName => $"{Definition.Name}.{_name}";
+
     internal ObjectTypeHandle Handle
     {
         get

@@ -209,7 +209,7 @@ internal sealed class SessionsSink(string service, Faults faults, ServiceOptions
 {
     protected override void Connect(ulong session, ServedClient client)
     {
-        ServedSession.Begin(session, $"of the service `{service}`", faults);
+        ServedSession.Begin(session, service, faults);
         base.Connect(session, client);
     }
 

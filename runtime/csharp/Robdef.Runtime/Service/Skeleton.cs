@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 using System;
 using System.Collections.Generic;
+using System.Diagnostics;
 using System.Runtime.CompilerServices;
 using System.Runtime.InteropServices;
 using System.Threading;
@@ -161,7 +162,9 @@ public abstract unsafe class Skeleton
     {
         Skeleton skeleton = Context.Get<Skeleton>(context);
         string name = skeleton.RrType.Members[(int)info->Member].Name;
-        var served = new ServedRequest(request, *info, skeleton.RrTypes, ServedSession.Find(info->Session), name);
+        Activity? outer = Activity.Current;
+        var measure = Measure.OfRequest(skeleton.RrType, name, info->Kind);
+        var served = new ServedRequest(request, *info, skeleton.RrTypes, ServedSession.Find(info->Session), name, measure);
         try
         {
             ValueTask work = served.IsPeek ? skeleton.Peek(served) : skeleton.RrRequestAsync(served);
@@ -173,6 +176,11 @@ public abstract unsafe class Skeleton
         catch (Exception exception)
         {
             served.Fail(exception);
+        }
+        if (measure is not null)
+        {
+            // A handler that goes on later keeps its own.
+            Activity.Current = outer;
         }
     }
 
