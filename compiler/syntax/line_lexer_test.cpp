@@ -17,6 +17,12 @@
 #include "compiler/diagnostics/mutations.hpp"
 
 namespace robdef::syntax {
+
+// How GoogleTest shows one.
+void PrintTo(const LexedToken& token, std::ostream* out) {
+  *out << token.type << " [" << token.begin << ", " << token.end << ")";
+}
+
 namespace {
 
 using Lexer = grammar::RobdefLexer;
@@ -56,10 +62,6 @@ std::vector<LexedToken> tokens_of(std::string_view text, std::size_t mode) {
     tokens.push_back(lexer.next());
   } while (tokens.back().type != Lexer::NL);
   return tokens;
-}
-
-void PrintTo(const LexedToken& token, std::ostream* out) {
-  *out << token.type << " [" << token.begin << ", " << token.end << ")";
 }
 
 void expect_same_tokens(std::string_view text, std::size_t mode) {
