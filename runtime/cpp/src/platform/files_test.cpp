@@ -83,8 +83,7 @@ TEST_F(FilesTest, AreLockedAgainstTheSameProcessAndStillRead) {
   EXPECT_EQ(read_small_file(in("a"), 100), "text");
   const File second = open_kept(in("a"), Access::group_reads, error);
   ASSERT_TRUE(second);
-  EXPECT_EQ(lock_at_once(second, Access::group_reads),
-            std::errc::resource_unavailable_try_again);
+  EXPECT_EQ(lock_at_once(second, Access::group_reads), std::errc::resource_unavailable_try_again);
   file.reset();
   EXPECT_FALSE(is_locked(in("a")));
   EXPECT_FALSE(lock_at_once(second, Access::group_reads));

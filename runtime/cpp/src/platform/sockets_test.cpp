@@ -35,7 +35,9 @@ struct Pair {
   std::error_code error;
 };
 
-std::span<const std::byte> bytes_of(std::string_view text) { return std::as_bytes(std::span(text)); }
+std::span<const std::byte> bytes_of(std::string_view text) {
+  return std::as_bytes(std::span(text));
+}
 
 std::string received(int socket, std::size_t most = 100, Wait wait = Wait::some) {
   std::vector<std::byte> room(most);
@@ -77,9 +79,8 @@ TEST(Sockets, CarryBytesUntilTheEnd) {
   EXPECT_EQ(received(pair.second.get(), 100, Wait::none), "nothing now");
   EXPECT_EQ(send(pair.first.get(), bytes_of("hello")), 5);
   EXPECT_EQ(received(pair.second.get()), "hello");
-  const std::array<Buffer, 3> buffers{{{bytes_of("a").data(), 1},
-                                       {bytes_of("bc").data(), 2},
-                                       {bytes_of("def").data(), 3}}};
+  const std::array<Buffer, 3> buffers{
+      {{bytes_of("a").data(), 1}, {bytes_of("bc").data(), 2}, {bytes_of("def").data(), 3}}};
   EXPECT_EQ(send_gathered(pair.first.get(), buffers), 6);
   EXPECT_EQ(received(pair.second.get(), 6, Wait::all), "abcdef");
   shut_down_sending(pair.first.get());

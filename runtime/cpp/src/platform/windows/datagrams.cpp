@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/platform/datagrams.hpp"
 
-#include "system_sockets.hpp"
-
 #include <cstring>
 
 #include "errors.hpp"
 #include "opened_socket.hpp"
+#include "system_sockets.hpp"
 
 namespace rr::platform {
 namespace {

@@ -191,7 +191,8 @@ OpenLog open_log(const std::string& path, std::error_code& error) {
   const bool is_own = owner && (*owner == current_user() || *owner == system_user);
   if (!is_regular(path) || !is_own) return {.file = File(), .is_foreign = true};
   const std::int64_t size = _filelengthi64(file.get());
-  return {.file = std::move(file), .size = static_cast<std::size_t>(std::max(size, std::int64_t{0}))};
+  return {.file = std::move(file),
+          .size = static_cast<std::size_t>(std::max(size, std::int64_t{0}))};
 }
 
 File open_anew(const std::string& path, std::string& why) {

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // One event object stands for all sockets. What Winsock records for a socket it records once, until
 // a call asks for it again: a receive for input, a send without room for room. That is what
-// edge-triggered means here, and what WSAPoll(), which tells of everything again and again, does not
-// have. Each wait looks at all sockets: good for hundreds of them, not for many thousands.
+// edge-triggered means here, and what WSAPoll(), which tells of everything again and again, does
+// not have. Each wait looks at all sockets: good for hundreds of them, not for many thousands.
 #include "runtime/cpp/src/platform/poller.hpp"
-
-#include "system_sockets.hpp"
 
 #include <algorithm>
 #include <map>
@@ -14,6 +12,7 @@
 #include <utility>
 
 #include "errors.hpp"
+#include "system_sockets.hpp"
 
 namespace rr::platform {
 namespace {

@@ -15,8 +15,8 @@ bool sleep_on(const SleepWord& word, std::uint32_t seen, Time deadline) {
   DWORD patience = INFINITE;
   if (deadline != Time::max()) {
     constexpr std::int64_t longest = 1'000'000'000;
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(
-        deadline - std::chrono::steady_clock::now());
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
     patience = static_cast<DWORD>(std::clamp<std::int64_t>(left.count(), 0, longest));
   }
   auto* const address = const_cast<SleepWord*>(&word);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/platform/users.hpp"
 
-#include <winsock2.h>
 #include <windows.h>
+#include <winsock2.h>
 // After it:
 #include <aclapi.h>
 #include <lmcons.h>
@@ -26,7 +26,8 @@ using SidBytes = std::array<std::byte, 256>;
 }  // namespace
 
 UserId number_of(PSID user) {
-  if (IsWellKnownSid(user, WinLocalSystemSid) || IsWellKnownSid(user, WinBuiltinAdministratorsSid)) {
+  if (IsWellKnownSid(user, WinLocalSystemSid) ||
+      IsWellKnownSid(user, WinBuiltinAdministratorsSid)) {
     return system_user;
   }
   LPSTR text = nullptr;

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/platform/waiting.hpp"
 
-#include "system_sockets.hpp"
-
 #include <algorithm>
 #include <thread>
 #include <vector>
 
 #include "errors.hpp"
 #include "opened_socket.hpp"
+#include "system_sockets.hpp"
 
 namespace rr::platform {
 namespace {
