@@ -118,13 +118,17 @@ class SpareBlocks {
   std::size_t bytes_ = 0;
 };
 
-// Arrays may be freed while the program ends: this needs no destructor.
-constinit SpareBlocks spare_blocks;
+// Arrays may be freed while the program ends: it is not destroyed.
+SpareBlocks& spare_blocks() {
+  alignas(SpareBlocks) static std::array<std::byte, sizeof(SpareBlocks)> room;
+  static auto* const blocks = new (room.data()) SpareBlocks;
+  return *blocks;
+}
 
 }  // namespace
 
 LargeBlock take_large_block(std::size_t size) {
-  if (const LargeBlock spare = spare_blocks.take(whole_pages(size)); spare.bytes != nullptr) {
+  if (const LargeBlock spare = spare_blocks().take(whole_pages(size)); spare.bytes != nullptr) {
     return spare;
   }
   return take_fresh_block(size);
@@ -141,14 +145,14 @@ void give_back_large_block(LargeBlock block) noexcept {
   if (block.size > most_spare_bytes) {
     give_to_system(block);
   } else {
-    spare_blocks.keep(block);
+    spare_blocks().keep(block);
   }
 }
 
-bool age_spare_blocks() noexcept { return spare_blocks.age(); }
+bool age_spare_blocks() noexcept { return spare_blocks().age(); }
 
-void drop_spare_blocks() noexcept { spare_blocks.drop_all(); }
+void drop_spare_blocks() noexcept { spare_blocks().drop_all(); }
 
-std::size_t spare_block_bytes() noexcept { return spare_blocks.bytes(); }
+std::size_t spare_block_bytes() noexcept { return spare_blocks().bytes(); }
 
 }  // namespace rr::codec

@@ -47,7 +47,7 @@ std::map<NodeId, std::string> names_in(const fs::path& base) {
     const auto info = channel::read_info_file(file);
     const std::string name = text_of(info, "nodename");
     const auto id = NodeId::parse(text_of(info, "nodeid"));
-    if (id && name == file.stem() && Url::is_node_name(name)) names[*id] = name;
+    if (id && name == file.stem().string() && Url::is_node_name(name)) names[*id] = name;
   }
   return names;
 }
@@ -94,7 +94,7 @@ std::vector<Announcement> find_local_nodes() {
     const fs::path below = fs::path("transport") / "local";
     add_nodes_in(directories.user_run / below, {}, nodes);
     for (const fs::path& folder : entries_of(directories.system_run / below)) {
-      add_nodes_in(folder, folder.filename(), nodes);
+      add_nodes_in(folder, folder.filename().string(), nodes);
     }
   } catch (const Error&) {
     // No home: there are no files of this user's.

@@ -16,6 +16,7 @@ namespace rr::testing {
 namespace {
 
 using std::chrono_literals::operator""ms;
+using std::chrono_literals::operator""s;
 using ::testing::ElementsAre;
 
 TEST(Services, AClientIsToldWhoServesAndWhatIsSaidAboutIt) {

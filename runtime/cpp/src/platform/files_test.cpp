@@ -28,8 +28,8 @@ class FilesTest : public ::testing::Test {
  protected:
   FilesTest() {
     const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder = fs::temp_directory_path() /
-             ("rr-h\xc3\xa9-" + std::to_string(process_id()) + "-" + test->name());
+    folder = fs::temp_directory_path() / u8"rr-h\u00e9-";
+    folder += std::to_string(process_id()) + "-" + test->name();
     fs::create_directories(folder);
   }
   ~FilesTest() override {
@@ -40,8 +40,8 @@ class FilesTest : public ::testing::Test {
   FilesTest& operator=(const FilesTest&) = delete;
 
   [[nodiscard]] std::string in(const char* name) const { return (folder / name).string(); }
-  static std::string content(const std::string& path) {
-    std::ifstream file(fs::path(path), std::ios::binary);
+  [[nodiscard]] std::string content(const char* name) const {
+    std::ifstream file(folder / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
   }
   static std::error_code write_new(const std::string& path, std::string_view text) {
@@ -56,7 +56,7 @@ TEST_F(FilesTest, AreMadeOnceAndReplacedWhole) {
   EXPECT_EQ(write_new(in("a"), "two"), std::errc::file_exists);
   EXPECT_FALSE(write_new(in("b"), "three"));
   EXPECT_FALSE(rename_file(in("b"), in("a")));
-  EXPECT_EQ(content(in("a")), "three");
+  EXPECT_EQ(content("a"), "three");
   EXPECT_FALSE(fs::exists(folder / "b"));
   EXPECT_FALSE(remove_file(in("a")));
   EXPECT_EQ(remove_file(in("a")), std::errc::no_such_file_or_directory);
@@ -129,11 +129,11 @@ TEST_F(FilesTest, AreAddedToOrMadeAnew) {
     ASSERT_TRUE(log.file) << error.message();
     EXPECT_FALSE(write_all(log.file.get(), std::as_bytes(std::span(std::string_view(text)))));
   }
-  EXPECT_EQ(content(in("log")), "one\ntwo\n");
+  EXPECT_EQ(content("log"), "one\ntwo\n");
   EXPECT_EQ(open_log(in("log"), error).size, 8U);
   std::string why;
   EXPECT_TRUE(open_anew(in("log"), why)) << why;
-  EXPECT_EQ(content(in("log")), "");
+  EXPECT_EQ(content("log"), "");
   EXPECT_FALSE(open_anew(folder.string(), why));
   EXPECT_EQ(why, "it is no regular file");
   EXPECT_TRUE(open_spare());

@@ -63,7 +63,7 @@ std::uint64_t number(DWORD high, DWORD low) { return (std::uint64_t{high} << 32)
 
 bool is_regular(const std::string& path) {
   std::error_code error;
-  return std::filesystem::is_regular_file(std::filesystem::symlink_status(path, error));
+  return std::filesystem::is_regular_file(std::filesystem::symlink_status(wide(path), error));
 }
 
 }  // namespace
@@ -197,7 +197,7 @@ OpenLog open_log(const std::string& path, std::error_code& error) {
 
 File open_anew(const std::string& path, std::string& why) {
   std::error_code error;
-  if (std::filesystem::exists(std::filesystem::symlink_status(path, error))) {
+  if (std::filesystem::exists(std::filesystem::symlink_status(wide(path), error))) {
     const auto owner = owner_of(path);
     if (is_link(path)) {
       why = "it is a symbolic link";

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/platform/windows/errors.hpp"
 
 namespace rr::platform {
 namespace {
@@ -19,7 +20,7 @@ namespace {
 
 std::optional<TrustedFolder> open_trusted_folder(const std::string& path, const FolderRule& rule) {
   std::error_code error;
-  const auto status = std::filesystem::status(path, error);
+  const auto status = std::filesystem::status(wide(path), error);
   if (!std::filesystem::exists(status)) return std::nullopt;
   if (!std::filesystem::is_directory(status)) fail(path, "it is no folder");
   const auto owner = owner_of(path);
@@ -34,7 +35,7 @@ std::optional<TrustedFolder> open_trusted_folder(const std::string& path, const 
 TrustedFolder make_trusted_folder(const std::string& path, const FolderRule& rule,
                                   const std::string& /*private_from*/) {
   std::error_code error;
-  std::filesystem::create_directories(path, error);
+  std::filesystem::create_directories(wide(path), error);
   if (error) fail(path, error.message());
   const auto folder = open_trusted_folder(path, rule);
   if (!folder) fail(path, "it cannot be made");
