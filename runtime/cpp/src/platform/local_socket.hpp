@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <system_error>
 
@@ -24,11 +25,20 @@ class PlacedSocket {
   void remove() const;
 
  private:
+  /// What tells one socket file from another. File systems use the number of a removed file again,
+  /// at once: so the time of its last change counts, too.
+  struct Place {
+    std::uint64_t device = 0;
+    std::uint64_t number = 0;
+    std::int64_t changed = 0;
+
+    bool operator==(const Place&) const = default;
+  };
+  static std::optional<Place> place_at(const std::string& path);
+
   std::string path_;
   Descriptor socket_;
-  // The place, so that it is known again.
-  std::uint64_t device_ = 0;
-  std::uint64_t number_ = 0;
+  std::optional<Place> place_;
 };
 
 }  // namespace rr::platform

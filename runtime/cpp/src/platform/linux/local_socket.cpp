@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
+#include <optional>
 #include <utility>
 
 namespace rr::platform {
@@ -59,12 +61,10 @@ PlacedSocket::PlacedSocket(std::string path, bool may_replace, std::error_code& 
     error = last_error();
     return;
   }
-  struct stat made {};
-  ::lstat(path_.c_str(), &made);
-  device_ = made.st_dev;
-  number_ = made.st_ino;
   // Before it listens, so that nobody comes in whom the mask would have let.
-  if (::chmod(path_.c_str(), mode) != 0 || ::listen(socket.get(), backlog) != 0) {
+  const bool is_open_to_group = ::chmod(path_.c_str(), mode) == 0;
+  place_ = place_at(path_);
+  if (!is_open_to_group || ::listen(socket.get(), backlog) != 0) {
     error = last_error();
     remove();
     return;
@@ -72,11 +72,16 @@ PlacedSocket::PlacedSocket(std::string path, bool may_replace, std::error_code& 
   socket_ = std::move(socket);
 }
 
-void PlacedSocket::remove() const {
+std::optional<PlacedSocket::Place> PlacedSocket::place_at(const std::string& path) {
   struct stat found {};
-  if (::lstat(path_.c_str(), &found) == 0 && found.st_dev == device_ && found.st_ino == number_) {
-    ::unlink(path_.c_str());
-  }
+  if (::lstat(path.c_str(), &found) != 0) return std::nullopt;
+  return Place{found.st_dev, found.st_ino,
+               std::int64_t{found.st_ctim.tv_sec} * 1'000'000'000 + found.st_ctim.tv_nsec};
+}
+
+void PlacedSocket::remove() const {
+  const auto found = place_at(path_);
+  if (found && found == place_) ::unlink(path_.c_str());
 }
 
 }  // namespace rr::platform

@@ -54,15 +54,19 @@ PlacedSocket::PlacedSocket(std::string path, bool may_replace, std::error_code& 
     error = last_socket_error();
     return;
   }
-  const FileState made = state_of(path_);
-  device_ = made.device;
-  number_ = made.number;
+  place_ = place_at(path_);
   socket_ = std::move(socket);
 }
 
+std::optional<PlacedSocket::Place> PlacedSocket::place_at(const std::string& path) {
+  const FileState found = state_of(path);
+  if (found.size < 0) return std::nullopt;
+  return Place{found.device, found.number, found.changed};
+}
+
 void PlacedSocket::remove() const {
-  const FileState found = state_of(path_);
-  if (found.size >= 0 && found.device == device_ && found.number == number_) remove_file(path_);
+  const auto found = place_at(path_);
+  if (found && found == place_) remove_file(path_);
 }
 
 }  // namespace rr::platform
