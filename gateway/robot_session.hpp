@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "gateway/export_file.hpp"
+#include "gateway/topics.hpp"
+#include "rr/dynamic.hpp"
+#include "rr/function.hpp"
+#include "rr/node.hpp"
+#include "rr/subscription.hpp"
+
+namespace rr::gateway {
+
+/// The session of one user with the robot's service, made again when it is lost. Any thread may use
+/// it; functions are called on threads of the node.
+class RobotSession : public std::enable_shared_from_this<RobotSession> {
+ public:
+  /// What becomes of finding an object.
+  using Found = Function<void(std::exception_ptr, dynamic::Object)>;
+  /// Notified of the connection.
+  struct Listener {
+    Function<void(const dynamic::Object& root)> connected;
+    Function<void(const std::string& reason)> disconnected;
+  };
+
+  /// `user` null: without a name. Does not wait.
+  static std::shared_ptr<RobotSession> open(Node& node, const std::string& url,
+                                            const MappedUser* user, Listener listener);
+  ~RobotSession() { subscription_.close(); }
+  RobotSession(const RobotSession&) = delete;
+  RobotSession& operator=(const RobotSession&) = delete;
+
+  /// The object at a path below the root (gateway/topics.hpp). Fails with connection_error when the
+  /// robot is not connected.
+  void find(const std::string& path, Found done);
+  /// The definitions of the service. Throws rr::Error (connection_error).
+  [[nodiscard]] dynamic::Definitions definitions() const { return root().types(); }
+
+ private:
+  RobotSession() = default;
+  [[nodiscard]] dynamic::Object root() const;
+  void listen(Listener listener);
+  void walk(const dynamic::Object& from, std::vector<PathStep> steps, std::size_t at, Found done);
+
+  ServiceSubscription subscription_;
+  std::vector<Subscription> listeners_;
+};
+
+}  // namespace rr::gateway
