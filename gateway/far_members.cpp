@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Members of a robot's objects as they are offered here. Functions of members hold the requests and
 // not the service, which has the objects.
+#include <future>
 #include <utility>
 
 #include "gateway/elements.hpp"
@@ -71,11 +72,14 @@ dynamic::ServedObject FarService::make_object(const std::string& path, const std
 void FarService::serve_property(const dynamic::ServedObject& object, const std::string& path,
                                 const dynamic::MemberDescription& member) {
   const auto calls = shared_.calls;
-  object.on_get_later(
-      member.name, [calls, address = address_, path, name = member.name, type = member.type,
-                    definitions = *definitions_](const Reply& reply) {
-        calls->request(address, Verb::get, path, name, {}, reply_with(definitions, type, reply));
-      });
+  if ((member.access & writeonly) == 0) {
+    object.on_get_later(
+        member.name, [calls, address = address_, path, name = member.name, type = member.type,
+                      definitions = *definitions_](const Reply& reply) {
+          calls->request(address, Verb::get, path, name, {}, reply_with(definitions, type, reply));
+        });
+  }
+  if ((member.access & readonly) != 0) return;
   object.on_set_later(member.name,
                       [calls, address = address_, path, name = member.name, type = member.type,
                        definitions = *definitions_](const Value& value, const Reply& reply) {

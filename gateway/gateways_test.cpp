@@ -19,9 +19,10 @@ using testing::Kept;
 using testing::MemoryBroker;
 using testing::Rig;
 
-ErrorCode code_of(const std::function<void()>& call, std::string* text = nullptr) {
+template <class Call>
+ErrorCode code_of(Call call, std::string* text = nullptr) {
   try {
-    call();
+    static_cast<void>(call());
   } catch (const Error& error) {
     if (text != nullptr) *text = error.what();
     return error.code();
@@ -68,7 +69,7 @@ TEST_F(Gateways, ErrorsOfTheRobotArriveAsTheyAre) {
 TEST_F(Gateways, WhatIsNotExportedIsDenied) {
   const auto bench = rig.connect();
   std::string text;
-  EXPECT_EQ(code_of([&] { bench->get("secret"); }, &text), ErrorCode::permission_denied);
+  EXPECT_EQ(code_of([&] { return bench->get("secret"); }, &text), ErrorCode::permission_denied);
   EXPECT_THAT(text, ::testing::HasSubstr("does not allow hub to get `secret`"));
   EXPECT_EQ(code_of([&] { bench->set("secret", 1); }), ErrorCode::permission_denied);
   EXPECT_EQ(rig.robot.bench().stored("secret").as<int>(), 7);
@@ -125,7 +126,7 @@ TEST_F(Gateways, ObjectsBelowTheRootAreReached) {
     tool.call("open");
     return opened.size() > 0;
   }));
-  EXPECT_NE(code_of([&] { bench->object("tools", "right").get("width"); }), ErrorCode::none);
+  EXPECT_NE(code_of([&] { return bench->object("tools", "right").get("width"); }), ErrorCode::none);
 }
 
 TEST_F(Gateways, PacketsArriveOnceAndInOrderThroughABadBroker) {
@@ -227,7 +228,7 @@ TEST_F(Gateways, AnAnswerThatIsTooLargeForTheBrokerIsAnError) {
   EXPECT_THAT(text, ::testing::HasSubstr("the request is too large"));
   rig.robot.bench().store("pose",
                           dynamic::Value::record({{"x", 1}, {"q", std::vector<double>(100)}}));
-  EXPECT_EQ(code_of([&] { bench->get("pose"); }, &text), ErrorCode::buffer_limit_violation);
+  EXPECT_EQ(code_of([&] { return bench->get("pose"); }, &text), ErrorCode::buffer_limit_violation);
   EXPECT_THAT(text, ::testing::HasSubstr("the answer is too large"));
 }
 
@@ -237,11 +238,11 @@ TEST(GatewayTrouble, ErrorsSayWhereItFailed) {
   const auto bench = rig.connect();
   std::string text;
   rig.stop_export();
-  EXPECT_EQ(code_of([&] { bench->get("speed"); }, &text), ErrorCode::connection_error);
+  EXPECT_EQ(code_of([&] { return bench->get("speed"); }, &text), ErrorCode::connection_error);
   EXPECT_THAT(text,
               ::testing::HasSubstr("the gateway of the robot hall/robot is not at the broker"));
   broker.crash();
-  EXPECT_EQ(code_of([&] { bench->get("speed"); }, &text), ErrorCode::connection_error);
+  EXPECT_EQ(code_of([&] { return bench->get("speed"); }, &text), ErrorCode::connection_error);
   EXPECT_THAT(text, ::testing::HasSubstr("no connection to the broker"));
 }
 

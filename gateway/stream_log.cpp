@@ -207,7 +207,7 @@ std::uint64_t StreamLog::append(std::uint16_t kind, std::string_view label,
   if (label.size() > 0xFFFF || body.size() > largest_record - label.size()) {
     throw Error(ErrorCode::out_of_range, folder_ + ": a record of more than 1 GiB");
   }
-  if (files_.back().size >= limits_.file_bytes) begin_file(number);
+  if (files_.back().count > 0 && files_.back().size >= limits_.file_bytes) begin_file(number);
   Header header;
   header.size = header.size_again = static_cast<std::uint32_t>(label.size() + body.size());
   header.number = number;
@@ -221,8 +221,11 @@ std::uint64_t StreamLog::append(std::uint16_t kind, std::string_view label,
                                     {const_cast<char*>(label.data()), label.size()},
                                     {const_cast<std::byte*>(body.data()), body.size()}}};
   const auto whole = static_cast<ssize_t>(record_header_size + header.size);
-  if (::pwritev(file.descriptor, parts.data(), parts.size(), static_cast<off_t>(file.size)) !=
-      whole) {
+  const ssize_t written =
+      ::pwritev(file.descriptor, parts.data(), parts.size(), static_cast<off_t>(file.size));
+  if (written != whole) {
+    // What was written in part is written over by the next record.
+    if (written >= 0) errno = ENOSPC;
     fail(file.path, "cannot be written");
   }
   note(file, header);

@@ -10,16 +10,13 @@
 namespace rr::gateway {
 namespace {
 
-constexpr std::array<std::pair<Verb, std::string_view>, 10> verbs{{{Verb::get, "get"},
-                                                                   {Verb::set, "set"},
-                                                                   {Verb::call, "call"},
-                                                                   {Verb::poke, "poke"},
-                                                                   {Verb::object, "object"},
-                                                                   {Verb::stream, "stream"},
-                                                                   {Verb::confirm, "confirm"},
-                                                                   {Verb::read, "read"},
-                                                                   {Verb::write, "write"},
-                                                                   {Verb::dims, "dims"}}};
+constexpr std::array<std::pair<Verb, std::string_view>, 7> verbs{{{Verb::get, "get"},
+                                                                  {Verb::set, "set"},
+                                                                  {Verb::call, "call"},
+                                                                  {Verb::poke, "poke"},
+                                                                  {Verb::object, "object"},
+                                                                  {Verb::stream, "stream"},
+                                                                  {Verb::confirm, "confirm"}}};
 
 bool is_plain(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||

@@ -47,9 +47,6 @@ enum class Verb : std::uint8_t {
   object,   ///< the type of the object at a path
   stream,   ///< records of a stream from a number on
   confirm,  ///< a reader has a stream up to a number
-  read,     ///< a part of a memory
-  write,    ///< items for a part of a memory
-  dims,     ///< how long a memory is
 };
 /// `get` for Verb::get.
 std::string_view verb_name(Verb verb);
