@@ -2,8 +2,13 @@
 #include "gateway/call_window.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
 
 #include "gateway/testing/folder.hpp"
+#include "rr/error.hpp"
 
 namespace rr::gateway {
 namespace {
@@ -39,6 +44,28 @@ TEST(GatewayCallWindow, KnowsItAfterARestart) {
   EXPECT_EQ(window.answer("done").payload, answer().payload);
   EXPECT_EQ(window.answer("done").properties, answer().properties);
   EXPECT_EQ(window.state("half"), State::interrupted);
+}
+
+// A limit of the process on the size of files stands for a disk that is full.
+TEST(GatewayCallWindow, WhatCannotBeRememberedDoesNotBegin) {
+  const Folder folder;
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    ::alarm(30);
+    CallWindow window(folder.path(), {}, 0);
+    testing::limit_file_size(40);
+    try {
+      window.begin("a 1", 0);
+    } catch (const Error&) {
+      ::_exit(window.state("a 1") == State::unknown ? 0 : 1);
+    }
+    ::_exit(2);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
 }
 
 TEST(GatewayCallWindow, ForgetsWhatIsOld) {

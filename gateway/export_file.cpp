@@ -228,6 +228,10 @@ class FileReader {
       service.name = level(entry.value);
     } else if (entry.key == "url") {
       service.url = text(entry.value);
+    } else if (entry.key == "login") {
+      service.login.name = text(entry.value);
+    } else if (entry.key == "password_file") {
+      service.login.password = secret(entry.value);
     } else if (entry.key == "readers") {
       service.readers = levels(entry.value);
     } else if (entry.key == "log_size") {

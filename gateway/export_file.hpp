@@ -42,11 +42,12 @@ struct MappedUser {
 struct ExportedServiceOptions {
   std::string name;                  ///< the level in topics
   std::string url;                   ///< where the robot offers it
+  MappedUser login;                  ///< who the gateway itself is there; no name: nobody
   std::vector<std::string> readers;  ///< streams are kept until these have confirmed
   std::uint64_t log_bytes = std::uint64_t{256} * 1024 * 1024;  ///< of each stream
   std::chrono::seconds log_age = std::chrono::hours(24 * 7);   ///< of the oldest record
   std::vector<ExportRule> rules;
-  std::map<std::string, MappedUser> users;  ///< by the broker's user; the others have no name
+  std::map<std::string, MappedUser> users;  ///< by the broker's user; for the others: login
 };
 
 /// How a broker is reached: `[broker]`.

@@ -55,7 +55,7 @@ void ServiceExporter::connect(Node& node) {
       if (const Self exporter = weak.lock()) exporter->robot_disconnected(reason);
     });
   };
-  session_ = RobotSession::open(node, options_.url, nullptr, std::move(listener));
+  session_ = RobotSession::open(node, options_.url, options_.login, std::move(listener));
 }
 
 std::vector<std::string> ServiceExporter::filters() const {

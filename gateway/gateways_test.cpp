@@ -105,6 +105,27 @@ TEST_F(Gateways, WiresHaveTheNewestValue) {
   EXPECT_EQ(retained->payload.size(), 19U);
 }
 
+TEST(GatewayWires, AreHeldToTheirRate) {
+  MemoryBroker broker;
+  Rig rig([&] { return broker.carrier(); }, milliseconds(20'000),
+          "[[service.allow]]\nmembers = [\"force\"]\naccess = [\"read\"]\nrate = \"5/s\"\n"
+          "lifespan = \"7 s\"\n");
+  const auto bench = rig.connect();
+  auto force = bench->wire("force").connect();
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i <= 100; ++i) {
+    rig.robot.bench().wire("force").set_in(i);
+    std::this_thread::sleep_for(milliseconds(5));
+  }
+  EXPECT_TRUE(comes_true([&] {
+    const auto value = force.try_in();
+    return value && value->value.as<double>() == 100;
+  }));
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+  EXPECT_LE(broker.published("rr/hall/robot/bench/force"), 5 * time.count() + 2);
+  EXPECT_EQ(broker.retained("rr/hall/robot/bench/force")->expiry, std::chrono::seconds(7));
+}
+
 TEST_F(Gateways, ValuesForWiresReachTheRobot) {
   const auto bench = rig.connect();
   bench->wire("target").poke_out(2.5);
@@ -184,6 +205,11 @@ TEST_F(Gateways, ACallWaitsForTheBroker) {
 TEST_F(Gateways, TheExportingGatewayIsRestarted) {
   const auto bench = rig.connect();
   EXPECT_EQ(bench->call("count").as<int>(), 1);
+  auto samples = bench->pipe("samples").connect();
+  ASSERT_TRUE(comes_true([&] {
+    rig.robot.bench().pipe("samples").send(1);
+    return samples.try_receive().has_value();
+  }));
   rig.stop_export();
   EXPECT_TRUE(comes_true([&] {
     const auto life = broker.retained("rr/hall/robot/$life");
@@ -192,6 +218,14 @@ TEST_F(Gateways, TheExportingGatewayIsRestarted) {
   rig.start_export();
   EXPECT_EQ(bench->call("count").as<int>(), 2);
   EXPECT_EQ(bench->get("speed").as<double>(), 0.5);
+  // What the robot has sent meanwhile is lost: the client is told by the end of its endpoint.
+  EXPECT_TRUE(comes_true([&] { return !samples.is_open(); }));
+  samples = bench->pipe("samples").connect();
+  EXPECT_TRUE(comes_true([&] {
+    rig.robot.bench().pipe("samples").send(2);
+    const auto packet = samples.try_receive();
+    return packet && packet->as<int>() == 2;
+  }));
 }
 
 TEST_F(Gateways, AnswersGoNowhereElse) {
@@ -230,6 +264,28 @@ TEST_F(Gateways, AnAnswerThatIsTooLargeForTheBrokerIsAnError) {
                           dynamic::Value::record({{"x", 1}, {"q", std::vector<double>(100)}}));
   EXPECT_EQ(code_of([&] { return bench->get("pose"); }, &text), ErrorCode::buffer_limit_violation);
   EXPECT_THAT(text, ::testing::HasSubstr("the answer is too large"));
+}
+
+constexpr const char* hub_is_operator =
+    "[[service.user]]\nbroker = \"hub\"\nservice = \"operator\"\npassword_file = \"secret\"\n";
+
+TEST(GatewayUsers, AreThoseOfTheService) {
+  MemoryBroker broker;
+  Rig rig([&] { return broker.carrier(); }, milliseconds(20'000), hub_is_operator, "open sesame");
+  EXPECT_EQ(rig.connect()->call("whoami").text(), "operator");
+}
+
+TEST(GatewayUsers, WithoutAnEntryTheyAreTheGateway) {
+  MemoryBroker broker;
+  Rig rig([&] { return broker.carrier(); });
+  EXPECT_EQ(rig.connect()->call("whoami").text(), "gateway");
+}
+
+TEST(GatewayUsers, AWrongPasswordIsReported) {
+  MemoryBroker broker;
+  Rig rig([&] { return broker.carrier(); }, milliseconds(20'000), hub_is_operator, "wrong");
+  const auto bench = rig.connect();
+  EXPECT_EQ(code_of([&] { return bench->call("whoami"); }), ErrorCode::authentication_error);
 }
 
 TEST(GatewayTrouble, ErrorsSayWhereItFailed) {

@@ -266,8 +266,10 @@ TEST_F(Mosquitto, TheProgramGoesOnAfterItWasKilled) {
   std::ofstream(path) << "site = \"hall\"\nnode = \"robot\"\nstate = \"state\"\n[broker]\nurl = \""
                       << broker->url() << "\"\n[[service]]\nname = \"bench\"\nurl = \""
                       << robot.url()
-                      << "\"\nreaders = [\"hub\"]\n[[service.allow]]\nmembers = [\"*\"]\n"
+                      << "\"\nlogin = \"gateway\"\npassword_file = \"login\"\nreaders = "
+                         "[\"hub\"]\n[[service.allow]]\nmembers = [\"*\"]\n"
                          "access = [\"read\", \"call\"]\n";
+  std::ofstream(folder.path() + "/login") << "open sesame\n";
   Listener life;
   const auto watcher = make_mqtt_carrier({broker->url()});
   watcher->subscribe("rr/hall/robot/$life");

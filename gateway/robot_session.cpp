@@ -29,13 +29,13 @@ dynamic::Value index_of(const dynamic::Object& object, const PathStep& step) {
 }  // namespace
 
 std::shared_ptr<RobotSession> RobotSession::open(Node& node, const std::string& url,
-                                                 const MappedUser* user, Listener listener) {
+                                                 const MappedUser& user, Listener listener) {
   std::shared_ptr<RobotSession> session(new RobotSession);
   SubscriptionOptions options;
   options.retry_delay = retry_delay;
-  if (user != nullptr) {
-    options.username = user->name;
-    options.credentials["password"] = VarValue(user->password);
+  if (!user.name.empty()) {
+    options.username = user.name;
+    options.credentials["password"] = VarValue(user.password);
   }
   session->subscription_ = dynamic::subscribe(node, url, std::move(options));
   session->listen(std::move(listener));
@@ -58,13 +58,14 @@ void RobotSession::listen(Listener listener) {
   }
 }
 
+bool RobotSession::is_connected(std::optional<Error>& reason) const {
+  if (subscription_.try_default_client<Stub>()) return true;
+  reason = subscription_.last_error();
+  return false;
+}
+
 dynamic::Object RobotSession::root() const {
-  const auto stub = subscription_.try_default_client<Stub>();
-  if (stub) return dynamic::Object::of(stub);
-  const auto reason = subscription_.last_error();
-  throw Error(ErrorCode::connection_error,
-              "the gateway is not connected to the robot's service" +
-                  (reason ? ": " + std::string(reason->what()) : std::string()));
+  return dynamic::Object::of(subscription_.default_client<Stub>());
 }
 
 void RobotSession::find(const std::string& path, Found done) {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
 #include <memory>
-#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "gateway/export_file.hpp"
 #include "gateway/topics.hpp"
 #include "rr/dynamic.hpp"
+#include "rr/error.hpp"
 #include "rr/function.hpp"
 #include "rr/node.hpp"
 #include "rr/subscription.hpp"
@@ -28,9 +28,9 @@ class RobotSession : public std::enable_shared_from_this<RobotSession> {
     Function<void(const std::string& reason)> disconnected;
   };
 
-  /// `user` null: without a name. Does not wait.
+  /// A user without a name does not log in. Does not wait.
   static std::shared_ptr<RobotSession> open(Node& node, const std::string& url,
-                                            const MappedUser* user, Listener listener);
+                                            const MappedUser& user, Listener listener);
   ~RobotSession() { subscription_.close(); }
   RobotSession(const RobotSession&) = delete;
   RobotSession& operator=(const RobotSession&) = delete;
@@ -38,8 +38,9 @@ class RobotSession : public std::enable_shared_from_this<RobotSession> {
   /// The object at a path below the root (gateway/topics.hpp). Fails with connection_error when the
   /// robot is not connected.
   void find(const std::string& path, Found done);
-  /// The definitions of the service. Throws rr::Error (connection_error).
-  [[nodiscard]] dynamic::Definitions definitions() const { return root().types(); }
+  /// Whether find() can succeed. False, with the reason, when the robot is not connected; without
+  /// a reason while the first attempt goes on.
+  [[nodiscard]] bool is_connected(std::optional<Error>& reason) const;
 
  private:
   RobotSession() = default;

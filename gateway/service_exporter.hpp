@@ -101,6 +101,7 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
 
   // service_requests.cpp
   void handle(const RequestTopic& request, const Message& message);
+  bool is_reachable(const RequestTopic& request, const Message& message);
   void handle_stream(const RequestTopic& request, const Message& message);
   void execute(const RequestTopic& request, const Message& message);
   void execute_once(const RequestTopic& request, const Message& message);

@@ -55,9 +55,24 @@ void ServiceExporter::handle(const RequestTopic& request, const Message& message
         "gateway");
   } else if (has_effect(request.verb)) {
     execute_once(request, message);
-  } else {
+  } else if (is_reachable(request, message)) {
     execute(request, message);
   }
+}
+
+// While the first attempt to connect goes on there is no answer: the request comes again.
+bool ServiceExporter::is_reachable(const RequestTopic& request, const Message& message) {
+  std::optional<Error> reason;
+  if (session_of(request.user)->is_connected(reason)) return true;
+  if (reason) {
+    const bool is_login = reason->code() == ErrorCode::authentication_error;
+    answer_error(
+        request, message,
+        error_pointer(is_login ? reason->code() : ErrorCode::connection_error,
+                      "the gateway is not connected to the robot's service: " + reason->message()),
+        "robot");
+  }
+  return false;
 }
 
 void ServiceExporter::handle_stream(const RequestTopic& request, const Message& message) {
@@ -97,6 +112,7 @@ void ServiceExporter::execute_once(const RequestTopic& request, const Message& m
     case CallWindow::State::unknown:
       break;
   }
+  if (!is_reachable(request, message)) return;
   try {
     window_.begin(id, wall_time());
   } catch (const Error&) {
@@ -178,7 +194,7 @@ std::shared_ptr<RobotSession> ServiceExporter::session_of(const std::string& use
   const auto mapped = options_.users.find(user);
   if (mapped == options_.users.end()) return session_;
   auto& session = user_sessions_[user];
-  if (!session) session = RobotSession::open(*node_, options_.url, &mapped->second, {});
+  if (!session) session = RobotSession::open(*node_, options_.url, mapped->second, {});
   return session;
 }
 

@@ -98,6 +98,7 @@ void ServiceExporter::attach_path(const std::string& path) {
 }
 
 void ServiceExporter::attach_members(const std::string& path, const dynamic::Object& object) {
+  attached_.push_back(object);
   for (const dynamic::MemberDescription& member : object.members()) {
     const ExportRule* const rule = find_rule(options_, "", path, member.name, reading);
     if (rule == nullptr || (member.access & writeonly) != 0) continue;

@@ -20,10 +20,15 @@ void StreamReader::receive(Message message, Clock::time_point now) {
   const auto kind = message.find("kind");
   if (!epoch || *epoch == 0 || !number || !kind) return;
   if (epoch_ != 0 && *epoch != epoch_) forget();
+  if (is_answer(message)) {
+    heard_ = now;
+    // The end of what was asked for: what is missing now was lost on the way.
+    if (*kind != "head" && *number >= std::min(asked_until_, known_last_)) is_answered_ = true;
+  }
   if (*kind == "head") {
     take_head(message, *epoch, *number);
   } else if (*epoch == epoch_) {
-    take(std::move(message), *number, now);
+    take(std::move(message), *number);
   }
 }
 
@@ -65,7 +70,7 @@ void StreamReader::skip_to(std::uint64_t number) {
   next_ = number;
 }
 
-void StreamReader::take(Message message, std::uint64_t number, Clock::time_point now) {
+void StreamReader::take(Message message, std::uint64_t number) {
   const auto follows = number_property(message, "follows");
   if (!follows || *follows >= number) return;
   known_last_ = std::max(known_last_, number);
@@ -82,7 +87,6 @@ void StreamReader::take(Message message, std::uint64_t number, Clock::time_point
     const auto node = kept_.extract(first);
     if (node.key() >= next_) hand_out(node.mapped(), node.key());
   }
-  moved_ = now;
 }
 
 void StreamReader::keep(Message message, std::uint64_t number) {
@@ -112,13 +116,14 @@ std::optional<StreamAsk> StreamReader::ask(Clock::time_point now) {
     has_asked_ = false;
     return std::nullopt;
   }
-  const bool is_answered = has_asked_ && !must_ask_ && next_ > asked_until_;
-  const bool is_late = now - moved_ >= options_.patience;
+  const bool is_answered = has_asked_ && !must_ask_ && (is_answered_ || next_ > asked_until_);
+  const bool is_late = now - heard_ >= options_.patience;
   // What is announced and has not come is on its way most of the time; a hole is none.
   const bool is_hole = !has_asked_ && (must_ask_ || !kept_.empty());
   if (!is_answered && !is_late && !is_hole) return std::nullopt;
   has_asked_ = true;
-  moved_ = now;
+  is_answered_ = false;
+  heard_ = now;
   const std::uint64_t from = epoch_ == 0 ? 0 : next_;
   asked_until_ = from + options_.ask_count - 1;
   return StreamAsk{from, options_.ask_count};

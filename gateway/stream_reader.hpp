@@ -37,7 +37,7 @@ class StreamReader {
     std::size_t records = 1024;
     std::size_t bytes = std::size_t{4} * 1024 * 1024;
     std::uint64_t ask_count = 256;
-    std::chrono::milliseconds patience{1'000};
+    std::chrono::milliseconds patience{500};
   };
   /// What records become.
   struct Sink {
@@ -67,7 +67,7 @@ class StreamReader {
  private:
   void take_head(const Message& message, std::uint64_t epoch, std::uint64_t number);
   void take_answer(const Message& message, std::uint64_t confirmed);
-  void take(Message message, std::uint64_t number, Clock::time_point now);
+  void take(Message message, std::uint64_t number);
   void keep(Message message, std::uint64_t number);
   void hand_out(const Message& message, std::uint64_t number);
   void skip_to(std::uint64_t number);
@@ -84,7 +84,8 @@ class StreamReader {
   bool must_ask_ = true;
   bool has_asked_ = false;
   std::uint64_t asked_until_ = 0;
-  Clock::time_point moved_{};  // when something was asked for, or has come, last
+  bool is_answered_ = false;   // the end of what was asked for has come
+  Clock::time_point heard_{};  // when something was asked for, or was answered, last
 };
 
 }  // namespace rr::gateway

@@ -50,8 +50,8 @@ class Link {
     StreamReader::Sink sink;
     sink.record = [this](const Message& message) { got.push_back(number_in(message)); };
     sink.gap = [this](const StreamGap& gap) { gaps.push_back(gap); };
-    reader_ =
-        std::make_unique<StreamReader>(sink, StreamReader::Options{.records = 50, .ask_count = 32});
+    reader_ = std::make_unique<StreamReader>(
+        sink, StreamReader::Options{.records = 50, .ask_count = 32, .patience = milliseconds(200)});
   }
   void forget_all() { link_.clear(); }
   void remove_log() {

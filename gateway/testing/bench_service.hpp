@@ -42,6 +42,7 @@ object Bench
   function string describe(string name, Pose pose)
   function void fail(string text)
   function int32 count()
+  function string whoami()
   event stopped(string why, int32 code)
   pipe uint32 samples [readonly]
   wire double force [readonly]
@@ -49,6 +50,21 @@ object Bench
   objref Tool{string} tools
 end
 )";
+
+/// Two users with one password.
+class TwoUsers final : public Users {
+ public:
+  [[nodiscard]] User authenticate(const std::string& name,
+                                  const std::map<std::string, VarValue>& credentials,
+                                  const NodeId&) const override {
+    const auto password = credentials.find("password");
+    if ((name == "operator" || name == "gateway") && password != credentials.end() &&
+        password->second.get<std::string>() == "open sesame") {
+      return {name};
+    }
+    throw Error(ErrorCode::authentication_error, "not this one");
+  }
+};
 
 /// Serves it at a port of this machine, in this process.
 class BenchService {
@@ -64,7 +80,9 @@ class BenchService {
     add_functions();
     add_tool();
     port_ = node_.listen_tcp(0);
-    service_.emplace(dynamic::register_service(node_, "bench", bench_));
+    ServiceOptions options;
+    options.users = std::make_shared<TwoUsers>();
+    service_.emplace(dynamic::register_service(node_, "bench", bench_, options));
   }
 
   [[nodiscard]] std::string url() const {
@@ -85,6 +103,10 @@ class BenchService {
     });
     bench_.on_call("fail", [](const dynamic::List& arguments) -> dynamic::Value {
       throw Error(ErrorCode::remote_error, "test.bench.Jam", arguments[0].text());
+    });
+    bench_.on_call("whoami", [](const dynamic::List&) {
+      const auto user = ServiceContext::current_user();
+      return user ? user->name : std::string("nobody");
     });
     bench_.on_call("count", [this](const dynamic::List&) { return ++count_; });
   }

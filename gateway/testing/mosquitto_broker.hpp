@@ -27,7 +27,7 @@ class MosquittoBroker {
       : port_(free_port()) {
     std::ofstream(folder_.path() + "/mosquitto.conf")
         << "listener " << port_ << " 127.0.0.1\n"
-        << configuration << "persistence false\nlog_dest file " << folder_.path() << "/log\n";
+        << configuration << "persistence false\nlog_dest none\nuser root\n";
     start();
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,8 +20,12 @@ namespace rr::gateway::testing {
 class Rig {
  public:
   explicit Rig(Function<std::unique_ptr<Carrier>()> make_carrier,
-               std::chrono::milliseconds limit = std::chrono::milliseconds(20'000))
+               std::chrono::milliseconds limit = std::chrono::milliseconds(20'000),
+               const std::string& extra = "", const std::string& password = "open sesame")
       : make_carrier_(std::move(make_carrier)), limit_(limit) {
+    rules = extra + rules;
+    std::ofstream(folder_.path() + "/secret") << password << "\n";
+    std::ofstream(folder_.path() + "/login") << "open sesame\n";
     start_export();
     start_server();
   }
@@ -29,9 +34,13 @@ class Rig {
     const std::string text = "site = \"hall\"\nnode = \"robot\"\nstate = \"" + folder_.path() +
                              "\"\n[broker]\nurl = \"mqtt://test\"\n[[service]]\nname = \"bench\"\n"
                              "url = \"" +
-                             robot.url() + "\"\nreaders = [\"hub\"]\n" + rules;
+                             robot.url() +
+                             "\"\nreaders = [\"hub\"]\nlogin = "
+                             "\"gateway\"\npassword_file = \"login\"\n" +
+                             rules;
     export_carrier_ = make_carrier_();
-    exporter_.emplace(parse_export_file("test.toml", text), *export_carrier_, logger());
+    exporter_.emplace(parse_export_file(folder_.path() + "/test.toml", text), *export_carrier_,
+                      logger());
   }
   void stop_export() { exporter_.reset(); }
   void start_server() {
@@ -71,7 +80,7 @@ class Rig {
   std::string rules =
       "[[service.allow]]\nmembers = [\"speed\", \"pose\", \"mode\", \"add\", \"describe\", "
       "\"fail\", "
-      "\"count\", \"stopped\", \"samples\", \"force\", \"target\"]\n"
+      "\"count\", \"whoami\", \"stopped\", \"samples\", \"force\", \"target\"]\n"
       "access = [\"read\", \"write\", \"call\"]\n"
       "[[service.allow]]\npath = \"tools[left%20hand]\"\nmembers = [\"*\"]\n"
       "access = [\"read\", \"write\", \"call\"]\n";
