@@ -246,13 +246,12 @@ TEST_F(Mosquitto, AUserCannotAskInTheNameOfAnother) {
   const auto eve = make_mqtt_carrier({strict.url(), "eve", "three"});
   eve->subscribe("rr/$reply/hub/#");
   eve->start(listener, {"life", {}});
-  EXPECT_TRUE(listener.refused.wait_for(1));
   ASSERT_TRUE(listener.connected.wait_for(1));
   Message request{"rr/hall/robot/bench/$call/hub/count", {}};
   request.correlation = Bytes(4);
   request.response_topic = "rr/$reply/hub/1";
   ASSERT_EQ(eve->publish(request), Published::taken);
-  EXPECT_TRUE(listener.refused.wait_for(2));
+  EXPECT_TRUE(listener.refused.wait_for(1));
   EXPECT_EQ(bench->call("count").as<int>(), 2);
   EXPECT_EQ(listener.messages.size(), 0U);
   eve->stop({});
