@@ -136,6 +136,7 @@ class Exporter::Core final : public CarrierHandler {
   }
   void on_disconnected(const std::string& reason) override {
     worker_->post([this, reason] {
+      outbox_.clear();
       if (std::exchange(is_connected_, false)) log_(LogLevel::warning, reason);
     });
   }

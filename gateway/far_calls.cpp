@@ -61,14 +61,18 @@ void FarCalls::begin(Pending pending) {
   const std::string id = instance_ + "-" + std::to_string(++last_id_);
   const auto* const bytes = reinterpret_cast<const std::byte*>(id.data());
   pending.message.correlation.assign(bytes, bytes + id.size());
-  // The broker forgets it when nobody waits any more: it is not executed late.
-  pending.message.expiry = std::chrono::ceil<std::chrono::seconds>(options_.limit);
   pending.end = now + options_.limit;
-  pending.next = now + options_.repeat;
-  outbox_.add(pending.message);
   Id key = pending.message.correlation;
-  pending_.emplace(std::move(key), std::move(pending));
+  send(pending_.emplace(std::move(key), std::move(pending)).first->second, now);
   pump_();
+}
+
+void FarCalls::send(Pending& pending, Clock::time_point now) {
+  pending.next = now + options_.repeat;
+  if (!is_connected_) return;
+  // The broker forgets it when nobody waits any more: it is not executed late.
+  pending.message.expiry = std::chrono::ceil<std::chrono::seconds>(pending.end - now);
+  outbox_.add(pending.message);
 }
 
 void FarCalls::finish(const Id& id, const std::exception_ptr& error, Message answer) {
@@ -85,7 +89,8 @@ void FarCalls::refuse(const Message& request) {
       {});
 }
 
-void FarCalls::reconnected() {
+void FarCalls::set_connected(bool is_connected) {
+  is_connected_ = is_connected;
   for (auto& [id, pending] : pending_) pending.next = Clock::now();
 }
 
@@ -96,10 +101,7 @@ void FarCalls::tick(const Function<std::string(const ServiceAddress&)>& where) {
     if (now >= pending.end) {
       late.emplace_back(id, where(pending.address));
     } else if (now >= pending.next) {
-      pending.next = now + options_.repeat;
-      const auto left = std::chrono::ceil<std::chrono::seconds>(pending.end - now);
-      pending.message.expiry = left;
-      outbox_.add(pending.message);
+      send(pending, now);
     }
   }
   for (const auto& [id, reason] : late) {

@@ -49,8 +49,8 @@ class FarCalls : public std::enable_shared_from_this<FarCalls> {
   void take(const Message& answer);
   /// A request is too large for the broker.
   void refuse(const Message& request);
-  /// Repeats what waits.
-  void reconnected();
+  /// Repeats what waits; without a connection nothing is sent, or kept to be sent later.
+  void set_connected(bool is_connected);
   /// Repeats what has waited long enough, and gives up what is too late. `where` says why there may
   /// be no answer from a service; empty when everything seems to be there.
   void tick(const Function<std::string(const ServiceAddress&)>& where);
@@ -67,6 +67,7 @@ class FarCalls : public std::enable_shared_from_this<FarCalls> {
   };
   using Id = Bytes;
   void begin(Pending pending);
+  void send(Pending& pending, Clock::time_point now);
   void finish(const Id& id, const std::exception_ptr& error, Message answer);
 
   Worker& worker_;
@@ -76,6 +77,7 @@ class FarCalls : public std::enable_shared_from_this<FarCalls> {
   std::string instance_;  // random: no two processes have the same ids
   std::string reply_topic_;
   std::uint64_t last_id_ = 0;
+  bool is_connected_ = false;
   std::map<Id, Pending> pending_;
 };
 

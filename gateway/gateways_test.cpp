@@ -288,6 +288,19 @@ TEST(GatewayUsers, AWrongPasswordIsReported) {
   EXPECT_EQ(code_of([&] { return bench->call("whoami"); }), ErrorCode::authentication_error);
 }
 
+TEST(GatewayTrouble, ACallThatWasGivenUpIsNotExecutedLater) {
+  MemoryBroker broker;
+  Rig rig([&] { return broker.carrier(); }, milliseconds(600));
+  const auto bench = rig.connect();
+  broker.crash();
+  EXPECT_EQ(code_of([&] { return bench->call("count"); }), ErrorCode::connection_error);
+  broker.restart();
+  EXPECT_TRUE(
+      comes_true([&] { return code_of([&] { return bench->get("speed"); }) == ErrorCode::none; }));
+  EXPECT_EQ(bench->call("count").as<int>(), 1);
+  EXPECT_EQ(broker.published("rr/hall/robot/bench/$call/hub/count"), 1U);
+}
+
 TEST(GatewayTrouble, ErrorsSayWhereItFailed) {
   MemoryBroker broker;
   Rig rig([&] { return broker.carrier(); }, milliseconds(600));

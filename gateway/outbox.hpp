@@ -22,6 +22,11 @@ class Outbox {
       messages_.pop_front();
     }
   }
+  /// Drops all: the connection was lost, and what still matters is added again for the next one.
+  void clear() {
+    messages_.clear();
+    bytes_ = 0;
+  }
   /// False when the carrier takes no more for now. `refused` gets what is too large for it.
   bool pump(Carrier& carrier, const Function<void(Message)>& refused) {
     while (!messages_.empty()) {

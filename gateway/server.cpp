@@ -65,7 +65,7 @@ class Server::Core final : public CarrierHandler {
     worker_.post([this] {
       is_connected_ = true;
       log_(LogLevel::info, "connected to " + carrier_.url());
-      calls_->reconnected();
+      calls_->set_connected(true);
       for (const auto& service : services_) service->reconnected();
       tick();
     });
@@ -73,6 +73,8 @@ class Server::Core final : public CarrierHandler {
   void on_disconnected(const std::string& reason) override {
     worker_.post([this, reason] {
       is_connected_ = false;
+      calls_->set_connected(false);
+      outbox_.clear();
       if (std::exchange(reason_, reason) != reason) log_(LogLevel::warning, reason);
     });
   }
@@ -105,7 +107,9 @@ class Server::Core final : public CarrierHandler {
   }
 
   void tick() {
-    for (const auto& service : services_) service->tick();
+    if (is_connected_) {
+      for (const auto& service : services_) service->tick();
+    }
     calls_->tick([this](const ServiceAddress& address) { return where(address); });
     pump();
   }

@@ -51,8 +51,9 @@ void Worker::run() {
     changed_.wait_until(lock, next_tick, [this] { return ends_ || !tasks_.empty(); });
     if (ends_) break;
     Task task;
+    bool is_tick = false;
     if (std::chrono::steady_clock::now() >= next_tick) {
-      next_tick = std::chrono::steady_clock::now() + period_;
+      is_tick = true;
       task = tick_;
     } else if (!tasks_.empty()) {
       task = std::move(tasks_.front());
@@ -62,6 +63,8 @@ void Worker::run() {
     lock.unlock();
     if (task) task();
     task = nullptr;
+    // Counted from its end, so that a slow one leaves time for the others.
+    if (is_tick) next_tick = std::chrono::steady_clock::now() + period_;
     lock.lock();
   }
   // Tasks may own what ends here; not under the lock.
