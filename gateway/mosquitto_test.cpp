@@ -214,6 +214,24 @@ TEST_F(Mosquitto, NothingIsLostWhenTheBrokerIsKilled) {
   EXPECT_EQ(all.robot.counted(), before + 1);
 }
 
+TEST_F(Mosquitto, WiresHaveTheNewestValueAfterTheBrokerWasKilled) {
+  Rig& all = make_rig();
+  const auto bench = all.connect();
+  auto force = bench->wire("force").connect();
+  const auto newest_is = [&](double wanted) {
+    return comes_true([&] {
+      const auto value = force.try_in();
+      return value && value->value.as<double>() == wanted;
+    });
+  };
+  all.robot.bench().wire("force").set_in(1);
+  ASSERT_TRUE(newest_is(1));
+  broker->kill();
+  all.robot.bench().wire("force").set_in(2);
+  broker->start();
+  EXPECT_TRUE(newest_is(2));
+}
+
 // The lists of docs/howto/fleet.md.
 TEST_F(Mosquitto, AUserCannotAskInTheNameOfAnother) {
   const Folder folder;
