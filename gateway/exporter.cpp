@@ -128,6 +128,7 @@ class Exporter::Core final : public CarrierHandler {
   void on_connected() override {
     worker_->post([this] {
       is_connected_ = true;
+      reason_.clear();
       log_(LogLevel::info, "connected to " + carrier_.url());
       outbox_.add(life(file_, "up"));
       for (const auto& service : services_) service->broker_connected();
@@ -136,8 +137,9 @@ class Exporter::Core final : public CarrierHandler {
   }
   void on_disconnected(const std::string& reason) override {
     worker_->post([this, reason] {
+      is_connected_ = false;
       outbox_.clear();
-      if (std::exchange(is_connected_, false)) log_(LogLevel::warning, reason);
+      if (std::exchange(reason_, reason) != reason) log_(LogLevel::warning, reason);
     });
   }
   void on_room() override {
@@ -191,6 +193,7 @@ class Exporter::Core final : public CarrierHandler {
   std::unique_ptr<Worker> worker_;
   std::vector<std::shared_ptr<ServiceExporter>> services_;
   bool is_connected_ = false;
+  std::string reason_;  // why it is not connected, as was reported
 };
 
 Exporter::Exporter(ExportFile file, Carrier& carrier, Log log)

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <thread>
 
@@ -299,6 +300,34 @@ TEST(GatewayTrouble, ACallThatWasGivenUpIsNotExecutedLater) {
       comes_true([&] { return code_of([&] { return bench->get("speed"); }) == ErrorCode::none; }));
   EXPECT_EQ(bench->call("count").as<int>(), 1);
   EXPECT_EQ(broker.published("rr/hall/robot/bench/$call/hub/count"), 1U);
+}
+
+TEST(GatewayTrouble, ARobotThatIsNotThereIsReportedOnce) {
+  MemoryBroker broker;
+  const testing::Folder folder;
+  Kept<std::string> log;
+  ExportFile file;
+  file.site = "hall";
+  file.node = "robot";
+  file.state_folder = folder.path();
+  ExportedServiceOptions arm;
+  arm.name = "arm";
+  arm.url = "rr+tcp://localhost:1/?service=arm";
+  file.services.push_back(arm);
+  const auto carrier = broker.carrier();
+  const Exporter exporter(file, *carrier,
+                          [&](LogLevel, const std::string& text) { log.add(text); });
+  const auto reports = [&] {
+    const auto lines = log.items();
+    return std::ranges::count_if(lines, [](const auto& line) { return line.starts_with("arm: "); });
+  };
+  EXPECT_TRUE(comes_true([&] { return reports() > 0; }));
+  EXPECT_TRUE(comes_true([&] {
+    const auto life = broker.retained("rr/hall/robot/arm/$life");
+    return life && life->find("reason") &&
+           life->find("reason")->find("Connection") != std::string::npos;
+  }));
+  EXPECT_EQ(reports(), 1);
 }
 
 TEST(GatewayTrouble, ErrorsSayWhereItFailed) {

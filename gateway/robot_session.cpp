@@ -52,6 +52,11 @@ void RobotSession::listen(Listener listener) {
         }));
   }
   if (listener.disconnected) {
+    listeners_.push_back(
+        subscription_.on_failed([disconnected = listener.disconnected](
+                                    const std::vector<std::string>&, const Error& reason) {
+          disconnected(reason.what());
+        }));
     listeners_.push_back(subscription_.on_disconnected(
         [disconnected = std::move(listener.disconnected)](
             const SubscriptionClientId&, const Error& reason) { disconnected(reason.what()); }));

@@ -25,6 +25,7 @@ class RobotSession : public std::enable_shared_from_this<RobotSession> {
   /// Notified of the connection.
   struct Listener {
     Function<void(const dynamic::Object& root)> connected;
+    /// Also of each attempt to connect that has failed.
     Function<void(const std::string& reason)> disconnected;
   };
 

@@ -64,6 +64,7 @@ class Server::Core final : public CarrierHandler {
   void on_connected() override {
     worker_.post([this] {
       is_connected_ = true;
+      reason_.clear();
       log_(LogLevel::info, "connected to " + carrier_.url());
       calls_->set_connected(true);
       for (const auto& service : services_) service->reconnected();

@@ -123,6 +123,7 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   std::map<std::string, Message> retained_;                             // by topic
   std::map<std::string, std::shared_ptr<WireExport>> wires_;            // by topic
   std::map<std::string, StreamExport> streams_;                         // by topic
+  std::string trouble_;           // why the robot is not connected, as was reported
   std::uint64_t connection_ = 0;  // counts connections to the robot
   // Their handlers last as long. Kept until the robot is connected again: what it had sent before
   // is still on its way.

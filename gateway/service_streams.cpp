@@ -24,6 +24,7 @@ std::string folder_name(const std::string& path, const std::string& member) {
 
 void ServiceExporter::robot_connected(const dynamic::Object& root) {
   ++connection_;
+  trouble_.clear();
   attached_.clear();
   try {
     publish_definitions(root);
@@ -41,6 +42,8 @@ void ServiceExporter::robot_connected(const dynamic::Object& root) {
 }
 
 void ServiceExporter::robot_disconnected(const std::string& reason) {
+  if (std::exchange(trouble_, reason) == reason) return;
+  shared_.log(LogLevel::warning, options_.name + ": " + reason);
   publish_life("down", reason);
 }
 
