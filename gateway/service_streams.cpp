@@ -25,7 +25,10 @@ std::string folder_name(const std::string& path, const std::string& member) {
 void ServiceExporter::robot_connected(const dynamic::Object& root) {
   ++connection_;
   trouble_.clear();
+  // Waits for handlers that run, and these wait for this thread when it has much to do.
+  shared_.worker.set_bounded(false);
   attached_.clear();
+  shared_.worker.set_bounded(true);
   try {
     publish_definitions(root);
   } catch (const Error& error) {

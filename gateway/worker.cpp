@@ -23,10 +23,18 @@ void Worker::post(Task task) {
 
 void Worker::post_in_turn(Task task, std::size_t limit) {
   std::unique_lock lock(mutex_);
-  taken_.wait(lock, [&] { return ends_ || tasks_.size() < limit; });
+  taken_.wait(lock, [&] { return ends_ || !is_bounded_ || tasks_.size() < limit; });
   if (ends_) return;
   tasks_.push_back(std::move(task));
   changed_.notify_one();
+}
+
+void Worker::set_bounded(bool is_bounded) {
+  {
+    const std::scoped_lock lock(mutex_);
+    is_bounded_ = is_bounded;
+  }
+  taken_.notify_all();
 }
 
 bool Worker::has_room() const {

@@ -33,6 +33,9 @@ class Worker {
   /// Waits while `limit` tasks wait, so that what arrives from a robot is not read faster than it
   /// is logged. Not on the worker's thread.
   void post_in_turn(Task task, std::size_t limit = 1'000);
+  /// Whether post_in_turn() waits, which it does at first. While the worker waits for handlers that
+  /// may be in it, it must not.
+  void set_bounded(bool is_bounded);
   /// False when so many tasks wait that what a broker sends had better be left out.
   [[nodiscard]] bool has_room() const;
   /// Ends the thread: tasks that wait, and those posted from now on, are dropped.
@@ -48,6 +51,7 @@ class Worker {
   std::condition_variable taken_;
   std::deque<Task> tasks_;
   bool ends_ = false;
+  bool is_bounded_ = true;
   std::thread thread_;
 };
 
