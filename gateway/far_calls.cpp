@@ -2,7 +2,6 @@
 #include "gateway/far_calls.hpp"
 
 #include <future>
-#include <random>
 #include <utility>
 
 #include "gateway/elements.hpp"
@@ -10,21 +9,12 @@
 #include "rr/error.hpp"
 
 namespace rr::gateway {
-namespace {
-
-std::string random_name() {
-  std::random_device device;
-  return hex_text((std::uint64_t{device()} << 32U) | device());
-}
-
-}  // namespace
-
 FarCalls::FarCalls(Worker& worker, Outbox& outbox, Options options, Function<void()> pump)
     : worker_(worker),
       outbox_(outbox),
       options_(std::move(options)),
       pump_(std::move(pump)),
-      instance_(random_name()),
+      instance_(random_hex()),
       reply_topic_(gateway::reply_topic(options_.user, instance_)) {}
 
 void FarCalls::request(const ServiceAddress& address, Verb verb, std::string path,

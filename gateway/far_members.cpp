@@ -145,15 +145,13 @@ void FarService::serve_wire(const dynamic::ServedObject& object, const std::stri
 }
 
 void FarService::take_wire(FarWire& wire, const Message& message) {
+  const auto epoch = number_property(message, "stream", 16);
   const auto number = number_property(message, "number");
-  const auto time = number_property(message, "time");
-  if (!number || !time) return;
-  // After a restart the robot's gateway counts anew; then the time says which is newer.
-  const auto moment = static_cast<std::int64_t>(*time);
-  const bool is_newer = *number > wire.number || moment > wire.time;
-  if (!is_newer) return;
+  if (!epoch || !number) return;
+  // Another epoch: the robot's gateway was started again, and counts anew.
+  if (*epoch == wire.epoch && *number <= wire.number) return;
+  wire.epoch = *epoch;
   wire.number = *number;
-  wire.time = moment;
   try {
     wire.object.wire(wire.member.name)
         .set_in(decode_element(*definitions_, wire.member.type, message.payload));

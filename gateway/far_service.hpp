@@ -54,8 +54,8 @@ class FarService : public std::enable_shared_from_this<FarService> {
   struct FarWire {
     dynamic::ServedObject object;
     dynamic::MemberDescription member;
+    std::uint64_t epoch = 0;
     std::uint64_t number = 0;
-    std::int64_t time = 0;
   };
 
   void take_definition(const Message& message, std::string_view rest);

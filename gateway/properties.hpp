@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstdint>
 #include <optional>
+#include <random>
 #include <string>
 #include <string_view>
 
@@ -30,6 +31,12 @@ inline std::string hex_text(std::uint64_t number) {
   std::string text(16, '0');
   for (std::size_t i = 16; i-- > 0; number >>= 4U) text[i] = digits[number & 0xFU];
   return text;
+}
+
+/// The same of a random number.
+inline std::string random_hex() {
+  std::random_device device;
+  return hex_text((std::uint64_t{device()} << 32U) | device());
 }
 
 /// A property as a number; nothing for what is none.

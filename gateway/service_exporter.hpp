@@ -12,6 +12,7 @@
 #include "gateway/call_window.hpp"
 #include "gateway/exporter.hpp"
 #include "gateway/outbox.hpp"
+#include "gateway/properties.hpp"
 #include "gateway/robot_session.hpp"
 #include "gateway/stream_writer.hpp"
 #include "gateway/topics.hpp"
@@ -116,6 +117,7 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   ExportedServiceOptions options_;
   std::string folder_;
   Shared shared_;
+  const std::string epoch_ = random_hex();  // of numbers of wires
   Node* node_ = nullptr;
   CallWindow window_;
   std::shared_ptr<RobotSession> session_;

@@ -162,6 +162,7 @@ bool ServiceExporter::pump_wire(WireExport& wire, Carrier& carrier) {
     Message message{wire.topic, encode_element(wire.type, newest->value)};
     message.properties = {{"type", wire.type.text()},
                           {"time", std::to_string(time)},
+                          {"stream", epoch_},
                           {"number", std::to_string(++wire.number)}};
     message.retained = true;
     message.expiry = wire.lifespan;
