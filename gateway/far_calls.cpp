@@ -9,6 +9,7 @@
 #include "rr/error.hpp"
 
 namespace rr::gateway {
+
 FarCalls::FarCalls(Worker& worker, Outbox& outbox, Options options, Function<void()> pump)
     : worker_(worker),
       outbox_(outbox),
