@@ -100,6 +100,9 @@ set(robdef_layers
   "conformance: runtime/cpp/include/rr runtime/cpp/src/replay runtime/cpp/src/channel/components.hpp runtime/cpp/src/channel/layer.hpp runtime/cpp/src/channel/openssl_tls.hpp runtime/cpp/src/channel/tls.hpp runtime/cpp/src/channel/web_socket.hpp"
   "conformance/runners/board: runtime/cpp/include/rr conformance runtime/arduino/bench/plugged_board.hpp"
   "conformance/runners/matlab: conformance runtime/cpp/include/rr runtime/matlab"
+  # Beside a robot: what users of the runtime see. One source reads TOML.
+  "gateway: runtime/cpp/include/rr"
+  "gateway/export_file.cpp: gateway runtime/cpp/include/rr compiler/project/toml_file.hpp"
   "benchmarks: runtime/cpp/include/rr compiler"
   "examples: runtime/cpp/include/rr"
   "examples/dual_arm/cpp/dual_arm_test.cpp: examples runtime/cpp/include/rr runtime/cpp/src/realtime/testing")
@@ -116,6 +119,7 @@ set(robdef_outside_headers
   "^nlohmann/| compiler/lsp compiler/plugin/answer.cpp runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"
   "^toml\\+\\+/| compiler/project/toml_file.cpp"
   "^(mex\\.h|octave/)| runtime/matlab conformance/runners/matlab"
+  "^(mosquitto|mqtt_protocol)\\.h$| gateway/mqtt_carrier.cpp gateway/mqtt_properties.hpp runtime/cpp/bench/fan_out_mosquitto.cpp"
   "^histedit\\.h$| cli/live/line_reader.cpp"
   "^png\\.h$| examples")
 

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/export_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "rr/error.hpp"
+
+namespace rr::gateway {
+namespace {
+
+const std::string good = R"(
+site = "hall"
+node = "robot1"
+state = "state"
+
+[broker]
+url = "mqtt://hub:1883"
+user = "robot1"
+
+[[service]]
+name = "arm"
+url = "rr+tcp://localhost:6257/?service=arm"
+readers = ["hub"]
+log_size = "64 MiB"
+log_age = "2 days"
+
+[[service.allow]]
+members = ["pose", "force*"]
+access = ["read"]
+rate = "20/s"
+lifespan = "5 s"
+
+[[service.allow]]
+path = "tools[*]"
+members = ["*"]
+access = ["read", "write", "call"]
+users = ["alice"]
+
+[[service.user]]
+broker = "alice"
+service = "operator"
+)";
+
+std::string mistakes(const std::string& text) {
+  try {
+    static_cast<void>(parse_export_file("x.toml", text));
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::invalid_configuration);
+    return error.message();
+  }
+  return "none";
+}
+
+std::string changed(const std::string& from, const std::string& to) {
+  std::string text = good;
+  text.replace(text.find(from), from.size(), to);
+  return text;
+}
+
+TEST(GatewayExportFile, IsRead) {
+  const ExportFile file = parse_export_file("folder/x.toml", good);
+  EXPECT_EQ(file.site, "hall");
+  EXPECT_EQ(file.state_folder, "folder/state");
+  EXPECT_EQ(file.broker.url, "mqtt://hub:1883");
+  ASSERT_EQ(file.services.size(), 1U);
+  const ExportedServiceOptions& arm = file.services[0];
+  EXPECT_EQ(arm.readers, std::vector<std::string>{"hub"});
+  EXPECT_EQ(arm.log_bytes, 64U * 1024 * 1024);
+  EXPECT_EQ(arm.log_age, std::chrono::hours(48));
+  ASSERT_EQ(arm.rules.size(), 2U);
+  EXPECT_EQ(arm.rules[0].period, std::chrono::milliseconds(50));
+  EXPECT_EQ(arm.rules[0].lifespan, std::chrono::seconds(5));
+  EXPECT_EQ(arm.rules[1].access, reading | writing | calling);
+  EXPECT_EQ(arm.users.at("alice").name, "operator");
+}
+
+TEST(GatewayExportFile, MistakesHaveTheirPlaces) {
+  EXPECT_EQ(mistakes(changed("site = \"hall\"", "site = \"a/b\"")),
+            "x.toml:2:8: a name has 1 to 64 letters, digits, `_` or `-`");
+  EXPECT_EQ(mistakes(changed("readers", "raeders")),
+            "x.toml:13:1: `raeders` is no key of [[service]]");
+  EXPECT_EQ(mistakes(changed("\"20/s\"", "\"20\"")), "x.toml:20:8: not such as `20/s`");
+  EXPECT_EQ(mistakes(changed("[\"read\"]", "[\"read\", \"raed\"]")),
+            "x.toml:19:19: access is `read`, `write` or `call`");
+  EXPECT_EQ(mistakes(changed("tools[*]", "tools[")),
+            "x.toml:24:8: `tools[` is no path of an object");
+  EXPECT_EQ(mistakes(changed("log_size = \"64 MiB\"", "log_size = 64")),
+            "x.toml:14:12: a text is expected");
+  EXPECT_TRUE(mistakes(changed("= \"hall\"", "=")).starts_with("x.toml:2:"))
+      << mistakes(changed("= \"hall\"", "="));
+}
+
+TEST(GatewayExportFile, AllMistakesAreReported) {
+  EXPECT_EQ(mistakes("nod = 1\n"),
+            "x.toml:1:1: `nod` is no key of an export file\n"
+            "x.toml:1:1: `site` is missing\nx.toml:1:1: `node` is missing\n"
+            "x.toml:1:1: `state` is missing\nx.toml:1:1: `broker.url` is missing\n"
+            "x.toml:1:1: `[[service]]` is missing");
+}
+
+TEST(GatewayExportFile, AMissingPasswordFileIsReportedAtItsPlace) {
+  EXPECT_EQ(mistakes(changed("user = \"robot1\"", "password_file = \"/nowhere/secret\"")),
+            "x.toml:8:17: /nowhere/secret cannot be read");
+}
+
+TEST(GatewayExportRules, StarsFitAnyLetters) {
+  EXPECT_TRUE(fits("*", ""));
+  EXPECT_TRUE(fits("a*c*e", "abcde"));
+  EXPECT_TRUE(fits("*ab", "aab"));
+  EXPECT_FALSE(fits("a*c", "abcd"));
+  EXPECT_FALSE(fits("", "a"));
+  EXPECT_TRUE(fits("", ""));
+}
+
+TEST(GatewayExportRules, WhatIsNotListedIsNotAllowed) {
+  const ExportFile file = parse_export_file("x.toml", good);
+  const ExportedServiceOptions& arm = file.services[0];
+  EXPECT_NE(find_rule(arm, "bob", "", "pose", reading), nullptr);
+  EXPECT_NE(find_rule(arm, "", "", "force_left", reading), nullptr);
+  EXPECT_EQ(find_rule(arm, "bob", "", "pose", writing), nullptr);
+  EXPECT_EQ(find_rule(arm, "bob", "", "speed", reading), nullptr);
+  EXPECT_EQ(find_rule(arm, "bob", "tools[left]", "open", calling), nullptr);
+  EXPECT_NE(find_rule(arm, "alice", "tools[left]", "open", calling), nullptr);
+  EXPECT_EQ(find_rule(arm, "alice", "tools", "open", calling), nullptr);
+  EXPECT_EQ(find_rule(arm, "alice", "", "open", calling), nullptr);
+}
+
+}  // namespace
+}  // namespace rr::gateway

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "gateway/export_file.hpp"
+
+namespace rr::gateway {
+namespace {
+
+bool allows(const ExportRule& rule, std::string_view user, std::string_view path,
+            std::string_view member, Allowed access) {
+  if ((rule.access & access) == 0) return false;
+  if (!rule.users.empty() && std::ranges::find(rule.users, user) == rule.users.end()) return false;
+  return fits(rule.path, path) && std::ranges::any_of(rule.members, [&](const auto& pattern) {
+           return fits(pattern, member);
+         });
+}
+
+}  // namespace
+
+// Greedy with one place to go back to, which is enough for patterns with `*` alone.
+bool fits(std::string_view pattern, std::string_view text) {
+  std::size_t p = 0;
+  std::size_t t = 0;
+  std::size_t star = std::string_view::npos;
+  std::size_t retry = 0;
+  while (t < text.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      retry = t;
+    } else if (p < pattern.size() && pattern[p] == text[t]) {
+      ++p;
+      ++t;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      t = ++retry;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string_view::npos;
+}
+
+const ExportRule* find_rule(const ExportedServiceOptions& service, std::string_view user,
+                            std::string_view path, std::string_view member, Allowed access) {
+  for (const ExportRule& rule : service.rules) {
+    if (allows(rule, user, path, member, access)) return &rule;
+  }
+  return nullptr;
+}
+
+}  // namespace rr::gateway

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// Members of a robot's objects as they are offered here. Functions of members hold the requests and
+// not the service, which has the objects.
+#include <future>
+#include <utility>
+
+#include "gateway/elements.hpp"
+#include "gateway/far_service.hpp"
+#include "gateway/properties.hpp"
+#include "rr/error.hpp"
+
+namespace rr::gateway {
+namespace {
+
+constexpr std::size_t most_unsent = std::size_t{1} << 20U;  // bytes to one client
+
+using dynamic::Reply;
+using dynamic::Value;
+
+/// Answers a client with the value in an answer of the robot.
+FarCalls::Done reply_with(dynamic::Definitions definitions, dynamic::ValueType type, Reply reply) {
+  return [definitions = std::move(definitions), type = std::move(type), reply = std::move(reply)](
+             const std::exception_ptr& error, const Message& answer) {
+    try {
+      if (error) std::rethrow_exception(error);
+      reply(decode_element(definitions, type, answer.payload));
+    } catch (...) {
+      reply.fail(std::current_exception());
+    }
+  };
+}
+
+std::optional<std::string> index_text(const Value& index) {
+  if (index.is_null()) return std::nullopt;
+  if (index.kind() == dynamic::Kind::text) return index.text();
+  return std::to_string(index.as<std::int32_t>());
+}
+
+}  // namespace
+
+dynamic::ServedObject FarService::make_object(const std::string& path, const std::string& type) {
+  dynamic::ServedObject object(*definitions_, type);
+  for (const dynamic::MemberDescription& member : object.members()) {
+    switch (member.kind) {
+      case MemberKind::property:
+        serve_property(object, path, member);
+        break;
+      case MemberKind::function:
+        serve_function(object, path, member);
+        break;
+      case MemberKind::objref:
+        serve_objref(object, path, member);
+        break;
+      case MemberKind::wire:
+        serve_wire(object, path, member);
+        break;
+      case MemberKind::pipe:
+        serve_pipe(object, path, member);
+        break;
+      case MemberKind::event:
+        serve_event(object, path, member);
+        break;
+      // Not implemented for clients, as any member without a function.
+      case MemberKind::callback:
+      case MemberKind::memory:
+        break;
+    }
+  }
+  return object;
+}
+
+void FarService::serve_property(const dynamic::ServedObject& object, const std::string& path,
+                                const dynamic::MemberDescription& member) {
+  const auto calls = shared_.calls;
+  if ((member.access & writeonly) == 0) {
+    object.on_get_later(
+        member.name, [calls, address = address_, path, name = member.name, type = member.type,
+                      definitions = *definitions_](const Reply& reply) {
+          calls->request(address, Verb::get, path, name, {}, reply_with(definitions, type, reply));
+        });
+  }
+  if ((member.access & readonly) != 0) return;
+  object.on_set_later(member.name,
+                      [calls, address = address_, path, name = member.name, type = member.type,
+                       definitions = *definitions_](const Value& value, const Reply& reply) {
+                        calls->request(address, Verb::set, path, name, encode_element(type, value),
+                                       reply_with(definitions, {}, reply));
+                      });
+}
+
+void FarService::serve_function(const dynamic::ServedObject& object, const std::string& path,
+                                const dynamic::MemberDescription& member) {
+  if (member.generator != GeneratorForm::none) return;
+  object.on_call_later(member.name, [calls = shared_.calls, address = address_, path, member,
+                                     definitions = *definitions_](const dynamic::List& arguments,
+                                                                  const Reply& reply) {
+    calls->request(address, Verb::call, path, member.name,
+                   encode_arguments(member.parameters, arguments),
+                   reply_with(definitions, member.type, reply));
+  });
+}
+
+// The client's request waits for the robot, which knows whether there is such an object, and of
+// which type.
+void FarService::serve_objref(const dynamic::ServedObject& object, const std::string& path,
+                              const dynamic::MemberDescription& member) {
+  object.on_object(
+      member.name,
+      [weak = Weak(shared_from_this()), calls = shared_.calls, address = address_, path,
+       name = member.name](const Value& index) -> std::shared_ptr<Skeleton> {
+        const std::string below = path_below(path, {name, index_text(index)});
+        const Message answer = calls->wait(address, Verb::object, below, "", {});
+        const Self self = weak.lock();
+        if (!self) return nullptr;
+        // Streams and wires of the object belong to the worker's thread.
+        const auto promise = std::make_shared<std::promise<std::shared_ptr<Skeleton>>>();
+        auto made = promise->get_future();
+        self->shared_.worker.post(
+            [self, below, promise, type = std::string(answer.find("type").value_or(""))] {
+              try {
+                promise->set_value(self->make_object(below, type).skeleton());
+              } catch (...) {
+                promise->set_exception(std::current_exception());
+              }
+              self->shared_.pump();
+            });
+        return made.get();
+      });
+}
+
+void FarService::serve_wire(const dynamic::ServedObject& object, const std::string& path,
+                            const dynamic::MemberDescription& member) {
+  if ((member.access & readonly) == 0) {
+    object.wire(member.name)
+        .on_out([calls = shared_.calls, address = address_, path, name = member.name,
+                 type = member.type](const Value& value, const TimeSpec&, std::uint32_t) {
+          calls->request(address, Verb::poke, path, name, encode_element(type, value),
+                         [](const std::exception_ptr&, const Message&) {});
+        });
+  }
+  if ((member.access & writeonly) != 0) return;
+  const std::string topic = member_topic(address_, path, member.name);
+  wires_[topic] = {object, member};
+  shared_.carrier.subscribe(topic);
+}
+
+void FarService::take_wire(FarWire& wire, const Message& message) {
+  const auto epoch = number_property(message, "stream", 16);
+  const auto number = number_property(message, "number");
+  if (!epoch || !number) return;
+  // Another epoch: the robot's gateway was started again, and counts anew.
+  if (*epoch == wire.epoch && *number <= wire.number) return;
+  wire.epoch = *epoch;
+  wire.number = *number;
+  try {
+    wire.object.wire(wire.member.name)
+        .set_in(decode_element(*definitions_, wire.member.type, message.payload));
+  } catch (const Error& error) {
+    shared_.log(LogLevel::warning, message.topic + ": " + error.what());
+  }
+}
+
+void FarService::serve_pipe(const dynamic::ServedObject& object, const std::string& path,
+                            const dynamic::MemberDescription& member) {
+  const auto pipe = object.pipe(member.name);
+  // Packets of clients would be lost: an endpoint that sends one is closed.
+  pipe.on_connect([](dynamic::PipeEndpoint end) {
+    const auto kept = std::make_shared<Subscription>();
+    *kept = end.on_packet([end](const Value&) mutable { end.close(); });
+    end.on_closed([kept] { *kept = Subscription(); });
+  });
+  if ((member.access & writeonly) != 0) return;
+  StreamReader::Sink sink;
+  sink.record = [this, pipe, member](const Message& message) {
+    try {
+      pipe.send(decode_element(*definitions_, member.type, message.payload));
+    } catch (const Error& error) {
+      shared_.log(LogLevel::warning, message.topic + ": " + error.what());
+    }
+  };
+  // A client can not be told of a gap but by the end of its endpoint.
+  sink.gap = [this, pipe, name = member.name](const StreamGap& gap) {
+    report_gap(name, gap);
+    for (dynamic::PipeEndpoint& end : pipe.endpoints()) end.close();
+  };
+  add_stream(path, member.name, std::move(sink), [pipe] {
+    for (const dynamic::PipeEndpoint& end : pipe.endpoints()) {
+      if (end.is_open() && !end.wait_sent(std::chrono::milliseconds(0), most_unsent)) return false;
+    }
+    return true;
+  });
+}
+
+void FarService::serve_event(const dynamic::ServedObject& object, const std::string& path,
+                             const dynamic::MemberDescription& member) {
+  StreamReader::Sink sink;
+  sink.record = [this, object = dynamic::WeakServedObject(object), member](const Message& message) {
+    const dynamic::ServedObject served = object.lock();
+    if (!served) return;
+    try {
+      served.fire(member.name, decode_arguments(*definitions_, member.parameters, message.payload));
+    } catch (const Error& error) {
+      shared_.log(LogLevel::warning, message.topic + ": " + error.what());
+    }
+  };
+  sink.gap = [this, name = member.name](const StreamGap& gap) { report_gap(name, gap); };
+  add_stream(path, member.name, std::move(sink), [] { return true; });
+}
+
+void FarService::add_stream(const std::string& path, const std::string& member,
+                            StreamReader::Sink sink, Function<bool()> has_room) {
+  auto stream = std::make_unique<FarStream>(address_, path, member, shared_.reader, std::move(sink),
+                                            std::move(has_room));
+  shared_.carrier.subscribe(stream->topic());
+  stream->reconnected(shared_.outbox);
+  streams_[stream->topic()] = std::move(stream);
+}
+
+void FarService::report_gap(const std::string& member, const StreamGap& gap) {
+  const std::string what = gap.first == 0 ? "an unknown number of records is missing"
+                                          : "records " + std::to_string(gap.first) + " to " +
+                                                std::to_string(gap.last) + " are lost";
+  shared_.log(LogLevel::warning, topic_ + ": " + member + ": " + what);
+}
+
+}  // namespace rr::gateway

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/far_service.hpp"
+
+#include <utility>
+
+#include "gateway/properties.hpp"
+#include "rr/error.hpp"
+
+namespace rr::gateway {
+namespace {
+
+std::vector<std::string> names_in(std::string_view list) {
+  std::vector<std::string> names;
+  while (!list.empty()) {
+    const std::size_t comma = list.find(',');
+    names.emplace_back(list.substr(0, comma));
+    list.remove_prefix(comma == std::string_view::npos ? list.size() : comma + 1);
+  }
+  return names;
+}
+
+}  // namespace
+
+FarService::FarService(ServiceAddress address, std::string name, Shared shared)
+    : address_(std::move(address)),
+      name_(std::move(name)),
+      topic_(service_topic(address_)),
+      shared_(std::move(shared)) {}
+
+void FarService::start() {
+  shared_.carrier.subscribe(topic_ + "/$def/#");
+  shared_.carrier.subscribe(topic_ + "/$life");
+  shared_.carrier.subscribe(node_topic(address_.site, address_.node) + "/$life");
+}
+
+void FarService::close() {
+  if (service_) (*service_)->close();
+  service_.reset();
+  streams_.clear();
+  wires_.clear();
+  root_ = {};
+}
+
+bool FarService::take(const Message& message) {
+  if (const auto stream = streams_.find(message.topic); stream != streams_.end()) {
+    stream->second->receive(message, shared_.outbox);
+    return true;
+  }
+  if (const auto topic = message.find("topic")) {
+    const auto stream = streams_.find(std::string(*topic));
+    if (stream == streams_.end()) return false;
+    stream->second->receive(message, shared_.outbox);
+    return true;
+  }
+  if (const auto wire = wires_.find(message.topic); wire != wires_.end()) {
+    take_wire(wire->second, message);
+    return true;
+  }
+  if (message.topic == topic_ + "/$life") {
+    robot_life_ = text_of(message.payload);
+  } else if (message.topic == node_topic(address_.site, address_.node) + "/$life") {
+    gateway_life_ = text_of(message.payload);
+  } else if (message.topic.starts_with(topic_ + "/$def")) {
+    take_definition(message, std::string_view(message.topic).substr(topic_.size() + 5));
+  }
+  // Several services may belong to one robot.
+  return false;
+}
+
+void FarService::take_definition(const Message& message, std::string_view rest) {
+  if (rest.empty()) {
+    definition_ = message;
+  } else {
+    texts_[std::string(rest.substr(1))] = text_of(message.payload);
+  }
+  offer_when_complete();
+}
+
+void FarService::offer_when_complete() {
+  if (!definition_) return;
+  std::vector<std::string> texts;
+  std::string all;
+  for (const std::string& name : names_in(definition_->find("definitions").value_or(""))) {
+    const auto text = texts_.find(name);
+    if (text == texts_.end()) return;
+    texts.push_back(text->second);
+    all += text->second;
+  }
+  if (all == offered_ || texts.empty()) return;
+  if (!offered_.empty()) {
+    shared_.log(LogLevel::error, topic_ + ": the definition has changed; start this gateway again");
+    close();
+    return;
+  }
+  offered_ = all;
+  try {
+    offer(texts);
+  } catch (const Error& error) {
+    shared_.log(LogLevel::error, topic_ + ": " + error.what());
+  }
+}
+
+void FarService::offer(const std::vector<std::string>& texts) {
+  definitions_.emplace(texts);
+  const auto type = definition_->find("object");
+  root_ = make_object("", std::string(type.value_or("")));
+  service_ = dynamic::register_service(shared_.node, name_, root_);
+  shared_.log(LogLevel::info, topic_ + " is offered as `" + name_ + "`");
+  shared_.pump();
+}
+
+void FarService::reconnected() {
+  for (const auto& [topic, stream] : streams_) stream->reconnected(shared_.outbox);
+}
+
+void FarService::tick() {
+  for (const auto& [topic, stream] : streams_) stream->tick(shared_.outbox);
+}
+
+std::string FarService::trouble() const {
+  const std::string robot = address_.site + "/" + address_.node;
+  if (gateway_life_.empty()) return "the broker knows nothing of the robot " + robot;
+  if (gateway_life_ != "up") return "the gateway of the robot " + robot + " is not at the broker";
+  if (robot_life_ != "up") return "the gateway of " + robot + " is not connected to the robot";
+  return {};
+}
+
+}  // namespace rr::gateway

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/exporter.hpp"
+#include "gateway/far_calls.hpp"
+#include "gateway/far_stream.hpp"
+#include "rr/dynamic_service.hpp"
+
+namespace rr::gateway {
+
+/// A robot's service as it is offered here. On the worker's thread but for requests of clients.
+class FarService : public std::enable_shared_from_this<FarService> {
+ public:
+  /// What services of one gateway share; outlives them.
+  struct Shared {
+    Node& node;
+    Worker& worker;
+    Outbox& outbox;
+    Carrier& carrier;
+    std::shared_ptr<FarCalls> calls;
+    FarStream::Reader reader;
+    Log log;
+    Function<void()> pump;
+  };
+
+  /// `name` is that of the service here.
+  FarService(ServiceAddress address, std::string name, Shared shared);
+
+  /// Subscribes to what tells of the service.
+  void start();
+  /// Ends the service here.
+  void close();
+  /// A message that is no answer to a request. False when it is none of this service.
+  bool take(const Message& message);
+  /// The connection to the broker was made.
+  void reconnected();
+  /// To be called often.
+  void tick();
+  /// Which service it is.
+  [[nodiscard]] const ServiceAddress& address() const { return address_; }
+  /// Why the robot may not answer; empty when it seems to be there.
+  [[nodiscard]] std::string trouble() const;
+
+ private:
+  using Self = std::shared_ptr<FarService>;
+  using Weak = std::weak_ptr<FarService>;
+  struct FarWire {
+    dynamic::ServedObject object;
+    dynamic::MemberDescription member;
+    std::uint64_t epoch = 0;
+    std::uint64_t number = 0;
+  };
+
+  void take_definition(const Message& message, std::string_view rest);
+  void offer_when_complete();
+  void offer(const std::vector<std::string>& texts);
+  // far_members.cpp
+  dynamic::ServedObject make_object(const std::string& path, const std::string& type);
+  void serve_property(const dynamic::ServedObject& object, const std::string& path,
+                      const dynamic::MemberDescription& member);
+  void serve_function(const dynamic::ServedObject& object, const std::string& path,
+                      const dynamic::MemberDescription& member);
+  void serve_objref(const dynamic::ServedObject& object, const std::string& path,
+                    const dynamic::MemberDescription& member);
+  void serve_wire(const dynamic::ServedObject& object, const std::string& path,
+                  const dynamic::MemberDescription& member);
+  void serve_pipe(const dynamic::ServedObject& object, const std::string& path,
+                  const dynamic::MemberDescription& member);
+  void serve_event(const dynamic::ServedObject& object, const std::string& path,
+                   const dynamic::MemberDescription& member);
+  void add_stream(const std::string& path, const std::string& member, StreamReader::Sink sink,
+                  Function<bool()> has_room);
+  void take_wire(FarWire& wire, const Message& message);
+  void report_gap(const std::string& member, const StreamGap& gap);
+
+  const ServiceAddress address_;
+  const std::string name_;
+  const std::string topic_;
+  Shared shared_;
+  std::optional<Message> definition_;         // `$def` itself
+  std::map<std::string, std::string> texts_;  // of definitions, by name
+  std::string offered_;                       // the texts that the service was made of
+  std::optional<dynamic::Definitions> definitions_;
+  dynamic::ServedObject root_;
+  std::optional<Service> service_;
+  std::string robot_life_;
+  std::string gateway_life_;
+  std::map<std::string, std::unique_ptr<FarStream>> streams_;  // by topic
+  std::map<std::string, FarWire> wires_;                       // by topic
+};
+
+}  // namespace rr::gateway

@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: Apache-2.0
+// Client, serving gateway, broker in memory, exporting gateway, robot.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <thread>
+
+#include "gateway/testing/memory_broker.hpp"
+#include "gateway/testing/rig.hpp"
+
+namespace rr::gateway {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::comes_true;
+using testing::Faults;
+using testing::Kept;
+using testing::MemoryBroker;
+using testing::Rig;
+
+template <class Call>
+ErrorCode code_of(Call call, std::string* text = nullptr) {
+  try {
+    static_cast<void>(call());
+  } catch (const Error& error) {
+    if (text != nullptr) *text = error.what();
+    return error.code();
+  }
+  return ErrorCode::none;
+}
+
+class Gateways : public ::testing::Test {
+ protected:
+  MemoryBroker broker{7};
+  Rig rig{[this] { return broker.carrier(); }};
+};
+
+TEST_F(Gateways, PropertiesAreGotAndSet) {
+  const auto bench = rig.connect();
+  EXPECT_EQ(bench->get("speed").as<double>(), 0.5);
+  bench->set("speed", 0.75);
+  EXPECT_EQ(bench->get("speed").as<double>(), 0.75);
+  EXPECT_EQ(rig.robot.bench().stored("speed").as<double>(), 0.75);
+  EXPECT_EQ(bench->get("pose")["q"].at(1).as<double>(), 2.0);
+  bench->set("mode", "fast");
+  EXPECT_EQ(bench->get("mode").text(), "fast");
+}
+
+TEST_F(Gateways, FunctionsAreCalled) {
+  const auto bench = rig.connect();
+  EXPECT_EQ(bench->call("add", {1.5, 2}).as<double>(), 3.5);
+  const auto pose = dynamic::Value::record({{"x", 4}, {"q", dynamic::List{}}});
+  EXPECT_EQ(bench->call("describe", {"arm", pose}).text(), "arm at 4.000000");
+}
+
+TEST_F(Gateways, ErrorsOfTheRobotArriveAsTheyAre) {
+  const auto bench = rig.connect();
+  try {
+    bench->call("fail", {"stuck"});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::remote_error);
+    EXPECT_EQ(error.name(), "test.bench.Jam");
+    EXPECT_EQ(error.message(), "stuck");
+  }
+}
+
+TEST_F(Gateways, WhatIsNotExportedIsDenied) {
+  const auto bench = rig.connect();
+  std::string text;
+  EXPECT_EQ(code_of([&] { return bench->get("secret"); }, &text), ErrorCode::permission_denied);
+  EXPECT_THAT(text, ::testing::HasSubstr("does not allow hub to get `secret`"));
+  EXPECT_EQ(code_of([&] { bench->set("secret", 1); }), ErrorCode::permission_denied);
+  EXPECT_EQ(rig.robot.bench().stored("secret").as<int>(), 7);
+}
+
+TEST_F(Gateways, EventsArrive) {
+  const auto bench = rig.connect();
+  Kept<std::string> got;
+  const auto subscription = bench->on_event("stopped", [&](const dynamic::List& arguments) {
+    got.add(arguments[0].text() + std::to_string(arguments[1].as<int>()));
+  });
+  ASSERT_TRUE(comes_true([&] {
+    rig.robot.bench().fire("stopped", {"end", 4});
+    return got.size() > 0;
+  }));
+  EXPECT_EQ(got.items()[0], "end4");
+}
+
+TEST_F(Gateways, WiresHaveTheNewestValue) {
+  const auto bench = rig.connect();
+  auto force = bench->wire("force").connect();
+  rig.robot.bench().wire("force").set_in(3.5);
+  ASSERT_TRUE(comes_true([&] {
+    const auto value = force.try_in();
+    return value && value->value.as<double>() == 3.5;
+  }));
+  for (int i = 0; i < 1'000; ++i) rig.robot.bench().wire("force").set_in(i);
+  EXPECT_TRUE(comes_true([&] { return force.in().as<double>() == 999; }));
+  EXPECT_EQ(bench->wire("force").peek_in().value.as<double>(), 999);
+  const auto retained = broker.retained("rr/hall/robot/bench/force");
+  ASSERT_TRUE(retained.has_value());
+  EXPECT_EQ(retained->find("type"), "double");
+  EXPECT_EQ(retained->payload.size(), 19U);
+}
+
+TEST(GatewayWires, AreHeldToTheirRate) {
+  MemoryBroker broker;
+  Rig rig([&] { return broker.carrier(); }, milliseconds(20'000),
+          "[[service.allow]]\nmembers = [\"force\"]\naccess = [\"read\"]\nrate = \"5/s\"\n"
+          "lifespan = \"7 s\"\n");
+  const auto bench = rig.connect();
+  auto force = bench->wire("force").connect();
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i <= 100; ++i) {
+    rig.robot.bench().wire("force").set_in(i);
+    std::this_thread::sleep_for(milliseconds(5));
+  }
+  EXPECT_TRUE(comes_true([&] {
+    const auto value = force.try_in();
+    return value && value->value.as<double>() == 100;
+  }));
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+  EXPECT_LE(broker.published("rr/hall/robot/bench/force"), 5 * time.count() + 2);
+  EXPECT_EQ(broker.retained("rr/hall/robot/bench/force")->expiry, std::chrono::seconds(7));
+}
+
+TEST_F(Gateways, ValuesForWiresReachTheRobot) {
+  const auto bench = rig.connect();
+  bench->wire("target").poke_out(2.5);
+  EXPECT_TRUE(comes_true([&] {
+    const auto value = rig.robot.bench().wire("target").out();
+    return value && value->value.as<double>() == 2.5;
+  }));
+}
+
+TEST_F(Gateways, ObjectsBelowTheRootAreReached) {
+  const auto bench = rig.connect();
+  const auto tool = bench->object("tools", "left hand");
+  EXPECT_EQ(tool.type_name(), "test.bench.Tool");
+  EXPECT_EQ(tool.get("width").as<double>(), 2.5);
+  Kept<int> opened;
+  const auto subscription = tool.on_event(
+      "opened", [&](const dynamic::List& arguments) { opened.add(arguments[0].as<int>()); });
+  ASSERT_TRUE(comes_true([&] {
+    tool.call("open");
+    return opened.size() > 0;
+  }));
+  EXPECT_NE(code_of([&] { return bench->object("tools", "right").get("width"); }), ErrorCode::none);
+}
+
+TEST_F(Gateways, PacketsArriveOnceAndInOrderThroughABadBroker) {
+  const auto bench = rig.connect();
+  auto samples = bench->pipe("samples").connect();
+  Kept<std::uint32_t> got;
+  const auto subscription =
+      samples.on_packet([&](const dynamic::Value& packet) { got.add(packet.as<std::uint32_t>()); });
+  ASSERT_TRUE(comes_true([&] {
+    rig.robot.bench().pipe("samples").send(0);
+    return got.size() > 0;
+  }));
+  const std::size_t before = got.size();
+  broker.set_faults({.dropped = 0.2, .twice = 0.2, .delay = milliseconds(10)});
+  for (std::uint32_t i = 1; i <= 2'000; ++i) {
+    rig.robot.bench().pipe("samples").send(i);
+    if (i == 700) broker.cut();
+    if (i == 1'400) {
+      broker.crash();
+      broker.restart();
+    }
+  }
+  // Those that were sent until the first arrived are zeros, too.
+  ASSERT_TRUE(comes_true([&] { return !got.items().empty() && got.items().back() == 2'000; }));
+  const auto items = got.items();
+  std::uint32_t expected = 0;
+  for (std::size_t i = before; i < items.size(); ++i) {
+    if (items[i] == 0 && expected == 0) continue;
+    ASSERT_EQ(items[i], ++expected);
+  }
+  EXPECT_EQ(expected, 2'000U);
+  EXPECT_TRUE(samples.is_open());
+}
+
+TEST_F(Gateways, ACallIsExecutedOnceThoughEverythingIsRepeated) {
+  const auto bench = rig.connect();
+  broker.set_faults({.dropped = 0.3, .twice = 0.5, .delay = milliseconds(5)});
+  for (int i = 1; i <= 40; ++i) EXPECT_EQ(bench->call("count").as<int>(), i);
+  EXPECT_EQ(rig.robot.counted(), 40);
+  EXPECT_GT(broker.published("rr/hall/robot/bench/$call/#"), 40U);
+}
+
+TEST_F(Gateways, ACallWaitsForTheBroker) {
+  const auto bench = rig.connect();
+  broker.crash();
+  std::thread later([&] {
+    std::this_thread::sleep_for(milliseconds(200));
+    broker.restart();
+  });
+  EXPECT_EQ(bench->call("count").as<int>(), 1);
+  later.join();
+  EXPECT_EQ(rig.robot.counted(), 1);
+}
+
+TEST_F(Gateways, TheExportingGatewayIsRestarted) {
+  const auto bench = rig.connect();
+  EXPECT_EQ(bench->call("count").as<int>(), 1);
+  auto samples = bench->pipe("samples").connect();
+  ASSERT_TRUE(comes_true([&] {
+    rig.robot.bench().pipe("samples").send(1);
+    return samples.try_receive().has_value();
+  }));
+  rig.stop_export();
+  EXPECT_TRUE(comes_true([&] {
+    const auto life = broker.retained("rr/hall/robot/$life");
+    return life && life->payload.size() == 5;  // "ended"
+  }));
+  rig.start_export();
+  EXPECT_EQ(bench->call("count").as<int>(), 2);
+  EXPECT_EQ(bench->get("speed").as<double>(), 0.5);
+  // What the robot has sent meanwhile is lost: the client is told by the end of its endpoint.
+  EXPECT_TRUE(comes_true([&] { return !samples.is_open(); }));
+  samples = bench->pipe("samples").connect();
+  EXPECT_TRUE(comes_true([&] {
+    rig.robot.bench().pipe("samples").send(2);
+    const auto packet = samples.try_receive();
+    return packet && packet->as<int>() == 2;
+  }));
+}
+
+TEST_F(Gateways, AnswersGoNowhereElse) {
+  rig.connect();
+  struct Handler final : CarrierHandler {
+    void on_message(Message) override {}
+    void on_connected() override { connected.add(1); }
+    void on_disconnected(const std::string&) override {}
+    void on_room() override {}
+    void on_refused(const std::string&) override {}
+    Kept<int> connected;
+  } handler;
+  const auto carrier = broker.carrier();
+  carrier->start(handler, {});
+  ASSERT_TRUE(handler.connected.wait_for(1));
+  Message request{"rr/hall/robot/bench/$get/eve/speed", {}};
+  request.correlation = Bytes(4);
+  request.response_topic = "rr/hall/robot/bench/force";
+  ASSERT_EQ(carrier->publish(request), Published::taken);
+  request.response_topic = "rr/$reply/eve/1";
+  ASSERT_EQ(carrier->publish(request), Published::taken);
+  EXPECT_TRUE(comes_true([&] { return broker.published("rr/$reply/eve/1") == 1; }));
+  EXPECT_EQ(broker.published("rr/hall/robot/bench/force"), 0U);
+  carrier->stop({});
+}
+
+TEST_F(Gateways, AnAnswerThatIsTooLargeForTheBrokerIsAnError) {
+  const auto bench = rig.connect();
+  broker.set_faults({.largest = 100});
+  const auto pose = dynamic::Value::record({{"x", 4}, {"q", dynamic::List{}}});
+  std::string text;
+  EXPECT_EQ(code_of([&] { bench->call("fail", {std::string(200, 'x')}); }, &text),
+            ErrorCode::buffer_limit_violation);
+  EXPECT_THAT(text, ::testing::HasSubstr("the request is too large"));
+  rig.robot.bench().store("pose",
+                          dynamic::Value::record({{"x", 1}, {"q", std::vector<double>(100)}}));
+  EXPECT_EQ(code_of([&] { return bench->get("pose"); }, &text), ErrorCode::buffer_limit_violation);
+  EXPECT_THAT(text, ::testing::HasSubstr("the answer is too large"));
+}
+
+constexpr const char* hub_is_operator =
+    "[[service.user]]\nbroker = \"hub\"\nservice = \"operator\"\npassword_file = \"secret\"\n";
+
+TEST(GatewayUsers, AreThoseOfTheService) {
+  MemoryBroker broker;
+  Rig rig([&] { return broker.carrier(); }, milliseconds(20'000), hub_is_operator, "open sesame");
+  EXPECT_EQ(rig.connect()->call("whoami").text(), "operator");
+}
+
+TEST(GatewayUsers, WithoutAnEntryTheyAreTheGateway) {
+  MemoryBroker broker;
+  Rig rig([&] { return broker.carrier(); });
+  EXPECT_EQ(rig.connect()->call("whoami").text(), "gateway");
+}
+
+TEST(GatewayUsers, AWrongPasswordIsReported) {
+  MemoryBroker broker;
+  Rig rig([&] { return broker.carrier(); }, milliseconds(20'000), hub_is_operator, "wrong");
+  const auto bench = rig.connect();
+  EXPECT_EQ(code_of([&] { return bench->call("whoami"); }), ErrorCode::authentication_error);
+}
+
+TEST(GatewayTrouble, ACallThatWasGivenUpIsNotExecutedLater) {
+  MemoryBroker broker;
+  Rig rig([&] { return broker.carrier(); }, milliseconds(600));
+  const auto bench = rig.connect();
+  broker.crash();
+  EXPECT_EQ(code_of([&] { return bench->call("count"); }), ErrorCode::connection_error);
+  broker.restart();
+  EXPECT_TRUE(
+      comes_true([&] { return code_of([&] { return bench->get("speed"); }) == ErrorCode::none; }));
+  EXPECT_EQ(bench->call("count").as<int>(), 1);
+  EXPECT_EQ(broker.published("rr/hall/robot/bench/$call/hub/count"), 1U);
+}
+
+TEST(GatewayTrouble, ARobotThatIsNotThereIsReportedOnce) {
+  MemoryBroker broker;
+  const testing::Folder folder;
+  Kept<std::string> log;
+  ExportFile file;
+  file.site = "hall";
+  file.node = "robot";
+  file.state_folder = folder.path();
+  ExportedServiceOptions arm;
+  arm.name = "arm";
+  arm.url = "rr+tcp://localhost:1/?service=arm";
+  file.services.push_back(arm);
+  const auto carrier = broker.carrier();
+  const Exporter exporter(file, *carrier,
+                          [&](LogLevel, const std::string& text) { log.add(text); });
+  const auto reports = [&] {
+    const auto lines = log.items();
+    return std::ranges::count_if(lines, [](const auto& line) { return line.starts_with("arm: "); });
+  };
+  EXPECT_TRUE(comes_true([&] { return reports() > 0; }));
+  EXPECT_TRUE(comes_true([&] {
+    const auto life = broker.retained("rr/hall/robot/arm/$life");
+    return life && life->find("reason") &&
+           life->find("reason")->find("Connection") != std::string::npos;
+  }));
+  EXPECT_EQ(reports(), 1);
+}
+
+TEST(GatewayTrouble, ErrorsSayWhereItFailed) {
+  MemoryBroker broker;
+  Rig rig([&] { return broker.carrier(); }, milliseconds(600));
+  const auto bench = rig.connect();
+  std::string text;
+  rig.stop_export();
+  EXPECT_EQ(code_of([&] { return bench->get("speed"); }, &text), ErrorCode::connection_error);
+  EXPECT_THAT(text,
+              ::testing::HasSubstr("the gateway of the robot hall/robot is not at the broker"));
+  broker.crash();
+  EXPECT_EQ(code_of([&] { return bench->get("speed"); }, &text), ErrorCode::connection_error);
+  EXPECT_THAT(text, ::testing::HasSubstr("no connection to the broker"));
+}
+
+}  // namespace
+}  // namespace rr::gateway

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <pthread.h>
+#include <signal.h>
+
+#include <iostream>
+#include <utility>
+
+#include "gateway/exporter.hpp"
+#include "gateway/mqtt_carrier.hpp"
+#include "gateway/program_options.hpp"
+#include "gateway/server.hpp"
+#include "rr/error.hpp"
+#include "rr/printable.hpp"
+#include "rr/setup.hpp"
+#include "rr/version.hpp"
+
+namespace rr::gateway {
+namespace {
+
+constexpr int wrong_use = 2;
+
+void log(LogLevel level, const std::string& text) {
+  constexpr const char* names[] = {"debug", "info", "warning", "error"};
+  const std::string line =
+      std::string(names[static_cast<int>(level)]) + ": " + printable(text) + "\n";
+  std::cerr << line << std::flush;
+}
+
+/// Blocks the signals before there are threads.
+sigset_t end_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  return signals;
+}
+
+void wait_for(const sigset_t& signals) {
+  int number = 0;
+  sigwait(&signals, &number);
+}
+
+std::unique_ptr<Carrier> carrier_to(const BrokerOptions& broker) {
+  return make_mqtt_carrier({broker.url, broker.user, broker.password});
+}
+
+void run_export(const std::string& path, const sigset_t& signals) {
+  ExportFile file = read_export_file(path);
+  const auto carrier = carrier_to(file.broker);
+  const Exporter exporter(std::move(file), *carrier, log);
+  wait_for(signals);
+}
+
+void run_serve(const ProgramOptions& options, SetupOptions setup, const sigset_t& signals) {
+  const NodeSetup node(std::move(setup));
+  const auto carrier = carrier_to(options.broker);
+  const Server server(options.server, node.node(), *carrier, log);
+  wait_for(signals);
+}
+
+int run(int count, char** words) {
+  const sigset_t signals = end_signals();
+  SetupOptions setup = SetupOptions::server("robdef.gateway", 0);
+  const ProgramOptions options = read_options(setup.take(count, words));
+  switch (options.task) {
+    case ProgramOptions::Task::help:
+      std::cout << program_help;
+      break;
+    case ProgramOptions::Task::version:
+      std::cout << "robdef-gateway " << library_version() << "\n";
+      break;
+    case ProgramOptions::Task::export_file:
+      run_export(options.export_file, signals);
+      break;
+    case ProgramOptions::Task::serve:
+      run_serve(options, std::move(setup), signals);
+      break;
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace rr::gateway
+
+int main(int count, char** words) {
+  try {
+    return rr::gateway::run(count, words);
+  } catch (const rr::Error& error) {
+    std::cerr << "robdef-gateway: " << error.message() << "\n";
+    return error.code() == rr::ErrorCode::invalid_argument ? rr::gateway::wrong_use : 1;
+  }
+}

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/program_options.hpp"
+
+#include <utility>
+
+#include "gateway/topics.hpp"
+#include "rr/error.hpp"
+
+namespace rr::gateway {
+namespace {
+
+[[noreturn]] void refuse_word(const std::string& what) {
+  throw Error(ErrorCode::invalid_argument, what + "; see robdef-gateway --help");
+}
+
+/// `site/node/service` or `site/node/service=name`.
+ServedService served_service(const std::string& word) {
+  const std::size_t equals = word.find('=');
+  const std::string address = word.substr(0, equals);
+  const std::size_t first = address.find('/');
+  const std::size_t second = address.find('/', first + 1);
+  if (first == std::string::npos || second == std::string::npos) {
+    refuse_word("`" + word + "` is not of the form site/node/service");
+  }
+  ServedService service;
+  service.address = {address.substr(0, first), address.substr(first + 1, second - first - 1),
+                     address.substr(second + 1)};
+  for (const std::string& level :
+       {service.address.site, service.address.node, service.address.service}) {
+    if (!is_level_name(level)) refuse_word("`" + word + "` is not of the form site/node/service");
+  }
+  service.name = equals == std::string::npos ? service.address.service : word.substr(equals + 1);
+  return service;
+}
+
+class Words {
+ public:
+  explicit Words(const std::vector<std::string>& words) : words_(words) {}
+
+  ProgramOptions read() {
+    while (at_ < words_.size()) take(words_[at_++]);
+    if (options_.task == ProgramOptions::Task::serve) check_serve();
+    return std::move(options_);
+  }
+
+ private:
+  using Task = ProgramOptions::Task;
+
+  const std::string& value(const std::string& flag) {
+    if (at_ == words_.size()) refuse_word("`" + flag + "` needs a value");
+    return words_[at_++];
+  }
+
+  void take(const std::string& word) {
+    if (word == "--help" || word == "--version") {
+      options_.task = word == "--help" ? Task::help : Task::version;
+      at_ = words_.size();
+    } else if (word == "--serve") {
+      options_.task = Task::serve;
+      options_.server.services.push_back(served_service(value(word)));
+    } else if (word == "--broker") {
+      options_.broker.url = value(word);
+    } else if (word == "--reader") {
+      options_.server.reader = value(word);
+    } else if (word == "--user") {
+      options_.broker.user = value(word);
+    } else if (word == "--password-file") {
+      options_.broker.password = read_secret(value(word));
+    } else if (word.starts_with("-") || !options_.export_file.empty()) {
+      refuse_word("`" + word + "` is not expected");
+    } else {
+      options_.task = Task::export_file;
+      options_.export_file = word;
+    }
+  }
+
+  void check_serve() {
+    if (!options_.export_file.empty())
+      refuse_word("`" + options_.export_file + "` is not expected");
+    if (options_.broker.url.empty()) refuse_word("`--serve` needs `--broker`");
+    if (!is_level_name(options_.server.reader))
+      refuse_word("`--serve` needs `--reader` with a name");
+    options_.server.user = options_.broker.user;
+  }
+
+  const std::vector<std::string>& words_;
+  std::size_t at_ = 0;
+  ProgramOptions options_;
+};
+
+}  // namespace
+
+const char* const program_help =
+    R"(Brings robots to an MQTT 5 broker, and back: docs/howto/fleet.md.
+
+  robdef-gateway FILE
+      Exports services of a robot to a broker, as the export file says.
+  robdef-gateway --serve SITE/NODE/SERVICE[=NAME] --broker URL --reader NAME
+      Offers services of robots at a broker as ordinary services. Several --serve are allowed.
+
+  --broker URL           mqtt://host or mqtt://host:port
+  --reader NAME          the name by which export files declare this reader
+  --user NAME            user of the broker; without it the reader's name stands in topics
+  --password-file FILE   that user's password
+  --robotraconteur-...   flags of the node that serves, as --robotraconteur-tcp-port=2355
+
+It ends with SIGINT or SIGTERM.
+)";
+
+ProgramOptions read_options(const std::vector<std::string>& words) { return Words(words).read(); }
+
+}  // namespace rr::gateway

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gateway/program_options.hpp"
+
+#include <gtest/gtest.h>
+
+#include "rr/error.hpp"
+
+namespace rr::gateway {
+namespace {
+
+using Task = ProgramOptions::Task;
+
+TEST(GatewayOptions, AFileIsExported) {
+  const auto options = read_options({"robot.toml"});
+  EXPECT_EQ(options.task, Task::export_file);
+  EXPECT_EQ(options.export_file, "robot.toml");
+}
+
+TEST(GatewayOptions, ServicesAreServed) {
+  const auto options = read_options({"--serve", "hall/r1/arm", "--serve", "hall/r2/arm=arm2",
+                                     "--broker", "mqtt://hub", "--reader", "desk"});
+  ASSERT_EQ(options.task, Task::serve);
+  ASSERT_EQ(options.server.services.size(), 2U);
+  EXPECT_EQ(options.server.services[0].address, (ServiceAddress{"hall", "r1", "arm"}));
+  EXPECT_EQ(options.server.services[0].name, "arm");
+  EXPECT_EQ(options.server.services[1].name, "arm2");
+  EXPECT_EQ(options.server.reader, "desk");
+}
+
+TEST(GatewayOptions, WhatIsMissingOrUnknownIsRefused) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"--serve"},
+        {"--serve", "hall/r1", "--broker", "x", "--reader", "y"},
+        {"--serve", "hall/r1/arm", "--reader", "y"},
+        {"--serve", "hall/r1/arm", "--broker", "x"},
+        {"--what"},
+        {"one", "two"},
+        {"one", "--serve", "a/b/c", "--broker", "x", "--reader", "y"}}) {
+    EXPECT_THROW(static_cast<void>(read_options(words)), Error) << words[0];
+  }
+}
+
+TEST(GatewayOptions, HelpWins) {
+  EXPECT_EQ(read_options({}).task, Task::help);
+  EXPECT_EQ(read_options({"--help", "--nonsense"}).task, Task::help);
+}
+
+}  // namespace
+}  // namespace rr::gateway

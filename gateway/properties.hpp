@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <string>
+#include <string_view>
+
+#include "gateway/carrier.hpp"
+
+/// Texts and numbers in messages.
+namespace rr::gateway {
+
+/// The bytes of a text.
+inline Bytes bytes_of(std::string_view text) {
+  const auto* const bytes = reinterpret_cast<const std::byte*>(text.data());
+  return {bytes, bytes + text.size()};
+}
+
+/// The reverse.
+inline std::string text_of(const Bytes& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// 16 hexadecimal digits.
+inline std::string hex_text(std::uint64_t number) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string text(16, '0');
+  for (std::size_t i = 16; i-- > 0; number >>= 4U) text[i] = digits[number & 0xFU];
+  return text;
+}
+
+/// The same of a random number.
+inline std::string random_hex() {
+  std::random_device device;
+  return hex_text((std::uint64_t{device()} << 32U) | device());
+}
+
+/// A property as a number; nothing for what is none.
+inline std::optional<std::uint64_t> number_property(const Message& message, std::string_view name,
+                                                    int base = 10) {
+  const auto text = message.find(name);
+  if (!text) return std::nullopt;
+  std::uint64_t number = 0;
+  const char* const end = text->data() + text->size();
+  const auto result = std::from_chars(text->data(), end, number, base);
+  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
+  return number;
+}
+
+}  // namespace rr::gateway

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gateway/exporter.hpp"
+#include "gateway/topics.hpp"
+
+namespace rr::gateway {
+
+/// A far robot's service, and its name here.
+struct ServedService {
+  ServiceAddress address;
+  std::string name;  ///< of the service at this node
+};
+
+/// How far robots are offered.
+struct ServerOptions {
+  std::vector<ServedService> services;
+  std::string reader;                       ///< as export files declare it
+  std::string user;                         ///< of the broker; empty: as `reader`
+  std::chrono::milliseconds limit{10'000};  ///< of each request to a robot
+  std::chrono::milliseconds repeat{1'000};  ///< of a request without an answer
+};
+
+/// The gateway beside clients: offers services of far robots, found on a broker, as ordinary
+/// services of a node. They appear as soon as the broker has their definitions.
+class Server {
+ public:
+  /// Starts the carrier. Node and carrier must outlive it; handlers of the node wait for robots, so
+  /// it needs threads. Throws rr::Error (invalid_argument) for names.
+  Server(ServerOptions options, Node& node, Carrier& carrier, Log log);
+  /// Closes the services.
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+ private:
+  class Core;
+  std::unique_ptr<Core> core_;
+};
+
+}  // namespace rr::gateway

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/call_window.hpp"
+#include "gateway/exporter.hpp"
+#include "gateway/outbox.hpp"
+#include "gateway/properties.hpp"
+#include "gateway/robot_session.hpp"
+#include "gateway/stream_writer.hpp"
+#include "gateway/topics.hpp"
+#include "gateway/worker.hpp"
+
+namespace rr::gateway {
+
+/// One service of an export file. Everything happens on the worker's thread, but for what the
+/// robot's node calls, which posts to it.
+class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
+ public:
+  /// What services of one gateway share; outlives them.
+  struct Shared {
+    Worker& worker;
+    Outbox& outbox;
+    Log log;
+    Function<void()> pump;  ///< something can be published; on the worker's thread
+  };
+
+  /// Throws as CallWindow.
+  ServiceExporter(ServiceAddress address, ExportedServiceOptions options, std::string folder,
+                  Shared shared);
+  ~ServiceExporter() = default;
+  ServiceExporter(const ServiceExporter&) = delete;
+  ServiceExporter& operator=(const ServiceExporter&) = delete;
+
+  /// Begins to connect to the robot.
+  void connect(Node& node);
+  /// What the carrier has to subscribe to.
+  [[nodiscard]] std::vector<std::string> filters() const;
+  /// A message of one of these. False when it is none of this service.
+  bool take(const Message& message);
+  /// The broker is there, perhaps without what was retained: all of it is published anew.
+  void broker_connected();
+  /// Streams and wires have their turn. False when the carrier takes no more for now.
+  bool pump(Carrier& carrier);
+  /// To be called often.
+  void tick();
+
+ private:
+  /// The newest value of a wire. Filled on threads of the node.
+  struct WireExport {
+    std::string topic;
+    dynamic::ValueType type;
+    std::chrono::nanoseconds period{0};
+    std::optional<std::chrono::seconds> lifespan;
+    std::mutex mutex;
+    std::optional<Timed<dynamic::Value>> newest;  // under the mutex
+    bool is_announced = false;                    // under the mutex
+    std::uint64_t number = 0;
+    std::optional<Message> message;  // that is to be published
+    std::chrono::steady_clock::time_point due{};
+    Message last;
+  };
+  struct StreamExport {
+    std::unique_ptr<StreamWriter> writer;
+    std::chrono::steady_clock::time_point ticked{};
+  };
+  using Self = std::shared_ptr<ServiceExporter>;
+  using Weak = std::weak_ptr<ServiceExporter>;
+
+  // service_streams.cpp
+  void robot_connected(const dynamic::Object& root);
+  void robot_disconnected(const std::string& reason);
+  void publish_definitions(const dynamic::Object& root);
+  void publish_life(std::string_view life, const std::string& reason);
+  void retain(Message message);
+  void attach_path(const std::string& path);
+  void attach_members(const std::string& path, const dynamic::Object& object);
+  void attach_wire(const std::string& path, const dynamic::Object& object,
+                   const dynamic::MemberDescription& member, const ExportRule& rule);
+  void attach_pipe(const std::string& path, const dynamic::Object& object,
+                   const dynamic::MemberDescription& member);
+  void attach_event(const std::string& path, const dynamic::Object& object,
+                    const dynamic::MemberDescription& member);
+  void take_value(const std::shared_ptr<WireExport>& wire, const dynamic::Value& value,
+                  const TimeSpec& time);
+  bool pump_wire(WireExport& wire, Carrier& carrier);
+  StreamExport* stream(const std::string& path, const std::string& member, bool makes);
+  StreamExport* begin_stream(const std::string& path, const std::string& member);
+  void take_record(StreamExport* stream,
+                   const std::vector<dynamic::ParameterDescription>& parameters,
+                   const dynamic::List& values);
+  void append(StreamExport& stream, const std::vector<dynamic::ParameterDescription>& parameters,
+              const dynamic::List& values);
+  void append_broken(StreamExport& stream);
+
+  // service_requests.cpp
+  void handle(const RequestTopic& request, const Message& message);
+  bool is_reachable(const RequestTopic& request, const Message& message);
+  void handle_stream(const RequestTopic& request, const Message& message);
+  void execute(const RequestTopic& request, const Message& message);
+  void execute_once(const RequestTopic& request, const Message& message);
+  void perform(const RequestTopic& request, const Message& message, const dynamic::Object& object,
+               const Function<void(std::exception_ptr, Bytes, std::string)>& done);
+  void answer(const RequestTopic& request, const Message& message, Message result);
+  void answer_error(const RequestTopic& request, const Message& message,
+                    const std::exception_ptr& error, std::string_view at);
+  std::shared_ptr<RobotSession> session_of(const std::string& user);
+
+  ServiceAddress address_;
+  ExportedServiceOptions options_;
+  std::string folder_;
+  Shared shared_;
+  const std::string epoch_ = random_hex();  // of numbers of wires
+  Node* node_ = nullptr;
+  CallWindow window_;
+  std::shared_ptr<RobotSession> session_;
+  std::map<std::string, std::shared_ptr<RobotSession>> user_sessions_;  // by user of the broker
+  std::map<std::string, Message> retained_;                             // by topic
+  std::map<std::string, std::shared_ptr<WireExport>> wires_;            // by topic
+  std::map<std::string, StreamExport> streams_;                         // by topic
+  std::string trouble_;           // why the robot is not connected, as was reported
+  std::uint64_t connection_ = 0;  // counts connections to the robot
+  // Their handlers last as long. Kept until the robot is connected again: what it had sent before
+  // is still on its way.
+  std::vector<dynamic::Object> attached_;
+};
+
+/// Nanoseconds since 1970, UTC.
+std::int64_t wall_time();
+
+}  // namespace rr::gateway

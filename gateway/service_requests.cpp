@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is asked of a service.
+#include <utility>
+
+#include "gateway/elements.hpp"
+#include "gateway/properties.hpp"
+#include "gateway/service_exporter.hpp"
+#include "rr/error.hpp"
+
+namespace rr::gateway {
+namespace {
+
+constexpr std::size_t longest_id = 128;
+
+Allowed access_of(Verb verb) {
+  if (verb == Verb::call) return calling;
+  return verb == Verb::set || verb == Verb::poke ? writing : reading;
+}
+
+/// Whether asking twice makes a difference.
+bool has_effect(Verb verb) { return verb == Verb::set || verb == Verb::call; }
+
+/// `id` of a user in the window.
+std::string id_of(const RequestTopic& request, const Message& message) {
+  return request.user + " " +
+         std::string(reinterpret_cast<const char*>(message.correlation.data()),
+                     message.correlation.size());
+}
+
+}  // namespace
+
+bool ServiceExporter::take(const Message& message) {
+  const auto request = parse_request_topic(address_, message.topic);
+  if (!request) return false;
+  if (request->verb == Verb::stream || request->verb == Verb::confirm) {
+    handle_stream(*request, message);
+  } else {
+    handle(*request, message);
+  }
+  return true;
+}
+
+// Whether there is a rule for the object at a path is for its members to say.
+void ServiceExporter::handle(const RequestTopic& request, const Message& message) {
+  if (message.correlation.empty() || message.correlation.size() > longest_id) return;
+  const bool is_allowed =
+      request.verb == Verb::object ||
+      find_rule(options_, request.user, request.path, request.member, access_of(request.verb));
+  if (!is_allowed) {
+    answer_error(
+        request, message,
+        error_pointer(ErrorCode::permission_denied,
+                      "the export file of the robot does not allow " + request.user + " to " +
+                          std::string(verb_name(request.verb)) + " `" + request.member + "`"),
+        "gateway");
+  } else if (has_effect(request.verb)) {
+    execute_once(request, message);
+  } else if (is_reachable(request, message)) {
+    execute(request, message);
+  }
+}
+
+// While the first attempt to connect goes on there is no answer: the request comes again.
+bool ServiceExporter::is_reachable(const RequestTopic& request, const Message& message) {
+  std::optional<Error> reason;
+  if (session_of(request.user)->is_connected(reason)) return true;
+  if (reason) {
+    const bool is_login = reason->code() == ErrorCode::authentication_error;
+    answer_error(
+        request, message,
+        error_pointer(is_login ? reason->code() : ErrorCode::connection_error,
+                      "the gateway is not connected to the robot's service: " + reason->message()),
+        "robot");
+  }
+  return false;
+}
+
+void ServiceExporter::handle_stream(const RequestTopic& request, const Message& message) {
+  if (find_rule(options_, "", request.path, request.member, reading) == nullptr) return;
+  const auto reader = message.find("reader");
+  StreamExport* const found = stream(request.path, request.member, false);
+  if (found == nullptr || !reader || !is_level_name(*reader)) return;
+  if (request.verb == Verb::confirm) {
+    const auto epoch = number_property(message, "stream", 16);
+    const auto number = number_property(message, "number");
+    if (epoch && number) found->writer->confirm(std::string(*reader), *epoch, *number);
+  } else if (is_reply_topic(message.response_topic, request.user)) {
+    const auto from = number_property(message, "from");
+    const auto count = number_property(message, "count");
+    if (from && count) {
+      found->writer->ask(std::string(*reader), *from, *count, message.response_topic);
+    }
+    shared_.pump();
+  }
+}
+
+void ServiceExporter::execute_once(const RequestTopic& request, const Message& message) {
+  const std::string id = id_of(request, message);
+  switch (window_.state(id)) {
+    case CallWindow::State::running:
+      return;
+    case CallWindow::State::answered:
+      answer(request, message, window_.answer(id));
+      return;
+    case CallWindow::State::interrupted:
+      answer_error(
+          request, message,
+          error_pointer(ErrorCode::operation_aborted,
+                        "the robot's gateway ended while this ran: it may have been executed"),
+          "gateway");
+      return;
+    case CallWindow::State::unknown:
+      break;
+  }
+  if (!is_reachable(request, message)) return;
+  try {
+    window_.begin(id, wall_time());
+  } catch (const Error&) {
+    answer_error(request, message, std::current_exception(), "gateway");
+    return;
+  }
+  execute(request, message);
+}
+
+void ServiceExporter::execute(const RequestTopic& request, const Message& message) {
+  const auto done = [weak = Weak(shared_from_this()), request, message](
+                        const std::exception_ptr& error, const Bytes& payload,
+                        const std::string& type) {
+    const Self self = weak.lock();
+    if (!self) return;
+    self->shared_.worker.post([weak, request, message, error, payload, type] {
+      const Self exporter = weak.lock();
+      if (!exporter) return;
+      if (error) {
+        exporter->answer_error(request, message, error, "robot");
+      } else {
+        exporter->answer(request, message, {"", payload, {{"type", type}}});
+      }
+    });
+  };
+  session_of(request.user)
+      ->find(request.path, [weak = Weak(shared_from_this()), request, message, done](
+                               const std::exception_ptr& error, const dynamic::Object& object) {
+        const Self self = weak.lock();
+        if (!self) return;
+        try {
+          if (error) std::rethrow_exception(error);
+          self->perform(request, message, object, done);
+        } catch (...) {
+          done(std::current_exception(), {}, {});
+        }
+      });
+}
+
+// On a thread of the node. Uses nothing that changes.
+void ServiceExporter::perform(const RequestTopic& request, const Message& message,
+                              const dynamic::Object& object,
+                              const Function<void(std::exception_ptr, Bytes, std::string)>& done) {
+  const dynamic::Definitions definitions = object.types();
+  const auto give = [done](const dynamic::ValueType& type) {
+    return [done, type](const std::exception_ptr& error, const dynamic::Value& value) {
+      if (error) {
+        done(error, {}, {});
+        return;
+      }
+      try {
+        done(nullptr, encode_element(type, value), type.text());
+      } catch (...) {
+        done(std::current_exception(), {}, {});
+      }
+    };
+  };
+  const auto end = [done](const std::exception_ptr& error) { done(error, {}, {}); };
+  if (request.verb == Verb::object) {
+    done(nullptr, {}, object.type_name());
+    return;
+  }
+  const dynamic::MemberDescription member = object.member(request.member);
+  if (request.verb == Verb::get) {
+    object.async_get(member.name, give(member.type));
+  } else if (request.verb == Verb::set) {
+    object.async_set(member.name, decode_element(definitions, member.type, message.payload), end);
+  } else if (request.verb == Verb::poke) {
+    object.wire(member.name)
+        .async_poke_out(decode_element(definitions, member.type, message.payload), end);
+  } else {
+    object.async_call(member.name,
+                      decode_arguments(definitions, member.parameters, message.payload),
+                      give(member.type));
+  }
+}
+
+std::shared_ptr<RobotSession> ServiceExporter::session_of(const std::string& user) {
+  const auto mapped = options_.users.find(user);
+  if (mapped == options_.users.end()) return session_;
+  auto& session = user_sessions_[user];
+  if (!session) session = RobotSession::open(*node_, options_.url, mapped->second, {});
+  return session;
+}
+
+void ServiceExporter::answer(const RequestTopic& request, const Message& message, Message result) {
+  if (has_effect(request.verb)) window_.end(id_of(request, message), result, wall_time());
+  // Whoever asks must not make this gateway publish elsewhere.
+  if (!is_reply_topic(message.response_topic, request.user)) return;
+  result.topic = message.response_topic;
+  result.correlation = message.correlation;
+  shared_.outbox.add(std::move(result));
+  shared_.pump();
+}
+
+void ServiceExporter::answer_error(const RequestTopic& request, const Message& message,
+                                   const std::exception_ptr& error, std::string_view at) {
+  Message result;
+  set_error(result, error, at);
+  answer(request, message, std::move(result));
+}
+
+}  // namespace rr::gateway

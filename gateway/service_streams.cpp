@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a service sends by itself: definitions, life, wires, pipes and events.
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+#include "gateway/elements.hpp"
+#include "gateway/properties.hpp"
+#include "gateway/service_exporter.hpp"
+#include "rr/error.hpp"
+
+namespace rr::gateway {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// As a folder is called: no separators of folders are in a path.
+std::string folder_name(const std::string& path, const std::string& member) {
+  return path.empty() ? member : path + "." + member;
+}
+
+}  // namespace
+
+void ServiceExporter::robot_connected(const dynamic::Object& root) {
+  ++connection_;
+  trouble_.clear();
+  // Waits for handlers that run, and these wait for this thread when it has much to do.
+  shared_.worker.set_bounded(false);
+  attached_.clear();
+  shared_.worker.set_bounded(true);
+  try {
+    publish_definitions(root);
+  } catch (const Error& error) {
+    shared_.log(LogLevel::error, options_.name + ": " + error.what());
+    return;
+  }
+  publish_life("up", "");
+  std::set<std::string> paths;
+  for (const ExportRule& rule : options_.rules) {
+    const bool is_literal = rule.path.find('*') == std::string::npos;
+    if (is_literal && (rule.access & reading) != 0 && rule.users.empty()) paths.insert(rule.path);
+  }
+  for (const std::string& path : paths) attach_path(path);
+}
+
+void ServiceExporter::robot_disconnected(const std::string& reason) {
+  if (std::exchange(trouble_, reason) == reason) return;
+  shared_.log(LogLevel::warning, options_.name + ": " + reason);
+  publish_life("down", reason);
+}
+
+void ServiceExporter::publish_life(std::string_view life, const std::string& reason) {
+  Message message{service_topic(address_) + "/$life", bytes_of(life)};
+  if (!reason.empty()) message.properties.emplace_back("reason", reason);
+  retain(std::move(message));
+}
+
+void ServiceExporter::publish_definitions(const dynamic::Object& root) {
+  const dynamic::Definitions definitions = root.types();
+  const std::string topic = service_topic(address_) + "/$def";
+  std::string names;
+  for (const std::string& name : definitions.services()) {
+    names += (names.empty() ? "" : ",") + name;
+    retain({topic + "/" + name, bytes_of(definitions.text(name))});
+  }
+  const std::string type = root.type_name();
+  Message message{topic, bytes_of(definitions.text(type.substr(0, type.rfind('.'))))};
+  message.properties = {{"object", type}, {"definitions", names}};
+  retain(std::move(message));
+}
+
+void ServiceExporter::retain(Message message) {
+  message.retained = true;
+  shared_.outbox.add(message);
+  retained_[message.topic] = std::move(message);
+  shared_.pump();
+}
+
+void ServiceExporter::broker_connected() {
+  for (const auto& [topic, message] : retained_) shared_.outbox.add(message);
+  for (const auto& [topic, wire] : wires_) {
+    if (!wire->message && !wire->last.topic.empty()) wire->message = wire->last;
+  }
+  for (auto& [topic, stream] : streams_) stream.writer->announce();
+}
+
+void ServiceExporter::attach_path(const std::string& path) {
+  session_->find(path, [weak = Weak(shared_from_this()), path, connection = connection_](
+                           const std::exception_ptr& error, const dynamic::Object& object) {
+    const Self self = weak.lock();
+    if (!self) return;
+    self->shared_.worker.post([weak, path, error, object, connection] {
+      const Self exporter = weak.lock();
+      if (!exporter || exporter->connection_ != connection) return;
+      if (!error) {
+        exporter->attach_members(path, object);
+      } else {
+        exporter->shared_.log(LogLevel::warning, exporter->options_.name + ": `" + path +
+                                                     "` of the export file is not there");
+      }
+    });
+  });
+}
+
+void ServiceExporter::attach_members(const std::string& path, const dynamic::Object& object) {
+  attached_.push_back(object);
+  for (const dynamic::MemberDescription& member : object.members()) {
+    const ExportRule* const rule = find_rule(options_, "", path, member.name, reading);
+    if (rule == nullptr || (member.access & writeonly) != 0) continue;
+    if (member.kind == MemberKind::wire) attach_wire(path, object, member, *rule);
+    if (member.kind == MemberKind::pipe) attach_pipe(path, object, member);
+    if (member.kind == MemberKind::event) attach_event(path, object, member);
+  }
+}
+
+void ServiceExporter::attach_wire(const std::string& path, const dynamic::Object& object,
+                                  const dynamic::MemberDescription& member,
+                                  const ExportRule& rule) {
+  const std::string topic = member_topic(address_, path, member.name);
+  auto& wire = wires_[topic];
+  if (!wire) wire = std::make_shared<WireExport>();
+  wire->topic = topic;
+  wire->type = member.type;
+  wire->period = rule.period;
+  wire->lifespan = rule.lifespan;
+  object.wire(member.name)
+      .async_connect([weak = Weak(shared_from_this()), wire](const std::exception_ptr& error,
+                                                             dynamic::WireConnection end) {
+        if (error) return;
+        end.on_in([weak, wire](const dynamic::Value& value, const TimeSpec& time) {
+             if (const Self self = weak.lock()) self->take_value(wire, value, time);
+           })
+            .detach();
+      });
+}
+
+// Of values that come faster than they are published only the newest counts.
+void ServiceExporter::take_value(const std::shared_ptr<WireExport>& wire,
+                                 const dynamic::Value& value, const TimeSpec& time) {
+  {
+    const std::scoped_lock lock(wire->mutex);
+    wire->newest = Timed<dynamic::Value>{value, time};
+    if (std::exchange(wire->is_announced, true)) return;
+  }
+  shared_.worker.post([weak = Weak(shared_from_this())] {
+    if (const Self self = weak.lock()) self->shared_.pump();
+  });
+}
+
+bool ServiceExporter::pump_wire(WireExport& wire, Carrier& carrier) {
+  const auto now = Clock::now();
+  if (now < wire.due) return true;
+  std::optional<Timed<dynamic::Value>> newest;
+  {
+    const std::scoped_lock lock(wire.mutex);
+    newest = std::exchange(wire.newest, std::nullopt);
+    wire.is_announced = false;
+  }
+  if (newest) {
+    const auto time = newest->time.seconds * 1'000'000'000 + newest->time.nanoseconds;
+    Message message{wire.topic, encode_element(wire.type, newest->value)};
+    message.properties = {{"type", wire.type.text()},
+                          {"time", std::to_string(time)},
+                          {"stream", epoch_},
+                          {"number", std::to_string(++wire.number)}};
+    message.retained = true;
+    message.expiry = wire.lifespan;
+    wire.message = std::move(message);
+  }
+  if (!wire.message) return true;
+  if (carrier.publish(*wire.message) == Published::later) return false;
+  wire.last = *std::exchange(wire.message, std::nullopt);
+  wire.due = now + wire.period;
+  return true;
+}
+
+void ServiceExporter::attach_pipe(const std::string& path, const dynamic::Object& object,
+                                  const dynamic::MemberDescription& member) {
+  StreamExport* const stream = begin_stream(path, member.name);
+  if (stream == nullptr) return;
+  const std::vector<dynamic::ParameterDescription> one{{"value", member.type}};
+  object.pipe(member.name)
+      .async_connect([weak = Weak(shared_from_this()), stream, one](const std::exception_ptr& error,
+                                                                    dynamic::PipeEndpoint end) {
+        if (error) return;
+        end.on_packet([weak, stream, one](const dynamic::Value& packet) {
+             if (const Self self = weak.lock()) self->take_record(stream, one, {packet});
+           })
+            .detach();
+      });
+}
+
+void ServiceExporter::attach_event(const std::string& path, const dynamic::Object& object,
+                                   const dynamic::MemberDescription& member) {
+  StreamExport* const stream = begin_stream(path, member.name);
+  if (stream == nullptr) return;
+  object
+      .on_event(member.name,
+                [weak = Weak(shared_from_this()), stream,
+                 parameters = member.parameters](const dynamic::List& arguments) {
+                  if (const Self self = weak.lock())
+                    self->take_record(stream, parameters, arguments);
+                })
+      .detach();
+}
+
+// On a thread of the node, which waits while the disk is slower than the robot.
+void ServiceExporter::take_record(StreamExport* stream,
+                                  const std::vector<dynamic::ParameterDescription>& parameters,
+                                  const dynamic::List& values) {
+  shared_.worker.post_in_turn([weak = Weak(shared_from_this()), stream, parameters, values] {
+    if (const Self self = weak.lock()) self->append(*stream, parameters, values);
+  });
+}
+
+ServiceExporter::StreamExport* ServiceExporter::stream(const std::string& path,
+                                                       const std::string& member, bool makes) {
+  const std::string topic = member_topic(address_, path, member);
+  const auto known = streams_.find(topic);
+  if (known != streams_.end()) return &known->second;
+  const std::string folder = folder_ + "/" + folder_name(path, member);
+  if (!makes && !std::filesystem::exists(folder)) return nullptr;
+  try {
+    StreamExport stream{std::make_unique<StreamWriter>(
+        topic, folder, gateway::LogLimits{.bytes = options_.log_bytes, .age = options_.log_age},
+        options_.readers)};
+    return &streams_.emplace(topic, std::move(stream)).first->second;
+  } catch (const Error& error) {
+    shared_.log(LogLevel::error, error.what());
+    return nullptr;
+  }
+}
+
+ServiceExporter::StreamExport* ServiceExporter::begin_stream(const std::string& path,
+                                                             const std::string& member) {
+  StreamExport* const found = stream(path, member, true);
+  if (found != nullptr && found->writer->last() > 0) append_broken(*found);
+  return found;
+}
+
+void ServiceExporter::append(StreamExport& stream,
+                             const std::vector<dynamic::ParameterDescription>& parameters,
+                             const dynamic::List& values) {
+  try {
+    stream.writer->append(RecordKind::data, type_text(parameters),
+                          encode_arguments(parameters, values), wall_time(), Clock::now());
+  } catch (const Error& error) {
+    shared_.log(LogLevel::error, options_.name + ": a packet is lost: " + error.what());
+  }
+  shared_.pump();
+}
+
+void ServiceExporter::append_broken(StreamExport& stream) {
+  try {
+    stream.writer->append(RecordKind::broken, "", {}, wall_time(), Clock::now());
+  } catch (const Error& error) {
+    shared_.log(LogLevel::error, options_.name + ": " + error.what());
+  }
+  shared_.pump();
+}
+
+}  // namespace rr::gateway

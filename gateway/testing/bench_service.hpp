@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "rr/dynamic_service.hpp"
+#include "rr/error.hpp"
+#include "rr/node.hpp"
+
+namespace rr::gateway::testing {
+
+/// A robot with a member of each kind.
+inline const std::string bench_definition = R"(service test.bench
+stdver 0.10
+
+exception Jam
+
+enum Mode
+  off = 0, slow = 1, fast = 2
+end
+
+struct Pose
+  field double x
+  field double[] q
+end
+
+object Tool
+  property double width
+  function void open()
+  event opened(int32 count)
+end
+
+object Bench
+  property double speed
+  property Pose pose
+  property Mode mode
+  property int32 secret
+  function double add(double a, double b)
+  function string describe(string name, Pose pose)
+  function void fail(string text)
+  function int32 count()
+  function string whoami()
+  event stopped(string why, int32 code)
+  pipe uint32 samples [readonly]
+  wire double force [readonly]
+  wire double target [writeonly]
+  objref Tool{string} tools
+end
+)";
+
+/// Two users with one password.
+class TwoUsers final : public Users {
+ public:
+  [[nodiscard]] User authenticate(const std::string& name,
+                                  const std::map<std::string, VarValue>& credentials,
+                                  const NodeId&) const override {
+    const auto password = credentials.find("password");
+    if ((name == "operator" || name == "gateway") && password != credentials.end() &&
+        password->second.get<std::string>() == "open sesame") {
+      return {name};
+    }
+    throw Error(ErrorCode::authentication_error, "not this one");
+  }
+};
+
+/// Serves it at a port of this machine, in this process.
+class BenchService {
+ public:
+  BenchService()
+      : definitions_({bench_definition}),
+        bench_(definitions_, "test.bench.Bench"),
+        tool_(definitions_, "test.bench.Tool") {
+    bench_.store("speed", 0.5);
+    bench_.store("mode", "slow");
+    bench_.store("secret", 7);
+    bench_.store("pose", dynamic::Value::record({{"x", 1.5}, {"q", dynamic::List{1, 2}}}));
+    add_functions();
+    add_tool();
+    port_ = node_.listen_tcp(0);
+    ServiceOptions options;
+    options.users = std::make_shared<TwoUsers>();
+    service_.emplace(dynamic::register_service(node_, "bench", bench_, options));
+  }
+
+  [[nodiscard]] std::string url() const {
+    return "rr+tcp://localhost:" + std::to_string(port_) + "/?service=bench";
+  }
+  [[nodiscard]] const dynamic::ServedObject& bench() const { return bench_; }
+  [[nodiscard]] const dynamic::ServedObject& tool() const { return tool_; }
+  /// How often `count` was executed.
+  [[nodiscard]] int counted() const { return count_; }
+
+ private:
+  void add_functions() {
+    bench_.on_call("add", [](const dynamic::List& arguments) {
+      return arguments[0].as<double>() + arguments[1].as<double>();
+    });
+    bench_.on_call("describe", [](const dynamic::List& arguments) {
+      return arguments[0].text() + " at " + std::to_string(arguments[1]["x"].as<double>());
+    });
+    bench_.on_call("fail", [](const dynamic::List& arguments) -> dynamic::Value {
+      throw Error(ErrorCode::remote_error, "test.bench.Jam", arguments[0].text());
+    });
+    bench_.on_call("whoami", [](const dynamic::List&) {
+      const auto user = ServiceContext::current_user();
+      return user ? user->name : std::string("nobody");
+    });
+    bench_.on_call("count", [this](const dynamic::List&) { return ++count_; });
+  }
+  void add_tool() {
+    tool_.store("width", 2.5);
+    tool_.on_call("open", [tool = dynamic::WeakServedObject(tool_)](const dynamic::List&) {
+      tool.lock().fire("opened", {1});
+      return dynamic::Value();
+    });
+    bench_.on_object("tools", [this](const dynamic::Value& index) -> std::shared_ptr<Skeleton> {
+      if (index.text() != "left hand") return nullptr;
+      return tool_;
+    });
+  }
+
+  dynamic::Definitions definitions_;
+  dynamic::ServedObject bench_;
+  dynamic::ServedObject tool_;
+  std::atomic<int> count_{0};
+  Node node_;
+  std::uint16_t port_ = 0;
+  std::optional<Service> service_;
+};
+
+}  // namespace rr::gateway::testing

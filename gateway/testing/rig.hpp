@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "gateway/exporter.hpp"
+#include "gateway/server.hpp"
+#include "gateway/testing/bench_service.hpp"
+#include "gateway/testing/folder.hpp"
+#include "gateway/testing/waiting.hpp"
+#include "rr/dynamic.hpp"
+
+namespace rr::gateway::testing {
+
+/// A robot, both gateways over two carriers, and a client that knows of neither.
+class Rig {
+ public:
+  explicit Rig(Function<std::unique_ptr<Carrier>()> make_carrier,
+               std::chrono::milliseconds limit = std::chrono::milliseconds(20'000),
+               const std::string& extra = "", const std::string& password = "open sesame")
+      : make_carrier_(std::move(make_carrier)), limit_(limit) {
+    rules = extra + rules;
+    std::ofstream(folder_.path() + "/secret") << password << "\n";
+    std::ofstream(folder_.path() + "/login") << "open sesame\n";
+    start_export();
+    start_server();
+  }
+
+  void start_export() {
+    const std::string text = "site = \"hall\"\nnode = \"robot\"\nstate = \"" + folder_.path() +
+                             "\"\n[broker]\nurl = \"mqtt://test\"\n[[service]]\nname = \"bench\"\n"
+                             "url = \"" +
+                             robot.url() +
+                             "\"\nreaders = [\"hub\"]\nlogin = "
+                             "\"gateway\"\npassword_file = \"login\"\n" +
+                             rules;
+    export_carrier_ = make_carrier_();
+    exporter_.emplace(parse_export_file(folder_.path() + "/test.toml", text), *export_carrier_,
+                      logger());
+  }
+  void stop_export() { exporter_.reset(); }
+  void start_server() {
+    server_node_ = std::make_unique<Node>();
+    port_ = server_node_->listen_tcp(0);
+    server_carrier_ = make_carrier_();
+    ServerOptions options;
+    options.services = {{{"hall", "robot", "bench"}, "bench"}};
+    options.reader = "hub";
+    options.limit = limit_;
+    options.repeat = std::chrono::milliseconds(300);
+    server_.emplace(options, *server_node_, *server_carrier_, logger());
+  }
+  void stop_server() {
+    server_.reset();
+    server_node_.reset();
+  }
+
+  /// Connects as soon as the service is offered.
+  dynamic::Client connect() {
+    dynamic::Client client;
+    const std::string url = "rr+tcp://localhost:" + std::to_string(port_) + "/?service=bench";
+    const bool is_connected = comes_true([&] {
+      try {
+        client = dynamic::connect(client_node_, url);
+        return true;
+      } catch (const Error&) {
+        return false;
+      }
+    });
+    if (!is_connected) throw std::runtime_error("the service is not offered");
+    return client;
+  }
+
+  BenchService robot;
+  Kept<std::string> log;
+  std::string rules =
+      "[[service.allow]]\nmembers = [\"speed\", \"pose\", \"mode\", \"add\", \"describe\", "
+      "\"fail\", "
+      "\"count\", \"whoami\", \"stopped\", \"samples\", \"force\", \"target\"]\n"
+      "access = [\"read\", \"write\", \"call\"]\n"
+      "[[service.allow]]\npath = \"tools[left%20hand]\"\nmembers = [\"*\"]\n"
+      "access = [\"read\", \"write\", \"call\"]\n";
+
+ private:
+  Log logger() {
+    return [this](LogLevel, const std::string& text) { log.add(text); };
+  }
+
+  Function<std::unique_ptr<Carrier>()> make_carrier_;
+  std::chrono::milliseconds limit_;
+  Folder folder_;
+  std::unique_ptr<Carrier> export_carrier_;
+  std::optional<Exporter> exporter_;
+  std::unique_ptr<Node> server_node_;
+  std::uint16_t port_ = 0;
+  std::unique_ptr<Carrier> server_carrier_;
+  std::optional<Server> server_;
+  Node client_node_;
+};
+
+}  // namespace rr::gateway::testing
