@@ -184,7 +184,7 @@ TEST_F(Mosquitto, NothingIsLostWhenTheBrokerIsKilled) {
     return got.size() > 0;
   }));
   constexpr std::uint32_t count = 10'000;
-  std::thread robot([&] {
+  std::jthread robot([&] {
     for (std::uint32_t i = 1; i <= count; ++i) {
       all.robot.bench().pipe("samples").send(i);
       if (i % 50 == 0) std::this_thread::sleep_for(milliseconds(10));
@@ -196,7 +196,7 @@ TEST_F(Mosquitto, NothingIsLostWhenTheBrokerIsKilled) {
   }
   const int before = all.robot.counted();
   broker->kill();
-  std::thread later([&] {
+  std::jthread later([&] {
     std::this_thread::sleep_for(milliseconds(200));
     broker->start();
   });
