@@ -194,7 +194,7 @@ TEST_F(Gateways, ACallIsExecutedOnceThoughEverythingIsRepeated) {
 TEST_F(Gateways, ACallWaitsForTheBroker) {
   const auto bench = rig.connect();
   broker.crash();
-  std::thread later([&] {
+  std::jthread later([&] {
     std::this_thread::sleep_for(milliseconds(200));
     broker.restart();
   });

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <future>
 #include <string>
 #include <thread>
 
@@ -184,7 +185,7 @@ TEST_F(Mosquitto, NothingIsLostWhenTheBrokerIsKilled) {
     return got.size() > 0;
   }));
   constexpr std::uint32_t count = 10'000;
-  std::thread robot([&] {
+  std::jthread robot([&] {
     for (std::uint32_t i = 1; i <= count; ++i) {
       all.robot.bench().pipe("samples").send(i);
       if (i % 50 == 0) std::this_thread::sleep_for(milliseconds(10));
@@ -196,12 +197,10 @@ TEST_F(Mosquitto, NothingIsLostWhenTheBrokerIsKilled) {
   }
   const int before = all.robot.counted();
   broker->kill();
-  std::thread later([&] {
-    std::this_thread::sleep_for(milliseconds(200));
-    broker->start();
-  });
-  EXPECT_EQ(bench->call("count").as<int>(), before + 1);
-  later.join();
+  auto answer = std::async(std::launch::async, [&] { return bench->call("count").as<int>(); });
+  std::this_thread::sleep_for(milliseconds(200));
+  broker->start();
+  EXPECT_EQ(answer.get(), before + 1);
   robot.join();
   EXPECT_TRUE(comes_true([&] { return got.items().back() == count; }));
   std::uint32_t expected = 0;

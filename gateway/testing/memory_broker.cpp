@@ -198,7 +198,9 @@ void MemoryBroker::run() {
     } else if (queue_.begin()->first <= Clock::now()) {
       deliver(lock);
     } else {
-      changed_.wait_until(lock, queue_.begin()->first);
+      // A copy: the queue may be cleared meanwhile.
+      const auto due = queue_.begin()->first;
+      changed_.wait_until(lock, due);
     }
   }
 }

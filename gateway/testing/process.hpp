@@ -12,7 +12,7 @@
 
 namespace rr::gateway::testing {
 
-/// Another program, which does not outlive this one.
+/// Another program, which does not outlive the thread that makes it.
 class Process {
  public:
   explicit Process(std::vector<std::string> words) {
