@@ -14,15 +14,15 @@ namespace rr::gateway {
 class FarStream {
  public:
   using Clock = StreamReader::Clock;
-  /// Who reads.
+  /// The reader of a stream.
   struct Reader {
     std::string user;         ///< of the broker
     std::string name;         ///< as export files declare it
     std::string reply_topic;  ///< where what was asked for arrives
   };
 
-  /// `has_room` says whether records can be handed out now; what comes meanwhile is asked for
-  /// later.
+  /// `has_room` returns whether the sink accepts records now; records that arrive while it does not
+  /// are requested later.
   FarStream(const ServiceAddress& address, const std::string& path, const std::string& member,
             Reader reader, StreamReader::Sink sink, Function<bool()> has_room);
 

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <pthread.h>
-#include <signal.h>
-
 #include <iostream>
 #include <utility>
 
+#include "cli/end_signals.hpp"
 #include "gateway/exporter.hpp"
 #include "gateway/mqtt_carrier.hpp"
 #include "gateway/program_options.hpp"
@@ -26,33 +24,24 @@ void log(LogLevel level, const std::string& text) {
   std::cerr << line << std::flush;
 }
 
-/// Blocks the signals before there are threads.
-sigset_t end_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  return signals;
-}
-
-void wait_for(const sigset_t& signals) {
-  int number = 0;
-  sigwait(&signals, &number);
+void wait_for(const robdef::EndSignals& signals) {
+  while (!signals.wait()) {
+  }
 }
 
 std::unique_ptr<Carrier> carrier_to(const BrokerOptions& broker) {
   return make_mqtt_carrier({broker.url, broker.user, broker.password});
 }
 
-void run_export(const std::string& path, const sigset_t& signals) {
+void run_export(const std::string& path, const robdef::EndSignals& signals) {
   ExportFile file = read_export_file(path);
   const auto carrier = carrier_to(file.broker);
   const Exporter exporter(std::move(file), *carrier, log);
   wait_for(signals);
 }
 
-void run_serve(const ProgramOptions& options, SetupOptions setup, const sigset_t& signals) {
+void run_serve(const ProgramOptions& options, SetupOptions setup,
+               const robdef::EndSignals& signals) {
   const NodeSetup node(std::move(setup));
   const auto carrier = carrier_to(options.broker);
   const Server server(options.server, node.node(), *carrier, log);
@@ -60,7 +49,7 @@ void run_serve(const ProgramOptions& options, SetupOptions setup, const sigset_t
 }
 
 int run(int count, char** words) {
-  const sigset_t signals = end_signals();
+  const robdef::EndSignals signals;
   SetupOptions setup = SetupOptions::server("robdef.gateway", 0);
   const ProgramOptions options = read_options(setup.take(count, words));
   switch (options.task) {

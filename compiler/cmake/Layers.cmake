@@ -102,6 +102,7 @@ set(robdef_layers
   "conformance/runners/matlab: conformance runtime/cpp/include/rr runtime/matlab"
   # Beside a robot: what users of the runtime see. One source reads TOML.
   "gateway: runtime/cpp/include/rr"
+  "gateway/main.cpp: gateway runtime/cpp/include/rr cli/end_signals.hpp"
   "gateway/export_file.cpp: gateway runtime/cpp/include/rr compiler/project/toml_file.hpp"
   "benchmarks: runtime/cpp/include/rr compiler"
   "examples: runtime/cpp/include/rr"

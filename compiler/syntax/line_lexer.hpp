@@ -13,7 +13,7 @@ struct LexerRule;  // internal
 struct LexedToken {
   std::size_t type = 0;
   std::size_t begin = 0;
-  std::size_t end = 0;  ///< one behind its last character
+  std::size_t end = 0;  ///< the offset after its last character
 
   bool operator==(const LexedToken&) const = default;
 };

@@ -26,7 +26,7 @@ class Opening {
 
   /// What it waits for.
   [[nodiscard]] platform::Awaited wanted() const;
-  /// What came of it, once something of that was found.
+  /// The outcome; to be called after the socket was found ready.
   std::optional<Agreed> go_on();
 
  private:

@@ -14,8 +14,8 @@ namespace ready = platform::ready;
 /// Watches sockets: the reactor.
 class Watcher {
  public:
-  // `events` are bits of rr::channel::ready, each told of once until it is asked for
-  // anew (edge-triggered). Throw std::system_error.
+  // `events` are bits of rr::channel::ready. Edge-triggered: each is reported once, until it is
+  // requested again. Throw std::system_error.
   virtual void add(int socket, std::uint32_t events, Pollable& pollable) = 0;
   virtual void change(int socket, std::uint32_t events, Pollable& pollable) = 0;
   virtual void remove(int socket) = 0;
