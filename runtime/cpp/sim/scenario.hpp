@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "runtime/cpp/sim/scheduler.hpp"
+
+namespace rr::sim {
+
+/// What nodes do in a run. It returns when all its nodes have ended; a rule that is broken ends the
+/// run by Scheduler::fail.
+struct Scenario {
+  const char* name;
+  const char* what;  ///< one line for the help
+  void (*run)(Scheduler& run);
+};
+
+/// Clients with sessions that use all members of a service, each with its end.
+void run_sessions(Scheduler& run);
+
+/// All of them.
+std::span<const Scenario> scenarios();
+
+}  // namespace rr::sim
