@@ -40,7 +40,7 @@ Nanoseconds time_of(clockid_t clock, const timespec& shown) {
 }  // namespace rr::sim
 
 using rr::sim::Nanoseconds;
-using rr::sim::real;
+using rr::sim::Real;
 using rr::sim::Scheduler;
 
 extern "C" {
@@ -48,7 +48,7 @@ extern "C" {
 int clock_gettime(clockid_t clock, timespec* shown) noexcept {
   Scheduler* const run = Scheduler::current();
   if (run == nullptr) {
-    static const auto call = real<int(clockid_t, timespec*)>("clock_gettime");
+    static constinit Real<int(clockid_t, timespec*)> call{"clock_gettime"};
     return call(clock, shown);
   }
   *shown = rr::sim::shown_by(clock, run->read_clock());
@@ -72,8 +72,7 @@ int gettimeofday(timeval* __restrict shown, void* __restrict) noexcept {
 int clock_nanosleep(clockid_t clock, int flags, const timespec* time, timespec* left) {
   Scheduler* const run = Scheduler::current();
   if (run == nullptr) {
-    static const auto call =
-        real<int(clockid_t, int, const timespec*, timespec*)>("clock_nanosleep");
+    static constinit Real<int(clockid_t, int, const timespec*, timespec*)> call{"clock_nanosleep"};
     return call(clock, flags, time, left);
   }
   Nanoseconds until = rr::sim::time_of(clock, *time);
@@ -92,7 +91,7 @@ int nanosleep(const timespec* time, timespec* left) {
 int sched_yield() noexcept {
   Scheduler* const run = Scheduler::current();
   if (run == nullptr) {
-    static const auto call = real<int()>("sched_yield");
+    static constinit Real<int()> call{"sched_yield"};
     return call();
   }
   run->yield();

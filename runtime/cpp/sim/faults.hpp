@@ -12,7 +12,7 @@ namespace rr::sim {
 struct Faults {
   std::uint64_t spurious_wake_ups = 0;  ///< of conditions
   std::uint64_t refused_threads = 0;
-  std::uint64_t refused_memory = 0;     ///< requests of more than `small_block` bytes
+  std::uint64_t refused_memory = 0;  ///< requests of more than `small_block` bytes
   std::size_t small_block = 4096;
   // Of the network
   Nanoseconds longest_delay = 1'000'000;  ///< of a segment
@@ -20,7 +20,7 @@ struct Faults {
   std::size_t smallest_window = 4096;     ///< bytes under way in one direction of a connection
   std::size_t largest_window = 262'144;
   std::uint64_t refused_connections = 0;
-  std::uint64_t silent_connections = 0;   ///< nothing arrives, after some bytes
+  std::uint64_t silent_connections = 0;  ///< nothing arrives, after some bytes
 
   /// Those of the run; none outside of one.
   static Faults& current();

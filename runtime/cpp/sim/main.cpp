@@ -52,8 +52,8 @@ std::uint64_t one_of(Random& random, std::initializer_list<std::uint64_t> values
 Turns draw_turns(Random& random) {
   Turns turns;
   turns.has_ranks = random.once_in(3);
-  turns.switches_once_in = turns.has_ranks ? one_of(random, {10, 50, 300})
-                                           : one_of(random, {0, 2, 5, 20, 200});
+  turns.switches_once_in =
+      turns.has_ranks ? one_of(random, {10, 50, 300}) : one_of(random, {0, 2, 5, 20, 200});
   turns.stalls_once_in = one_of(random, {0, 0, 500, 5'000});
   turns.longest_stall = static_cast<Nanoseconds>(one_of(random, {1, 20, 400})) * 1'000'000;
   return turns;
@@ -88,12 +88,12 @@ const Scenario& scenario_of(const Options& options, std::uint64_t seed) {
 
 // In a process of its own: a run ends where it fails, and nothing of it reaches the next one.
 bool simulate_aside(const Options& options, std::uint64_t seed, Result& result) {
-  static auto* const shared = static_cast<Result*>(::mmap(
-      nullptr, sizeof(Result), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+  static auto* const shared = static_cast<Result*>(
+      ::mmap(nullptr, sizeof(Result), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
   std::fflush(stdout);
   const pid_t child = ::fork();
   if (child == 0) {
-    ::alarm(120);
+    ::alarm(40);
     simulate(scenario_of(options, seed), seed, *shared);
     _exit(0);
   }
@@ -101,8 +101,7 @@ bool simulate_aside(const Options& options, std::uint64_t seed, Result& result) 
   ::waitpid(child, &status, 0);
   result = *shared;
   if (WIFSIGNALED(status)) {
-    std::printf("FAILED: ended by signal %d (%s)\n", WTERMSIG(status),
-                strsignal(WTERMSIG(status)));
+    std::printf("FAILED: ended by signal %d (%s)\n", WTERMSIG(status), strsignal(WTERMSIG(status)));
   }
   return status == 0;
 }
@@ -144,11 +143,11 @@ int sweep(const Options& options) {
   }
   const std::chrono::duration<double> took = Clock::now() - begin;
   const double hours = static_cast<double>(simulated) / 3.6e12;
-  std::printf("%llu seeds, %llu failed; %.2f hours simulated in %.1f s (%.0f per hour), %.1f "
-              "million steps\n",
-              static_cast<unsigned long long>(runs), static_cast<unsigned long long>(failures),
-              hours, took.count(), hours * 3600 / took.count(),
-              static_cast<double>(steps) / 1e6);
+  std::printf(
+      "%llu seeds, %llu failed; %.2f hours simulated in %.1f s (%.0f per hour), %.1f "
+      "million steps\n",
+      static_cast<unsigned long long>(runs), static_cast<unsigned long long>(failures), hours,
+      took.count(), hours * 3600 / took.count(), static_cast<double>(steps) / 1e6);
   return failures == 0 ? 0 : 1;
 }
 
@@ -198,8 +197,9 @@ void settle(char** words) {
 }  // namespace
 
 std::span<const Scenario> scenarios() {
-  static constexpr std::array<Scenario, 1> all{{
+  static constexpr std::array<Scenario, 2> all{{
       {"sessions", "clients that use all members of a service", run_sessions},
+      {"links", "links that break and hosts that start anew", run_links},
   }};
   return all;
 }

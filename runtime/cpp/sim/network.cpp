@@ -127,14 +127,15 @@ std::uint32_t Stream::ready() const {
   if (has_end_ || is_reset_ || !may_receive_) events |= EPOLLRDHUP;
   if (is_reset_ || error_ != 0) events |= EPOLLERR | EPOLLHUP;
   if ((has_end_ || !may_receive_) && !may_send_) events |= EPOLLHUP;
-  if (is_reset_ || !may_send_ || peer_.expired() || room() != 0) events |= EPOLLOUT;
+  if (is_reset_ || !may_send_ || (peer_.expired() && !is_silent_) || room() != 0)
+    events |= EPOLLOUT;
   return events;
 }
 
 // Things arrive in the order in which they are sent, each after a time of its own.
 void Stream::deliver(std::function<void(Stream&)> what) {
-  const auto delay = static_cast<Nanoseconds>(run_.random().below(
-      static_cast<std::uint64_t>(Faults::current().longest_delay) + 1));
+  const auto delay = static_cast<Nanoseconds>(
+      run_.random().below(static_cast<std::uint64_t>(Faults::current().longest_delay) + 1));
   last_arrival_ = std::max(last_arrival_ + 1, run_.now() + delay);
   run_.at(last_arrival_, [peer = peer_, what = std::move(what)] {
     if (const auto its = peer.lock()) what(*its);
@@ -362,8 +363,8 @@ int Network::connect(int descriptor, std::uint16_t port) {
   client->begin();
   replace(descriptor, client);
   const bool is_refused = run_.random().once_in(Faults::current().refused_connections);
-  const auto delay = static_cast<Nanoseconds>(run_.random().below(
-      static_cast<std::uint64_t>(Faults::current().longest_delay) + 1));
+  const auto delay = static_cast<Nanoseconds>(
+      run_.random().below(static_cast<std::uint64_t>(Faults::current().longest_delay) + 1));
   run_.at(run_.now() + delay, [this, client, is_refused] {
     if (running != this) return;
     const auto place = listeners_.find({client->family, client->remote_port});

@@ -118,10 +118,10 @@ class Stream final : public File {
   int take_error() { return std::exchange(error_, 0); }
   [[nodiscard]] bool is_joined() const { return !peer_.expired(); }
 
-  bool resets_at_close = false;               ///< SO_LINGER of 0
+  bool resets_at_close = false;  ///< SO_LINGER of 0
   bool is_blocking = true;
-  Nanoseconds receive_timeout = never;        ///< SO_RCVTIMEO
-  Nanoseconds send_timeout = never;           ///< SO_SNDTIMEO
+  Nanoseconds receive_timeout = never;  ///< SO_RCVTIMEO
+  Nanoseconds send_timeout = never;     ///< SO_SNDTIMEO
   std::uint16_t local_port = 0;
   std::uint16_t remote_port = 0;
   sa_family_t family = AF_INET;
@@ -135,15 +135,15 @@ class Stream final : public File {
 
   std::weak_ptr<Stream> peer_;
   std::deque<std::byte> received_;
-  std::size_t under_way_ = 0;       // from here to the peer, not yet in its queue
-  std::size_t window_ = 65'536;     // of what this end sends
-  Nanoseconds last_arrival_ = 0;    // at the peer, of what this end sent
+  std::size_t under_way_ = 0;     // from here to the peer, not yet in its queue
+  std::size_t window_ = 65'536;   // of what this end sends
+  Nanoseconds last_arrival_ = 0;  // at the peer, of what this end sent
   std::size_t silent_after_ = SIZE_MAX;
   std::size_t sent_ = 0;
   int error_ = 0;
   bool is_connecting_ = false;
   bool is_silent_ = false;
-  bool has_end_ = false;            // the peer sends no more, and all has arrived
+  bool has_end_ = false;  // the peer sends no more, and all has arrived
   bool is_reset_ = false;
   bool may_send_ = true;
   bool may_receive_ = true;

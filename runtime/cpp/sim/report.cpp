@@ -5,10 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <array>
 #include <map>
 #include <memory>
 #include <set>
@@ -42,8 +42,8 @@ std::string demangled(const char* symbol) {
   return status == 0 ? text.get() : symbol;
 }
 
-// Of functions that the program does not export: asks addr2line(1), which reads all its symbols, once
-// for all.
+// Of functions that the program does not export: asks addr2line(1), which reads all its symbols,
+// once for all.
 std::map<const void*, std::string> names_of(const std::set<const void*>& addresses) {
   Dl_info program{};
   dladdr(reinterpret_cast<const void*>(&names_of), &program);
@@ -53,14 +53,15 @@ std::map<const void*, std::string> names_of(const std::set<const void*>& address
     Dl_info found{};
     if (dladdr(address, &found) == 0 || found.dli_fbase != program.dli_fbase) continue;
     std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), " %#tx",
-                  static_cast<const char*>(address) - 1 -
-                      static_cast<const char*>(program.dli_fbase));
+    std::snprintf(
+        text.data(), text.size(), " %#tx",
+        static_cast<const char*>(address) - 1 - static_cast<const char*>(program.dli_fbase));
     command += text.data();
     asked.push_back(address);
   }
   std::map<const void*, std::string> names;
-  std::FILE* const answers = asked.empty() ? nullptr : popen((command + " 2>/dev/null").c_str(), "r");
+  std::FILE* const answers =
+      asked.empty() ? nullptr : popen((command + " 2>/dev/null").c_str(), "r");
   if (answers == nullptr) return names;
   std::array<char, 4096> line{};
   for (const void* const address : asked) {
@@ -118,6 +119,11 @@ void Scheduler::fail(const std::string& why) {
   }
   const std::size_t steps = steps_to_print();
   if (steps != 0) {
+    std::fprintf(stdout, "what happened:\n");
+    for (const Note& note : notes_) {
+      std::fprintf(stdout, "%14.6f s  thread %-3d %s\n", static_cast<double>(note.time) / 1e9,
+                   note.thread, note.text.c_str());
+    }
     std::fprintf(stdout, "last steps:\n");
     trace_.print(stdout, steps);
   }

@@ -18,6 +18,8 @@ struct Scenario {
 
 /// Clients with sessions that use all members of a service, each with its end.
 void run_sessions(Scheduler& run);
+/// Links that break or fall silent, and hosts that start anew, under clients and subscriptions.
+void run_links(Scheduler& run);
 
 /// All of them.
 std::span<const Scenario> scenarios();

@@ -18,12 +18,13 @@ constexpr Nanoseconds step_cost = 150;
 constexpr Nanoseconds clock_cost = 40;
 // So many looks at the clock without a step between them are a loop that waits for another thread.
 constexpr std::uint64_t reads_of_a_loop = 200;
+constexpr std::size_t most_notes = 200;
 
 __thread Scheduler* running = nullptr;
 __thread Scheduler::Thread* this_thread = nullptr;
 
 long system_futex(std::atomic<std::uint32_t>* word, int operation, std::uint32_t value) {
-  static const auto call = real<long(long, ...)>("syscall");
+  static constinit Real<long(long, ...)> call{"syscall"};
   return call(SYS_futex, word, operation, value, nullptr, nullptr, 0);
 }
 
@@ -153,6 +154,11 @@ void Scheduler::yield() {
   hand_over(*next);
 }
 
+void Scheduler::note(std::string text) {
+  if (notes_.size() == most_notes) notes_.pop_front();
+  notes_.push_back({now_, this_thread->number, std::move(text)});
+}
+
 void Scheduler::at(Nanoseconds time, std::function<void()> work) {
   next_due_ = std::min(next_due_, time);
   events_.push({time, events_made_++, std::move(work)});
@@ -234,8 +240,8 @@ void Scheduler::leave(void* pointer) {
 
 int Scheduler::start(pthread_t* system, const pthread_attr_t* attributes, void* (*function)(void*),
                      void* argument) {
-  static const auto create =
-      real<int(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*)>("pthread_create");
+  static constinit Real<int(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*)> create{
+      "pthread_create"};
   auto thread = std::make_unique<Thread>();
   thread->number = static_cast<int>(threads_.size());
   thread->start = function;
@@ -255,10 +261,9 @@ int Scheduler::start(pthread_t* system, const pthread_attr_t* attributes, void* 
 
 bool Scheduler::join(pthread_t system, const void* caller) {
   // Numbers of the system are used again: the youngest is meant.
-  const auto found =
-      std::find_if(threads_.rbegin(), threads_.rend(), [&](const auto& each) {
-        return pthread_equal(each->system, system) != 0;
-      });
+  const auto found = std::find_if(threads_.rbegin(), threads_.rend(), [&](const auto& each) {
+    return pthread_equal(each->system, system) != 0;
+  });
   if (found == threads_.rend()) return false;
   Thread* const thread = found->get();
   while (!thread->has_ended) wait("the end of a thread", thread, never, caller);
@@ -266,8 +271,8 @@ bool Scheduler::join(pthread_t system, const void* caller) {
 }
 
 std::size_t Scheduler::alive() const {
-  return static_cast<std::size_t>(std::count_if(
-      threads_.begin(), threads_.end(), [](const auto& each) { return !each->has_ended; }));
+  return static_cast<std::size_t>(std::count_if(threads_.begin(), threads_.end(),
+                                                [](const auto& each) { return !each->has_ended; }));
 }
 
 std::string Scheduler::threads_text() const {

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <queue>
@@ -93,12 +94,19 @@ class Scheduler {
   /// Threads of the run that have not ended, the calling one included.
   [[nodiscard]] std::size_t alive() const;
 
+  /// Remembers what happens in the scenario, for the report.
+  void note(std::string text);
   /// Ends the process: something is wrong. Prints why, what each thread does, and the last steps.
   [[noreturn]] void fail(const std::string& why);
   /// The threads and where they wait, a line each.
   [[nodiscard]] std::string threads_text() const;
 
  private:
+  struct Note {
+    Nanoseconds time;
+    int thread;
+    std::string text;
+  };
   struct Event {
     Nanoseconds time;
     std::uint64_t number;
@@ -124,6 +132,7 @@ class Scheduler {
   Random random_;
   const Turns turns_;
   Trace trace_;
+  std::deque<Note> notes_;
   Nanoseconds now_ = 0;
   Nanoseconds next_due_ = never;  // the earliest of events and deadlines, or before it
   std::uint64_t events_made_ = 0;

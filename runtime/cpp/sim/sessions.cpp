@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "rr/node.hpp"
+#include "runtime/cpp/sim/host.hpp"
 #include "runtime/cpp/sim/network.hpp"
 #include "runtime/cpp/sim/scenario.hpp"
-#include "runtime/cpp/stress/bench.hpp"
-#include "runtime/cpp/stress/everybody.hpp"
 #include "runtime/cpp/stress/roles.hpp"
 #include "runtime/cpp/stress/session.hpp"
 
@@ -66,58 +65,6 @@ std::set<SocketCutter::Socket> SocketCutter::sockets() {
 namespace rr::sim {
 namespace {
 
-using stress::Bench;
-
-/// The service, and what it sends to all clients.
-class Host {
- public:
-  Host(stress::Lines& lines, std::uint32_t clients)
-      : shared_(lines),
-        bench_(std::make_shared<Bench>(shared_, clients)),
-        node_({.request_timeout = stress::hang_limit(), .receive_timeout = stress::hang_limit()}),
-        service_(node_.register_service(
-            "bench", bench_,
-            {.users = std::make_shared<stress::Everybody>(),
-             .on_client_connected =
-                 [this](const ServiceClient& client) {
-                   bench_->remember(client.endpoint);
-                   ++clients_;
-                 },
-             .on_client_disconnected =
-                 [this](const ServiceClient& client) {
-                   bench_->forget(client.endpoint);
-                   --clients_;
-                 }})),
-        port_(node_.listen_tcp(0, "127.0.0.1")) {}
-
-  [[nodiscard]] std::uint16_t port() const { return port_; }
-  Bench& bench() { return *bench_; }
-  /// Clients, their ends of pipes and wires, and generators that are left.
-  [[nodiscard]] std::size_t left() const {
-    return service_->clients().size() + static_cast<std::size_t>(clients_.load()) +
-           bench_->left();
-  }
-  [[nodiscard]] std::string text() const {
-    return std::to_string(service_->clients().size()) + " clients, " + bench_->text();
-  }
-
- private:
-  stress::Shared shared_;
-  std::atomic<int> clients_{0};
-  std::shared_ptr<Bench> bench_;
-  Node node_;
-  Service service_;
-  std::uint16_t port_;
-};
-
-void produce(Host& host, std::uint64_t seed, const std::atomic<bool>& is_ending) {
-  Random random(seed);
-  while (!is_ending) {
-    host.bench().produce(random.next());
-    std::this_thread::sleep_for(std::chrono::microseconds(random.below(20'000)));
-  }
-}
-
 void use(stress::ChannelContext& context, Node& node, std::uint32_t client, std::uint64_t seed) {
   const stress::Watchdog::Entry entry(context.watchdog, "client " + std::to_string(client));
   Random random(seed);
@@ -136,34 +83,24 @@ void run_sessions(Scheduler& run) {
   stress::Lines lines;
   Random random(run.random().next());
   const auto clients = static_cast<std::uint32_t>(1 + random.below(3));
-  Host host(lines, clients);
+  Host host(lines, clients,
+            {.request_timeout = stress::hang_limit(), .receive_timeout = stress::hang_limit()});
   {
     stress::Watchdog watchdog(lines, 2 * stress::hang_limit());
     stress::SocketCutter cutter;
-    stress::ChannelContext context{
-        lines, watchdog, cutter,
-        "rr+tcp://127.0.0.1:" + std::to_string(host.port()) + "/?service=bench"};
-    std::atomic<bool> is_ending{false};
-    std::thread producer(
-        [&, seed = random.next()] { produce(host, seed, is_ending); });
+    stress::ChannelContext context{lines, watchdog, cutter, host.url()};
+    const Producer producer(host.bench(), random.next());
     Node node({.request_timeout = stress::hang_limit(),
                .connect_timeout = stress::hang_limit(),
                .receive_timeout = stress::hang_limit()});
     std::vector<std::thread> threads;
     for (std::uint32_t i = 0; i < clients; ++i) {
-      threads.emplace_back(
-          [&, i, seed = random.next()] { use(context, node, i, seed); });
+      threads.emplace_back([&, i, seed = random.next()] { use(context, node, i, seed); });
     }
     for (std::thread& each : threads) each.join();
-    is_ending = true;
-    producer.join();
   }
   // What clients had goes with them.
-  const Nanoseconds limit = run.now() + 60'000'000'000;
-  while (host.left() != 0) {
-    if (run.now() > limit) run.fail("the service keeps what its clients had: " + host.text());
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
+  host.expect_nothing_left(std::chrono::seconds(60));
 }
 
 }  // namespace rr::sim

@@ -150,7 +150,7 @@ using rr::sim::Listener;
 using rr::sim::Nanoseconds;
 using rr::sim::Network;
 using rr::sim::never;
-using rr::sim::real;
+using rr::sim::Real;
 using rr::sim::Scheduler;
 using rr::sim::Stream;
 using rr::sim::Unbound;
@@ -164,7 +164,7 @@ int socket(int family, int type, int protocol) noexcept {
   Network* const network = Scheduler::current() == nullptr ? nullptr : Network::current();
   const int kind = type & ~(SOCK_CLOEXEC | SOCK_NONBLOCK);
   if (network == nullptr || family == AF_NETLINK) {
-    static const auto call = real<int(int, int, int)>("socket");
+    static constinit Real<int(int, int, int)> call{"socket"};
     return call(family, type, protocol);
   }
   if ((family != AF_INET && family != AF_INET6) || kind != SOCK_STREAM) {
@@ -179,7 +179,7 @@ int socket(int family, int type, int protocol) noexcept {
 int socketpair(int family, int type, int protocol, int* ends) noexcept {
   Network* const network = Scheduler::current() == nullptr ? nullptr : Network::current();
   if (network == nullptr) {
-    static const auto call = real<int(int, int, int, int*)>("socketpair");
+    static constinit Real<int(int, int, int, int*)> call{"socketpair"};
     return call(family, type, protocol, ends);
   }
   auto first = std::make_shared<Stream>(network->run());
@@ -194,7 +194,7 @@ int socketpair(int family, int type, int protocol, int* ends) noexcept {
 int bind(int descriptor, const sockaddr* address, socklen_t size) noexcept {
   const Use use(descriptor);
   if (!use) {
-    static const auto call = real<int(int, const sockaddr*, socklen_t)>("bind");
+    static constinit Real<int(int, const sockaddr*, socklen_t)> call{"bind"};
     return call(descriptor, address, size);
   }
   const auto socket = use.as<Unbound>();
@@ -204,7 +204,7 @@ int bind(int descriptor, const sockaddr* address, socklen_t size) noexcept {
 int listen(int descriptor, int backlog) noexcept {
   const Use use(descriptor);
   if (!use) {
-    static const auto call = real<int(int, int)>("listen");
+    static constinit Real<int(int, int)> call{"listen"};
     return call(descriptor, backlog);
   }
   return given(use.network->listen(descriptor));
@@ -213,7 +213,7 @@ int listen(int descriptor, int backlog) noexcept {
 int connect(int descriptor, const sockaddr* address, socklen_t size) {
   const Use use(descriptor);
   if (!use) {
-    static const auto call = real<int(int, const sockaddr*, socklen_t)>("connect");
+    static constinit Real<int(int, const sockaddr*, socklen_t)> call{"connect"};
     return call(descriptor, address, size);
   }
   use.run->point("connect", nullptr, rr::sim::port_of(address), RR_CALLER);
@@ -223,7 +223,7 @@ int connect(int descriptor, const sockaddr* address, socklen_t size) {
 int accept4(int descriptor, sockaddr* __restrict address, socklen_t* __restrict size, int flags) {
   const Use use(descriptor);
   if (!use) {
-    static const auto call = real<int(int, sockaddr*, socklen_t*, int)>("accept4");
+    static constinit Real<int(int, sockaddr*, socklen_t*, int)> call{"accept4"};
     return call(descriptor, address, size, flags);
   }
   use.run->point("accept", use.file.get(), descriptor, RR_CALLER);
@@ -241,19 +241,19 @@ int accept4(int descriptor, sockaddr* __restrict address, socklen_t* __restrict 
 ssize_t recv(int descriptor, void* room, size_t size, int flags) {
   const Use use(descriptor);
   if (!use) {
-    static const auto call = real<ssize_t(int, void*, size_t, int)>("recv");
+    static constinit Real<ssize_t(int, void*, size_t, int)> call{"recv"};
     return call(descriptor, room, size, flags);
   }
   const auto stream = use.as<Stream>();
   if (!stream) return given<ssize_t>(-ENOTCONN);
-  return given(rr::sim::receive(*use.run, *stream, {static_cast<std::byte*>(room), size}, flags,
-                                RR_CALLER));
+  return given(
+      rr::sim::receive(*use.run, *stream, {static_cast<std::byte*>(room), size}, flags, RR_CALLER));
 }
 
 ssize_t send(int descriptor, const void* bytes, size_t size, int flags) {
   const Use use(descriptor);
   if (!use) {
-    static const auto call = real<ssize_t(int, const void*, size_t, int)>("send");
+    static constinit Real<ssize_t(int, const void*, size_t, int)> call{"send"};
     return call(descriptor, bytes, size, flags);
   }
   const auto stream = use.as<Stream>();
@@ -265,7 +265,7 @@ ssize_t send(int descriptor, const void* bytes, size_t size, int flags) {
 ssize_t sendmsg(int descriptor, const msghdr* message, int flags) {
   const Use use(descriptor);
   if (!use) {
-    static const auto call = real<ssize_t(int, const msghdr*, int)>("sendmsg");
+    static constinit Real<ssize_t(int, const msghdr*, int)> call{"sendmsg"};
     return call(descriptor, message, flags);
   }
   const auto stream = use.as<Stream>();
@@ -281,7 +281,7 @@ ssize_t sendmsg(int descriptor, const msghdr* message, int flags) {
 int shutdown(int descriptor, int how) noexcept {
   const Use use(descriptor);
   if (!use) {
-    static const auto call = real<int(int, int)>("shutdown");
+    static constinit Real<int(int, int)> call{"shutdown"};
     return call(descriptor, how);
   }
   use.run->point("shut down", use.file.get(), how, RR_CALLER);
@@ -294,7 +294,7 @@ int shutdown(int descriptor, int how) noexcept {
 int close(int descriptor) {
   const Use use(descriptor);
   if (!use) {
-    static const auto call = real<int(int)>("close");
+    static constinit Real<int(int)> call{"close"};
     return call(descriptor);
   }
   use.run->point("close", use.file.get(), descriptor, RR_CALLER);
@@ -305,7 +305,7 @@ int close(int descriptor) {
 ssize_t read(int descriptor, void* room, size_t size) {
   const Use use(descriptor);
   if (!use) {
-    static const auto call = real<ssize_t(int, void*, size_t)>("read");
+    static constinit Real<ssize_t(int, void*, size_t)> call{"read"};
     return call(descriptor, room, size);
   }
   if (const auto event = use.as<rr::sim::Event>()) {
@@ -320,7 +320,7 @@ ssize_t read(int descriptor, void* room, size_t size) {
 ssize_t write(int descriptor, const void* bytes, size_t size) {
   const Use use(descriptor);
   if (!use) {
-    static const auto call = real<ssize_t(int, const void*, size_t)>("write");
+    static constinit Real<ssize_t(int, const void*, size_t)> call{"write"};
     return call(descriptor, bytes, size);
   }
   if (const auto event = use.as<rr::sim::Event>()) {
@@ -334,7 +334,7 @@ ssize_t write(int descriptor, const void* bytes, size_t size) {
 int eventfd(unsigned int value, int flags) noexcept {
   Network* const network = Scheduler::current() == nullptr ? nullptr : Network::current();
   if (network == nullptr) {
-    static const auto call = real<int(unsigned int, int)>("eventfd");
+    static constinit Real<int(unsigned int, int)> call{"eventfd"};
     return call(value, flags);
   }
   return network->open(std::make_shared<rr::sim::Event>(network->run()));
@@ -347,7 +347,7 @@ int eventfd_write(int descriptor, eventfd_t value) {
 int epoll_create1(int flags) noexcept {
   Network* const network = Scheduler::current() == nullptr ? nullptr : Network::current();
   if (network == nullptr) {
-    static const auto call = real<int(int)>("epoll_create1");
+    static constinit Real<int(int)> call{"epoll_create1"};
     return call(flags);
   }
   return network->open(std::make_shared<Epoll>(network->run()));
@@ -356,7 +356,7 @@ int epoll_create1(int flags) noexcept {
 int epoll_ctl(int descriptor, int operation, int watched, epoll_event* event) noexcept {
   const Use use(descriptor);
   if (!use) {
-    static const auto call = real<int(int, int, int, epoll_event*)>("epoll_ctl");
+    static constinit Real<int(int, int, int, epoll_event*)> call{"epoll_ctl"};
     return call(descriptor, operation, watched, event);
   }
   const auto epoll = use.as<Epoll>();
@@ -368,7 +368,7 @@ int epoll_ctl(int descriptor, int operation, int watched, epoll_event* event) no
 int epoll_wait(int descriptor, epoll_event* events, int most, int timeout) {
   const Use use(descriptor);
   if (!use) {
-    static const auto call = real<int(int, epoll_event*, int, int)>("epoll_wait");
+    static constinit Real<int(int, epoll_event*, int, int)> call{"epoll_wait"};
     return call(descriptor, events, most, timeout);
   }
   const Nanoseconds deadline =
@@ -379,19 +379,18 @@ int epoll_wait(int descriptor, epoll_event* events, int most, int timeout) {
 int poll(pollfd* wanted, nfds_t count, int timeout) {
   const bool is_of_a_run = count != 0 && Use(rr::sim::first_descriptor(wanted));
   if (!is_of_a_run) {
-    static const auto call = real<int(pollfd*, nfds_t, int)>("poll");
+    static constinit Real<int(pollfd*, nfds_t, int)> call{"poll"};
     return call(wanted, count, timeout);
   }
   Scheduler& run = *Scheduler::current();
-  const Nanoseconds deadline =
-      timeout < 0 ? never : run.now() + Nanoseconds{timeout} * 1'000'000;
+  const Nanoseconds deadline = timeout < 0 ? never : run.now() + Nanoseconds{timeout} * 1'000'000;
   return rr::sim::poll(run, *Network::current(), {wanted, count}, deadline, RR_CALLER);
 }
 
 int setsockopt(int descriptor, int level, int name, const void* value, socklen_t size) noexcept {
   const Use use(descriptor);
   if (!use) {
-    static const auto call = real<int(int, int, int, const void*, socklen_t)>("setsockopt");
+    static constinit Real<int(int, int, int, const void*, socklen_t)> call{"setsockopt"};
     return call(descriptor, level, name, value, size);
   }
   return rr::sim::set_option(*use.network, descriptor, level, name, value);
@@ -401,7 +400,7 @@ int getsockopt(int descriptor, int level, int name, void* __restrict value,
                socklen_t* __restrict size) noexcept {
   const Use use(descriptor);
   if (!use) {
-    static const auto call = real<int(int, int, int, void*, socklen_t*)>("getsockopt");
+    static constinit Real<int(int, int, int, void*, socklen_t*)> call{"getsockopt"};
     return call(descriptor, level, name, value, size);
   }
   const auto stream = use.as<Stream>();
@@ -411,11 +410,10 @@ int getsockopt(int descriptor, int level, int name, void* __restrict value,
   return 0;
 }
 
-int getsockname(int descriptor, sockaddr* __restrict address,
-                socklen_t* __restrict size) noexcept {
+int getsockname(int descriptor, sockaddr* __restrict address, socklen_t* __restrict size) noexcept {
   const Use use(descriptor);
   if (!use) {
-    static const auto call = real<int(int, sockaddr*, socklen_t*)>("getsockname");
+    static constinit Real<int(int, sockaddr*, socklen_t*)> call{"getsockname"};
     return call(descriptor, address, size);
   }
   if (const auto stream = use.as<Stream>()) {
@@ -428,11 +426,10 @@ int getsockname(int descriptor, sockaddr* __restrict address,
   return 0;
 }
 
-int getpeername(int descriptor, sockaddr* __restrict address,
-                socklen_t* __restrict size) noexcept {
+int getpeername(int descriptor, sockaddr* __restrict address, socklen_t* __restrict size) noexcept {
   const Use use(descriptor);
   if (!use) {
-    static const auto call = real<int(int, sockaddr*, socklen_t*)>("getpeername");
+    static constinit Real<int(int, sockaddr*, socklen_t*)> call{"getpeername"};
     return call(descriptor, address, size);
   }
   const auto stream = use.as<Stream>();

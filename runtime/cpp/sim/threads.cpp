@@ -34,7 +34,7 @@ void note_free(const void* mutex) {
 }
 
 int try_mutex(pthread_mutex_t* mutex) {
-  static const auto call = real<MutexFunction>("pthread_mutex_trylock");
+  static constinit Real<MutexFunction> call{"pthread_mutex_trylock"};
   return call(mutex);
 }
 
@@ -48,7 +48,7 @@ int take_mutex(Scheduler& run, pthread_mutex_t* mutex, Nanoseconds deadline, con
 }
 
 void free_mutex(Scheduler& run, pthread_mutex_t* mutex) {
-  static const auto call = real<MutexFunction>("pthread_mutex_unlock");
+  static constinit Real<MutexFunction> call{"pthread_mutex_unlock"};
   call(mutex);
   note_free(mutex);
   run.wake(mutex, 1);
@@ -59,8 +59,7 @@ int wait_condition(Scheduler& run, pthread_cond_t* condition, pthread_mutex_t* m
   run.point("wait", condition, 0, caller);
   free_mutex(run, mutex);
   const Nanoseconds surprise = Faults::current().next_spurious_wake_up(run);
-  const bool is_woken =
-      run.wait("a condition", condition, std::min(deadline, surprise), caller);
+  const bool is_woken = run.wait("a condition", condition, std::min(deadline, surprise), caller);
   take_mutex(run, mutex, never, caller);
   return is_woken || run.now() < deadline ? 0 : ETIMEDOUT;
 }
@@ -101,8 +100,8 @@ long futex(Scheduler& run, const FutexCall& call, const void* caller) {
                        call.time == nullptr ? never : time_of(clock, *call.time), caller);
     case FUTEX_WAKE:
     case FUTEX_WAKE_BITSET: {
-      const int woken = run.wake(call.word, static_cast<int>(std::min<std::uint32_t>(
-                                                call.value, INT32_MAX)));
+      const int woken =
+          run.wake(call.word, static_cast<int>(std::min<std::uint32_t>(call.value, INT32_MAX)));
       run.point("wake", call.word, woken, caller);
       return woken;
     }
@@ -125,7 +124,7 @@ constexpr pthread_once_t done_once = 2;  // as the C library writes it
 using rr::sim::Faults;
 using rr::sim::Nanoseconds;
 using rr::sim::never;
-using rr::sim::real;
+using rr::sim::Real;
 using rr::sim::Scheduler;
 
 #define RR_CALLER __builtin_return_address(0)
@@ -136,7 +135,8 @@ int pthread_create(pthread_t* __restrict thread, const pthread_attr_t* __restric
                    void* (*start)(void*), void* __restrict argument) noexcept {
   Scheduler* const run = Scheduler::current();
   if (run == nullptr) {
-    static const auto call = real<decltype(pthread_create)>("pthread_create");
+    static constinit Real<int(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*)> call{
+        "pthread_create"};
     return call(thread, attributes, start, argument);
   }
   if (Faults::current().refuses_thread(*run)) {
@@ -149,7 +149,7 @@ int pthread_create(pthread_t* __restrict thread, const pthread_attr_t* __restric
 }
 
 int pthread_join(pthread_t thread, void** value) {
-  static const auto call = real<decltype(pthread_join)>("pthread_join");
+  static constinit Real<int(pthread_t, void**)> call{"pthread_join"};
   if (Scheduler* const run = Scheduler::current()) run->join(thread, RR_CALLER);
   return call(thread, value);
 }
@@ -157,7 +157,7 @@ int pthread_join(pthread_t thread, void** value) {
 int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
   Scheduler* const run = Scheduler::current();
   if (run == nullptr) {
-    static const auto call = real<rr::sim::MutexFunction>("pthread_mutex_lock");
+    static constinit Real<rr::sim::MutexFunction> call{"pthread_mutex_lock"};
     return call(mutex);
   }
   run->point("lock", mutex, 0, RR_CALLER);
@@ -182,7 +182,8 @@ int pthread_mutex_clocklock(pthread_mutex_t* __restrict mutex, clockid_t clock,
                             const timespec* __restrict time) noexcept {
   Scheduler* const run = Scheduler::current();
   if (run == nullptr) {
-    static const auto call = real<decltype(pthread_mutex_clocklock)>("pthread_mutex_clocklock");
+    static constinit Real<int(pthread_mutex_t*, clockid_t, const timespec*)> call{
+        "pthread_mutex_clocklock"};
     return call(mutex, clock, time);
   }
   run->point("lock", mutex, 0, RR_CALLER);
@@ -192,7 +193,7 @@ int pthread_mutex_clocklock(pthread_mutex_t* __restrict mutex, clockid_t clock,
 int pthread_mutex_unlock(pthread_mutex_t* mutex) noexcept {
   Scheduler* const run = Scheduler::current();
   if (run == nullptr) {
-    static const auto call = real<rr::sim::MutexFunction>("pthread_mutex_unlock");
+    static constinit Real<rr::sim::MutexFunction> call{"pthread_mutex_unlock"};
     return call(mutex);
   }
   rr::sim::free_mutex(*run, mutex);
@@ -203,8 +204,8 @@ int pthread_mutex_unlock(pthread_mutex_t* mutex) noexcept {
 int pthread_cond_wait(pthread_cond_t* __restrict condition, pthread_mutex_t* __restrict mutex) {
   Scheduler* const run = Scheduler::current();
   if (run == nullptr) {
-    static const auto call =
-        real<decltype(pthread_cond_wait)>("pthread_cond_wait", "GLIBC_2.3.2");
+    static constinit Real<int(pthread_cond_t*, pthread_mutex_t*)> call{"pthread_cond_wait",
+                                                                       "GLIBC_2.3.2"};
     return call(condition, mutex);
   }
   return rr::sim::wait_condition(*run, condition, mutex, never, RR_CALLER);
@@ -214,19 +215,19 @@ int pthread_cond_clockwait(pthread_cond_t* __restrict condition, pthread_mutex_t
                            clockid_t clock, const timespec* __restrict time) {
   Scheduler* const run = Scheduler::current();
   if (run == nullptr) {
-    static const auto call = real<decltype(pthread_cond_clockwait)>("pthread_cond_clockwait");
+    static constinit Real<int(pthread_cond_t*, pthread_mutex_t*, clockid_t, const timespec*)> call{
+        "pthread_cond_clockwait"};
     return call(condition, mutex, clock, time);
   }
-  return rr::sim::wait_condition(*run, condition, mutex, rr::sim::time_of(clock, *time),
-                                 RR_CALLER);
+  return rr::sim::wait_condition(*run, condition, mutex, rr::sim::time_of(clock, *time), RR_CALLER);
 }
 
 int pthread_cond_timedwait(pthread_cond_t* __restrict condition, pthread_mutex_t* __restrict mutex,
                            const timespec* __restrict time) {
   Scheduler* const run = Scheduler::current();
   if (run == nullptr) {
-    static const auto call =
-        real<decltype(pthread_cond_timedwait)>("pthread_cond_timedwait", "GLIBC_2.3.2");
+    static constinit Real<int(pthread_cond_t*, pthread_mutex_t*, const timespec*)> call{
+        "pthread_cond_timedwait", "GLIBC_2.3.2"};
     return call(condition, mutex, time);
   }
   return rr::sim::wait_condition(*run, condition, mutex, rr::sim::time_of(CLOCK_REALTIME, *time),
@@ -236,8 +237,7 @@ int pthread_cond_timedwait(pthread_cond_t* __restrict condition, pthread_mutex_t
 int pthread_cond_signal(pthread_cond_t* condition) noexcept {
   Scheduler* const run = Scheduler::current();
   if (run == nullptr) {
-    static const auto call =
-        real<rr::sim::ConditionFunction>("pthread_cond_signal", "GLIBC_2.3.2");
+    static constinit Real<rr::sim::ConditionFunction> call{"pthread_cond_signal", "GLIBC_2.3.2"};
     return call(condition);
   }
   run->wake(condition, 1);
@@ -248,8 +248,7 @@ int pthread_cond_signal(pthread_cond_t* condition) noexcept {
 int pthread_cond_broadcast(pthread_cond_t* condition) noexcept {
   Scheduler* const run = Scheduler::current();
   if (run == nullptr) {
-    static const auto call =
-        real<rr::sim::ConditionFunction>("pthread_cond_broadcast", "GLIBC_2.3.2");
+    static constinit Real<rr::sim::ConditionFunction> call{"pthread_cond_broadcast", "GLIBC_2.3.2"};
     return call(condition);
   }
   run->wake(condition, INT32_MAX);
@@ -259,17 +258,17 @@ int pthread_cond_broadcast(pthread_cond_t* condition) noexcept {
 
 int pthread_cond_destroy(pthread_cond_t* condition) noexcept {
   if (Scheduler::current() != nullptr) return 0;  // the C library has not seen its waiters
-  static const auto call = real<rr::sim::ConditionFunction>("pthread_cond_destroy", "GLIBC_2.3.2");
+  static constinit Real<rr::sim::ConditionFunction> call{"pthread_cond_destroy", "GLIBC_2.3.2"};
   return call(condition);
 }
 
 int pthread_rwlock_rdlock(pthread_rwlock_t* lock) noexcept {
   Scheduler* const run = Scheduler::current();
   if (run == nullptr) {
-    static const auto call = real<rr::sim::LockFunction>("pthread_rwlock_rdlock");
+    static constinit Real<rr::sim::LockFunction> call{"pthread_rwlock_rdlock"};
     return call(lock);
   }
-  static const auto attempt = real<rr::sim::LockFunction>("pthread_rwlock_tryrdlock");
+  static constinit Real<rr::sim::LockFunction> attempt{"pthread_rwlock_tryrdlock"};
   run->point("lock for reading", lock, 0, RR_CALLER);
   while (attempt(lock) != 0) run->wait("a mutex", lock, never, RR_CALLER);
   rr::sim::note_held(lock);
@@ -279,10 +278,10 @@ int pthread_rwlock_rdlock(pthread_rwlock_t* lock) noexcept {
 int pthread_rwlock_wrlock(pthread_rwlock_t* lock) noexcept {
   Scheduler* const run = Scheduler::current();
   if (run == nullptr) {
-    static const auto call = real<rr::sim::LockFunction>("pthread_rwlock_wrlock");
+    static constinit Real<rr::sim::LockFunction> call{"pthread_rwlock_wrlock"};
     return call(lock);
   }
-  static const auto attempt = real<rr::sim::LockFunction>("pthread_rwlock_trywrlock");
+  static constinit Real<rr::sim::LockFunction> attempt{"pthread_rwlock_trywrlock"};
   run->point("lock", lock, 0, RR_CALLER);
   while (attempt(lock) != 0) run->wait("a mutex", lock, never, RR_CALLER);
   rr::sim::note_held(lock);
@@ -290,7 +289,7 @@ int pthread_rwlock_wrlock(pthread_rwlock_t* lock) noexcept {
 }
 
 int pthread_rwlock_unlock(pthread_rwlock_t* lock) noexcept {
-  static const auto call = real<rr::sim::LockFunction>("pthread_rwlock_unlock");
+  static constinit Real<rr::sim::LockFunction> call{"pthread_rwlock_unlock"};
   Scheduler* const run = Scheduler::current();
   const int result = call(lock);
   if (run == nullptr) return result;
@@ -303,7 +302,7 @@ int pthread_rwlock_unlock(pthread_rwlock_t* lock) noexcept {
 int pthread_once(pthread_once_t* control, void (*initialize)()) {
   Scheduler* const run = Scheduler::current();
   if (run == nullptr) {
-    static const auto call = real<decltype(pthread_once)>("pthread_once");
+    static constinit Real<int(pthread_once_t*, void (*)())> call{"pthread_once"};
     return call(control, initialize);
   }
   auto& begun = rr::sim::begun();
@@ -330,13 +329,13 @@ int pthread_once(pthread_once_t* control, void (*initialize)()) {
 // Priorities mean nothing in a run.
 int sched_setscheduler(pid_t process, int policy, const sched_param* parameters) noexcept {
   if (Scheduler::current() != nullptr) return 0;
-  static const auto call = real<int(pid_t, int, const sched_param*)>("sched_setscheduler");
+  static constinit Real<int(pid_t, int, const sched_param*)> call{"sched_setscheduler"};
   return call(process, policy, parameters);
 }
 
 int setpriority(__priority_which_t which, id_t who, int priority) noexcept {
   if (Scheduler::current() != nullptr) return 0;
-  static const auto call = real<int(__priority_which_t, id_t, int)>("setpriority");
+  static constinit Real<int(__priority_which_t, id_t, int)> call{"setpriority"};
   return call(which, who, priority);
 }
 
@@ -358,7 +357,7 @@ long syscall(long number, ...) noexcept {
                           RR_CALLER);
   }
   if (run != nullptr && number == SYS_sched_setattr) return 0;
-  static const auto call = real<long(long, ...)>("syscall");
+  static constinit Real<long(long, ...)> call{"syscall"};
   return call(number, a, b, c, d, e, f);
 }
 }

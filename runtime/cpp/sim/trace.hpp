@@ -15,10 +15,10 @@ class Trace {
   struct Step {
     std::int64_t time = 0;  ///< nanoseconds of the run
     int thread = 0;
-    const char* what = nullptr;      ///< a literal
-    const void* object = nullptr;    ///< mutex, word; null for none
-    std::int64_t amount = 0;         ///< bytes, a descriptor, another thread
-    const void* caller = nullptr;    ///< an address in the function that did it
+    const char* what = nullptr;    ///< a literal
+    const void* object = nullptr;  ///< mutex, word; null for none
+    std::int64_t amount = 0;       ///< bytes, a descriptor, another thread
+    const void* caller = nullptr;  ///< an address in the function that did it
   };
 
   void add(const Step& step) {
