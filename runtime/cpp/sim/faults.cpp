@@ -2,6 +2,13 @@
 #include "runtime/cpp/sim/faults.hpp"
 
 namespace rr::sim {
+namespace {
+
+constexpr std::size_t smallest_refused = 4'096;
+
+__thread bool is_spared = false;
+
+}  // namespace
 
 Faults& Faults::current() {
   static Faults faults;
@@ -13,10 +20,18 @@ Nanoseconds Faults::next_spurious_wake_up(Scheduler& run) const {
   return run.now() + static_cast<Nanoseconds>(run.random().below(5'000'000));
 }
 
-bool Faults::refuses_thread(Scheduler& run) const { return run.random().once_in(refused_threads); }
+bool Faults::refuses_thread(Scheduler& run) const {
+  return !is_spared && run.random().once_in(refused_threads);
+}
 
 bool Faults::refuses_memory(Scheduler& run, std::size_t size) const {
-  return size > small_block && run.random().once_in(refused_memory);
+  if (refused_memory == 0 || is_spared || Spared::is_in_effect()) return false;
+  // Small blocks are there: systems end the process before they refuse them.
+  if (size < smallest_refused) return false;
+  const Spared spared;
+  return run.random().once_in(refused_memory);
 }
+
+void Faults::spare_this_thread() { is_spared = true; }
 
 }  // namespace rr::sim

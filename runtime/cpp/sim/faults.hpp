@@ -13,7 +13,6 @@ struct Faults {
   std::uint64_t spurious_wake_ups = 0;  ///< of conditions
   std::uint64_t refused_threads = 0;
   std::uint64_t refused_memory = 0;  ///< requests of more than `small_block` bytes
-  std::size_t small_block = 4096;
   // Of the network
   Nanoseconds longest_delay = 1'000'000;  ///< of a segment
   std::uint64_t split_segments = 0;       ///< what is sent at once arrives in parts
@@ -29,6 +28,22 @@ struct Faults {
   [[nodiscard]] Nanoseconds next_spurious_wake_up(Scheduler& run) const;
   [[nodiscard]] bool refuses_thread(Scheduler& run) const;
   [[nodiscard]] bool refuses_memory(Scheduler& run, std::size_t size) const;
+
+  /// The calling thread is the scenario's: it gets what it asks for.
+  static void spare_this_thread();
+};
+
+/// The calling thread gets all memory that it asks for while this exists: what a run itself needs.
+class Spared {
+ public:
+  Spared() { ++depth_; }
+  ~Spared() { --depth_; }
+  Spared(const Spared&) = delete;
+  Spared& operator=(const Spared&) = delete;
+  static bool is_in_effect() { return depth_ != 0; }
+
+ private:
+  static inline thread_local constinit int depth_ = 0;
 };
 
 }  // namespace rr::sim

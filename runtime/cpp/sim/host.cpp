@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "runtime/cpp/sim/faults.hpp"
 #include "runtime/cpp/sim/scheduler.hpp"
 #include "runtime/cpp/stress/everybody.hpp"
 
@@ -72,10 +73,12 @@ void Host::expect_nothing_left(std::chrono::seconds limit) const {
 }
 
 void Producer::produce(std::uint64_t seed) {
+  Faults::spare_this_thread();
   Random random(seed);
+  const auto pauses = static_cast<std::uint64_t>(longest_pause_.count());
   while (!is_ending_) {
     bench_.produce(random.next());
-    std::this_thread::sleep_for(std::chrono::microseconds(random.below(20'000)));
+    std::this_thread::sleep_for(std::chrono::microseconds(random.below(pauses)));
   }
 }
 

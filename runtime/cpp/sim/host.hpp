@@ -45,7 +45,8 @@ class Host {
 class Producer {
  public:
   /// Wires have a value at once.
-  Producer(stress::Bench& bench, std::uint64_t seed) : bench_(bench) {
+  Producer(stress::Bench& bench, std::uint64_t seed, std::chrono::microseconds longest_pause)
+      : bench_(bench), longest_pause_(longest_pause) {
     bench_.produce(seed);
     thread_ = std::thread([this, seed] { produce(seed); });
   }
@@ -60,6 +61,7 @@ class Producer {
   void produce(std::uint64_t seed);
 
   stress::Bench& bench_;
+  const std::chrono::microseconds longest_pause_;
   std::atomic<bool> is_ending_{false};
   std::thread thread_;
 };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "rr/subscription.hpp"
+#include "runtime/cpp/sim/faults.hpp"
 #include "runtime/cpp/sim/host.hpp"
 #include "runtime/cpp/sim/network.hpp"
 #include "runtime/cpp/sim/scenario.hpp"
@@ -42,7 +43,7 @@ class Place {
  private:
   void begin(std::uint16_t port) {
     host_ = std::make_unique<Host>(lines_, 8, impatient_options(), port);
-    producer_ = std::make_unique<Producer>(host_->bench(), ++seed_);
+    producer_ = std::make_unique<Producer>(host_->bench(), ++seed_, milliseconds(500));
   }
   void end() {
     producer_.reset();
@@ -98,8 +99,8 @@ class Subscriber {
   std::vector<Subscription> subscriptions_;
 };
 
-void break_something(Network& network, Place& place, Random& random) {
-  if (random.once_in(4)) return place.restart(milliseconds(random.below(2'000)));
+void break_something(Network& network, Place& place, Random& random, bool is_scarce) {
+  if (!is_scarce && random.once_in(4)) return place.restart(milliseconds(random.below(2'000)));
   const auto streams = network.streams();
   if (streams.empty()) return;
   Stream& one = *streams[random.below(streams.size())];
@@ -119,9 +120,8 @@ void break_something(Network& network, Place& place, Random& random) {
   }
 }
 
-}  // namespace
-
-void run_links(Scheduler& run) {
+void run_with_visitors(Scheduler& run, bool is_scarce) {
+  Faults::spare_this_thread();
   stress::Lines lines;
   Random random(run.random().next());
   Place place(lines, random.next());
@@ -131,8 +131,8 @@ void run_links(Scheduler& run) {
     const auto visitors_count = 1 + random.below(2);
     std::vector<std::unique_ptr<Visitor>> visitors;
     for (std::uint64_t i = 0; i < visitors_count; ++i) {
-      visitors.push_back(
-          std::make_unique<Visitor>(lines, url, "visitor" + std::to_string(i), random.next()));
+      visitors.push_back(std::make_unique<Visitor>(lines, url, "visitor" + std::to_string(i),
+                                                   random.next(), is_scarce));
     }
     std::unique_ptr<Subscriber> subscriber;
     if (random.once_in(2)) subscriber = std::make_unique<Subscriber>(lines, url);
@@ -141,18 +141,32 @@ void run_links(Scheduler& run) {
       threads.emplace_back(
           [&is_over, &each] { each->visit([&is_over] { return is_over.load(); }); });
     }
-    for (std::uint64_t left = 1 + random.below(6); left != 0; --left) {
-      std::this_thread::sleep_for(milliseconds(random.below(3'000)));
-      break_something(*Network::current(), place, random);
+    if (is_scarce) {
+      const std::uint64_t kind = random.below(3);
+      if (kind != 0) Faults::current().refused_memory = 2 + random.below(500);
+      if (kind != 1) Faults::current().refused_threads = 2 + random.below(10);
+      run.note("memory is refused once in " + std::to_string(Faults::current().refused_memory) +
+               ", threads once in " + std::to_string(Faults::current().refused_threads));
     }
+    for (std::uint64_t left = 1 + random.below(6); left != 0; --left) {
+      std::this_thread::sleep_for(milliseconds(random.below(random.once_in(4) ? 60'000 : 3'000)));
+      break_something(*Network::current(), place, random, is_scarce);
+    }
+    Faults::current().refused_memory = 0;
+    Faults::current().refused_threads = 0;
     is_over = true;
     for (std::thread& each : threads) each.join();
     visitors.clear();
     // A user of its own: a lock lasts as long as its user has a session.
-    Visitor(lines, url, "inspector", random.next()).expect_all_well();
+    Visitor(lines, url, "inspector", random.next(), false).expect_all_well();
     if (subscriber) subscriber->expect_values(place.host());
   }
   place.host().expect_nothing_left(std::chrono::seconds(60));
 }
+
+}  // namespace
+
+void run_links(Scheduler& run) { run_with_visitors(run, false); }
+void run_scarce(Scheduler& run) { run_with_visitors(run, true); }
 
 }  // namespace rr::sim

@@ -93,7 +93,7 @@ bool simulate_aside(const Options& options, std::uint64_t seed, Result& result) 
   std::fflush(stdout);
   const pid_t child = ::fork();
   if (child == 0) {
-    ::alarm(40);
+    ::alarm(20);
     simulate(scenario_of(options, seed), seed, *shared);
     _exit(0);
   }
@@ -197,9 +197,10 @@ void settle(char** words) {
 }  // namespace
 
 std::span<const Scenario> scenarios() {
-  static constexpr std::array<Scenario, 2> all{{
+  static constexpr std::array<Scenario, 3> all{{
       {"sessions", "clients that use all members of a service", run_sessions},
       {"links", "links that break and hosts that start anew", run_links},
+      {"scarce", "links that break, and memory and threads that are refused", run_scarce},
   }};
   return all;
 }

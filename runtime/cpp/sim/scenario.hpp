@@ -20,6 +20,8 @@ struct Scenario {
 void run_sessions(Scheduler& run);
 /// Links that break or fall silent, and hosts that start anew, under clients and subscriptions.
 void run_links(Scheduler& run);
+/// The same with one host, whose node and clients are refused memory and threads.
+void run_scarce(Scheduler& run);
 
 /// All of them.
 std::span<const Scenario> scenarios();

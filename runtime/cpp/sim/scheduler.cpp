@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "runtime/cpp/sim/faults.hpp"
 #include "runtime/cpp/sim/real.hpp"
 
 namespace rr::sim {
@@ -71,6 +72,7 @@ Scheduler::~Scheduler() {
 
 void Scheduler::point(const char* what, const void* object, std::int64_t amount,
                       const void* caller) {
+  const Spared spared;
   clock_reads_ = 0;
   trace_.add({now_, this_thread->number, what, object, amount, caller});
   now_ += step_cost;
@@ -100,6 +102,7 @@ Nanoseconds Scheduler::read_clock() {
 
 bool Scheduler::wait(const char* what, const void* object, Nanoseconds deadline,
                      const void* caller) {
+  const Spared spared;
   Thread& thread = *this_thread;
   clock_reads_ = 0;
   trace_.add({now_, thread.number, what, object, -1, caller});
@@ -125,6 +128,7 @@ void Scheduler::make_ready(Thread& thread) {
 }
 
 int Scheduler::wake(const void* object, int most) {
+  const Spared spared;
   std::vector<Thread*> found;
   for (Thread* const thread : waiting_) {
     if (thread->object == object) found.push_back(thread);
@@ -140,6 +144,7 @@ int Scheduler::wake(const void* object, int most) {
 }
 
 void Scheduler::yield() {
+  const Spared spared;
   now_ += step_cost;
   if (now_ >= next_due_) run_due();
   if (ready_.size() == 1) {
@@ -155,11 +160,13 @@ void Scheduler::yield() {
 }
 
 void Scheduler::note(std::string text) {
+  const Spared spared;
   if (notes_.size() == most_notes) notes_.pop_front();
   notes_.push_back({now_, this_thread->number, std::move(text)});
 }
 
 void Scheduler::at(Nanoseconds time, std::function<void()> work) {
+  const Spared spared;
   next_due_ = std::min(next_due_, time);
   events_.push({time, events_made_++, std::move(work)});
 }
@@ -168,6 +175,7 @@ void Scheduler::pass_time(Nanoseconds time) { now_ = std::max(now_, time); }
 
 // Runs what is due, and finds the next that is.
 void Scheduler::run_due() {
+  const Spared spared;
   while (!events_.empty() && events_.top().time <= now_) {
     auto work = std::move(const_cast<Event&>(events_.top()).work);
     events_.pop();
@@ -240,6 +248,7 @@ void Scheduler::leave(void* pointer) {
 
 int Scheduler::start(pthread_t* system, const pthread_attr_t* attributes, void* (*function)(void*),
                      void* argument) {
+  const Spared spared;
   static constinit Real<int(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*)> create{
       "pthread_create"};
   auto thread = std::make_unique<Thread>();
@@ -260,6 +269,7 @@ int Scheduler::start(pthread_t* system, const pthread_attr_t* attributes, void* 
 }
 
 bool Scheduler::join(pthread_t system, const void* caller) {
+  const Spared spared;
   // Numbers of the system are used again: the youngest is meant.
   const auto found = std::find_if(threads_.rbegin(), threads_.rend(), [&](const auto& each) {
     return pthread_equal(each->system, system) != 0;

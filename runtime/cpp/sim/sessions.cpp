@@ -89,7 +89,7 @@ void run_sessions(Scheduler& run) {
     stress::Watchdog watchdog(lines, 2 * stress::hang_limit());
     stress::SocketCutter cutter;
     stress::ChannelContext context{lines, watchdog, cutter, host.url()};
-    const Producer producer(host.bench(), random.next());
+    const Producer producer(host.bench(), random.next(), std::chrono::milliseconds(20));
     Node node({.request_timeout = stress::hang_limit(),
                .connect_timeout = stress::hang_limit(),
                .receive_timeout = stress::hang_limit()});

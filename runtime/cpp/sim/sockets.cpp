@@ -20,6 +20,7 @@
 #include <memory>
 
 #include "runtime/cpp/sim/clock.hpp"
+#include "runtime/cpp/sim/faults.hpp"
 #include "runtime/cpp/sim/network.hpp"
 #include "runtime/cpp/sim/real.hpp"
 
@@ -133,6 +134,7 @@ struct Use {
   [[nodiscard]] std::shared_ptr<Kind> as() const {
     return std::dynamic_pointer_cast<Kind>(file);
   }
+  Spared spared;
   Scheduler* run;
   Network* network;
   std::shared_ptr<File> file;
@@ -161,6 +163,7 @@ using rr::sim::Use;
 extern "C" {
 
 int socket(int family, int type, int protocol) noexcept {
+  const rr::sim::Spared spared;
   Network* const network = Scheduler::current() == nullptr ? nullptr : Network::current();
   const int kind = type & ~(SOCK_CLOEXEC | SOCK_NONBLOCK);
   if (network == nullptr || family == AF_NETLINK) {
@@ -177,6 +180,7 @@ int socket(int family, int type, int protocol) noexcept {
 }
 
 int socketpair(int family, int type, int protocol, int* ends) noexcept {
+  const rr::sim::Spared spared;
   Network* const network = Scheduler::current() == nullptr ? nullptr : Network::current();
   if (network == nullptr) {
     static constinit Real<int(int, int, int, int*)> call{"socketpair"};
@@ -332,6 +336,7 @@ ssize_t write(int descriptor, const void* bytes, size_t size) {
 }
 
 int eventfd(unsigned int value, int flags) noexcept {
+  const rr::sim::Spared spared;
   Network* const network = Scheduler::current() == nullptr ? nullptr : Network::current();
   if (network == nullptr) {
     static constinit Real<int(unsigned int, int)> call{"eventfd"};
@@ -345,6 +350,7 @@ int eventfd_write(int descriptor, eventfd_t value) {
 }
 
 int epoll_create1(int flags) noexcept {
+  const rr::sim::Spared spared;
   Network* const network = Scheduler::current() == nullptr ? nullptr : Network::current();
   if (network == nullptr) {
     static constinit Real<int(int)> call{"epoll_create1"};
@@ -377,6 +383,7 @@ int epoll_wait(int descriptor, epoll_event* events, int most, int timeout) {
 }
 
 int poll(pollfd* wanted, nfds_t count, int timeout) {
+  const rr::sim::Spared spared;
   const bool is_of_a_run = count != 0 && Use(rr::sim::first_descriptor(wanted));
   if (!is_of_a_run) {
     static constinit Real<int(pollfd*, nfds_t, int)> call{"poll"};

@@ -25,7 +25,10 @@ using MutexFunction = int(pthread_mutex_t*);
 using LockFunction = int(pthread_rwlock_t*);
 using ConditionFunction = int(pthread_cond_t*);
 
-void note_held(const void* mutex) { Scheduler::self().held.push_back(mutex); }
+void note_held(const void* mutex) {
+  const Spared spared;
+  Scheduler::self().held.push_back(mutex);
+}
 
 void note_free(const void* mutex) {
   auto& held = Scheduler::self().held;
@@ -140,6 +143,7 @@ int pthread_create(pthread_t* __restrict thread, const pthread_attr_t* __restric
     return call(thread, attributes, start, argument);
   }
   if (Faults::current().refuses_thread(*run)) {
+    run->note("is refused a thread");
     run->point("is refused a thread", nullptr, 0, RR_CALLER);
     return EAGAIN;
   }
@@ -311,7 +315,10 @@ int pthread_once(pthread_once_t* control, void (*initialize)()) {
       run->wait("an initialization", control, never, RR_CALLER);
       continue;
     }
-    begun.insert(control);
+    {
+      const rr::sim::Spared spared;
+      begun.insert(control);
+    }
     struct End {
       pthread_once_t* control;
       Scheduler& run;

@@ -8,6 +8,7 @@
 
 #include "rr/async.hpp"
 #include "rr/locks.hpp"
+#include "runtime/cpp/sim/faults.hpp"
 #include "runtime/cpp/sim/host.hpp"
 #include "runtime/cpp/sim/scheduler.hpp"
 #include "runtime/cpp/stress/everybody.hpp"
@@ -61,11 +62,13 @@ struct Visitor::Streams {
   std::atomic<int> open_calls{0};
 };
 
-Visitor::Visitor(stress::Lines& lines, std::string url, std::string user, std::uint64_t seed)
+Visitor::Visitor(stress::Lines& lines, std::string url, std::string user, std::uint64_t seed,
+                 bool is_scarce)
     : lines_(lines),
       url_(std::move(url)),
       user_(std::move(user)),
       random_(seed),
+      is_scarce_(is_scarce),
       node_(impatient_options()) {}
 
 void Visitor::fault(const std::string& what) { lines_.fault(user_ + ": " + what); }
@@ -76,8 +79,9 @@ void Visitor::attempt(const char* what, const std::function<void()>& action, mil
   try {
     action();
   } catch (const Error& error) {
-    const bool is_excused =
-        !holds_ && std::find(excused.begin(), excused.end(), error.code()) != excused.end();
+    // A member without memory may answer with anything.
+    const bool is_excused = !holds_ && (is_scarce_ || std::find(excused.begin(), excused.end(),
+                                                                error.code()) != excused.end());
     if (!is_excused) failure = error.what();
     Scheduler::current()->note(user_ + ": " + what + " fails: " + error.what());
   }
@@ -127,7 +131,8 @@ void Visitor::connect_streams() {
       "connect a pipe", [&] { broadcast_ = bench->broadcast().connect(); }, call_limit);
   attempt(
       "connect a wire", [&] { level_ = bench->level().connect(); }, call_limit);
-  if (echo_.is_open()) {
+  // A service that is refused memory for what it sends back leaves a packet out.
+  if (echo_.is_open() && !is_scarce_) {
     subscriptions_.push_back(echo_.on_packet([streams](const Packet& packet) {
       expect_no_lock("a packet");
       streams->echo.take(packet->number);
@@ -148,6 +153,7 @@ void Visitor::connect_streams() {
 }
 
 void Visitor::visit(const std::function<bool()>& is_over) {
+  Faults::spare_this_thread();
   while (!is_over()) {
     if (!connect()) {
       std::this_thread::sleep_for(milliseconds(random_.below(300)));
@@ -204,14 +210,15 @@ void Visitor::act() {
             "send a packet",
             [&] {
               if (!echo_.is_open()) return;
-              echo_.send(Stamp{1, sent_ + 1, Array<double>(random_.once_in(8) ? 2'000 : 3)});
+              echo_.send(Stamp{1, sent_ + 1,
+                               Array<double>(!is_scarce_ && random_.once_in(8) ? 2'000 : 3)});
               ++sent_;
             },
             milliseconds(0));
       }
       return;
     case 6:
-      std::this_thread::sleep_for(milliseconds(random_.below(400)));
+      std::this_thread::sleep_for(milliseconds(random_.below(random_.once_in(10) ? 20'000 : 400)));
       return;
     default:
       return attempt(

@@ -24,7 +24,9 @@ NodeOptions impatient_options();
 /// in time and once; its streams may end, but have no gap.
 class Visitor {
  public:
-  Visitor(stress::Lines& lines, std::string url, std::string user, std::uint64_t seed);
+  /// `is_scarce`: memory and threads may be refused to nodes.
+  Visitor(stress::Lines& lines, std::string url, std::string user, std::uint64_t seed,
+          bool is_scarce);
 
   /// Connects, does `actions` things, closes or is closed; so again until `is_over`.
   void visit(const std::function<bool()>& is_over);
@@ -51,6 +53,7 @@ class Visitor {
   const std::string url_;
   const std::string user_;
   Random random_;
+  const bool is_scarce_;
   Node node_;
   Client<Bench> client_;
   std::shared_ptr<Streams> streams_;

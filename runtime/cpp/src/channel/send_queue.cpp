@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include "runtime/cpp/src/channel/carrier.hpp"
@@ -37,7 +38,11 @@ SendQueue::Sent SendQueue::send(Writer& message, const How& how) {
   bool has_rest = false;
   const std::lock_guard lock(mutex_);
   const bool had_rest = has_unsent_.load(std::memory_order_relaxed);
-  if (!send_under_lock(message, how, has_rest)) return Sent::broken;
+  try {
+    if (!send_under_lock(message, how, has_rest)) return Sent::broken;
+  } catch (const std::bad_alloc&) {
+    return Sent::broken;  // a part may have left
+  }
   return has_rest && !had_rest ? Sent::first : Sent::taken;
 }
 
@@ -133,7 +138,7 @@ void SendQueue::queue_newest_and_tell(Writer& message, const Newest& newest) {
   *queued.mark = tap_.sent(message.pieces());
 }
 
-bool SendQueue::hold_back(Writer& message, Priority priority) {
+bool SendQueue::hold_back(Writer& message, Priority priority) try {
   const std::lock_guard lock(mutex_);
   if (charge_.has_account() && has_unsent() &&
       !admit(message.size(), ErrorCode::out_of_system_resource)) {
@@ -153,6 +158,8 @@ bool SendQueue::hold_back(Writer& message, Priority priority) {
   answer_bytes_ += message.size();
   note_waiting();
   return true;
+} catch (const std::bad_alloc&) {
+  return false;
 }
 
 SendQueue::Flushed SendQueue::flush() {

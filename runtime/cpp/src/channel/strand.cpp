@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstring>
+#include <new>
 
 #include "runtime/cpp/src/channel/strand_turn.hpp"
 #include "runtime/cpp/src/channel/stream_sizes.hpp"
@@ -62,16 +63,29 @@ std::deque<Frame>& Strand::queue() {
   return *queue_;
 }
 
+[[gnu::hot]] bool Strand::put(Frame frame, bool is_first) {
+  const std::size_t size = frame.bytes.size();
+  try {
+    Frame kept = keep(std::move(frame));
+    if (is_first) {
+      queue().push_front(std::move(kept));
+    } else {
+      queue().push_back(std::move(kept));
+    }
+  } catch (const std::bad_alloc&) {
+    has_lost_ = true;
+    return false;
+  }
+  queued_bytes_ += size;
+  return true;
+}
+
 [[gnu::hot]] void Strand::push(Frame frame) {
-  queued_bytes_ += frame.bytes.size();
-  queue().push_back(keep(std::move(frame)));
-  charge(queue_->back());
+  if (put(std::move(frame), false)) charge(queue_->back());
 }
 
 void Strand::push_first(Frame frame) {
-  queue().push_front(keep(std::move(frame)));
-  queued_bytes_ += queue_->front().bytes.size();
-  charge(queue_->front());
+  if (put(std::move(frame), true)) charge(queue_->front());
 }
 
 Frame Strand::pop() {

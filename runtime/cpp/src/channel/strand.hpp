@@ -65,12 +65,14 @@ class Strand {
   /// of what was queued.
   bool finish();
 
-  // The queue.
+  // The queue. What cannot be kept for want of memory is lost: has_lost() is true from then on, and
+  // the connection must end.
   void push(Frame frame);
   /// The next one is this, again.
   void push_first(Frame frame);
   /// What the thread of the turn has not handled is next again.
   void push_rest(StrandTurn& turn);
+  [[nodiscard]] bool has_lost() const { return has_lost_; }
   [[nodiscard]] bool has_queued() const { return queue_ && !queue_->empty(); }
   Frame pop();
   [[nodiscard]] std::unique_ptr<std::deque<Frame>> take_queue();
@@ -114,6 +116,7 @@ class Strand {
 
   void become(State state);
   std::deque<Frame>& queue();
+  bool put(Frame frame, bool is_first);
   void charge(Frame& frame);
 
   const std::size_t limit_;
@@ -122,6 +125,7 @@ class Strand {
   Suspension suspension_ = Suspension::no;
   bool is_full_ = false;
   bool owes_end_ = false;
+  bool has_lost_ = false;
   unsigned outside_ = 0;  // threads in the receiver, now or soon, without the strand
   Returning* returning_ = nullptr;
   std::unique_ptr<std::deque<Frame>> queue_;

@@ -228,6 +228,8 @@ class StreamConnection final : public Connection,
   // Life (stream_connection.cpp)
   void look_after();
   void begin_close(const Error& why);
+  void end_if_lost();
+  static Error no_memory(std::string_view why = "no memory");
   void finish_close();
   [[nodiscard]] Limits limits() const;
   [[nodiscard]] std::uint32_t largest_message() const;

@@ -55,7 +55,13 @@ void StreamConnection::handle_in_turn(StrandTurn& turn, Handling admission, bool
   must_post = !strand_.is_taken();
   if (must_post) strand_.orphan();
   strand_.check_limit();
+  end_if_lost();
   return false;
+}
+
+// Under mutex_: a message that could not be kept is the last.
+void StreamConnection::end_if_lost() {
+  if (strand_.has_lost()) begin_close(no_memory());
 }
 
 // A thread that polls does not handle the messages of one connection for long while others wait.
@@ -96,6 +102,7 @@ void StreamConnection::queue_rest(StrandTurn& turn) {
   holds_back_answers_ = false;
   const std::lock_guard lock(mutex_);
   strand_.push_rest(turn);
+  end_if_lost();
 }
 
 // With the strand, which is given back: the queue. True when reading had to stop because of it.
@@ -185,7 +192,11 @@ void StreamConnection::drain_posted() {
   }
   complete(message);
   if (turn != nullptr) turn->count(message.entry_count);
-  receiver_->handle(message, scratch.first, frame.owner);
+  try {
+    receiver_->handle(message, scratch.first, frame.owner);
+  } catch (const std::exception& error) {  // not of the program's code, which is looked after
+    close(no_memory(error.what()));
+  }
   // What could not be sent is not to be kept until this thread writes again.
   Writer& writer = thread_writer();
   if (writer.size() >= Writer::attach_threshold) writer.reset(writer.version());
@@ -228,6 +239,7 @@ bool StreamConnection::step_out() {
     if (!may_go_outside()) return false;
     must_flush = std::exchange(holds_back_answers_, false);
     must_post = strand_.step_out(*turn);
+    end_if_lost();
   }
   if (must_flush) flush();
   if (must_post) drain_soon();
@@ -270,7 +282,9 @@ bool StreamConnection::is_suspended(StrandTurn& turn, Frame frame) {
   turn.set_put_off(false);
   holds_back_answers_ = false;
   const std::lock_guard lock(mutex_);
-  return strand_.suspend(turn, std::move(frame));
+  const bool is_suspended = strand_.suspend(turn, std::move(frame));
+  end_if_lost();
+  return is_suspended;
 }
 
 void StreamConnection::resume() {

@@ -135,7 +135,12 @@ bool StreamConnection::give_way_to_others(std::size_t bytes) const {
 
 StreamConnection::Received StreamConnection::receive(Scratch& scratch, bool may_block,
                                                      bool& is_full) {
-  const Received received = receive_once(scratch, may_block, is_full);
+  Received received = Received::end;
+  try {
+    received = receive_once(scratch, may_block, is_full);
+  } catch (const std::exception& error) {
+    fail_reading(no_memory(error.what()));
+  }
   lease_.wake_answered();
   return received;
 }
@@ -164,6 +169,12 @@ StreamConnection::Received StreamConnection::receive(Scratch& scratch, bool may_
   const auto received = static_cast<std::size_t>(size);
   is_full = received == room.size();
   return take_bytes(scratch, received);
+}
+
+// Why a connection ends that cannot keep what the other side has sent.
+Error StreamConnection::no_memory(std::string_view why) {
+  return {ErrorCode::out_of_system_resource,
+          "a message of the other side could not be handled: " + std::string(why)};
 }
 
 // With the read lease.
