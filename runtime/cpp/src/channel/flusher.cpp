@@ -10,18 +10,19 @@ namespace rr::channel {
 
 Flusher::~Flusher() { stop(); }
 
-void Flusher::add(std::shared_ptr<Flushable> flushable) {
+bool Flusher::add(std::shared_ptr<Flushable> flushable) {
   {
     const std::lock_guard lock(mutex_);
-    if (is_stopping_) return;
-    due_.push_back(std::move(flushable));
+    if (is_stopping_) return true;
     try {
       if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
     } catch (const std::system_error&) {
-      // Tried again with the next one; what is left until then goes with the next message.
+      return false;  // tried again with the next one
     }
+    due_.push_back(std::move(flushable));
   }
   wake_.notify_one();
+  return true;
 }
 
 void Flusher::stop() {

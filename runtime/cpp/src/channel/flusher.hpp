@@ -30,8 +30,9 @@ class Flusher {
   Flusher(const Flusher&) = delete;
   Flusher& operator=(const Flusher&) = delete;
 
-  /// Nothing happens when it has been stopped.
-  void add(std::shared_ptr<Flushable> flushable);
+  /// Nothing happens when it has been stopped. False when there is no thread for it: somebody else
+  /// has to flush.
+  [[nodiscard]] bool add(std::shared_ptr<Flushable> flushable);
   /// What was added before is flushed.
   void stop();
 

@@ -185,7 +185,11 @@ void StreamConnection::watch_for_room() {
     // What closes it may run what is left over, so not here, under the caller's lock.
     fail_later();
   } else if (sent == SendQueue::Sent::first) {
-    reactor_->flusher().add(shared_from_this());  // sends it, or waits for room
+    // It sends, or waits for room. Without its thread one of the node's does, not this one: what a
+    // broken connection leaves over would run here, under the caller's lock.
+    if (!reactor_->flusher().add(shared_from_this())) {
+      reactor_->post([self = shared_from_this()] { self->flush_streamed(); });
+    }
   }
 }
 
