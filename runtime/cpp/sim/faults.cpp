@@ -17,7 +17,9 @@ Faults& Faults::current() {
 
 Nanoseconds Faults::next_spurious_wake_up(Scheduler& run) const {
   if (!run.random().once_in(spurious_wake_ups)) return never;
-  return run.now() + static_cast<Nanoseconds>(run.random().below(5'000'000));
+  // Soon, or when most of a wait is over.
+  const std::uint64_t longest = run.random().once_in(2) ? 5'000'000 : 2'000'000'000;
+  return run.now() + static_cast<Nanoseconds>(run.random().below(longest));
 }
 
 bool Faults::refuses_thread(Scheduler& run) const {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <malloc.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/personality.h>
@@ -11,32 +10,25 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <initializer_list>
 #include <string>
-#include <string_view>
 #include <thread>
 
 #include "runtime/cpp/sim/faults.hpp"
 #include "runtime/cpp/sim/network.hpp"
+#include "runtime/cpp/sim/options.hpp"
 #include "runtime/cpp/sim/scenario.hpp"
 #include "runtime/cpp/sim/scheduler.hpp"
 
 namespace rr::sim {
 namespace {
 
-constexpr const char* usage =
-    "usage: rr_sim [--scenario NAME] [--seed N | --from N --count N | --seconds S] [--repeat]\n"
-    "  --seed N     one run, and its last steps (RR_SIM_STEPS of them) when it fails\n"
-    "  --count N    so many seeds, from 1 or --from on; stops at none\n"
-    "  --seconds S  as many seeds as there is time for\n"
-    "  --repeat     each seed twice: both runs must be the same\n";
+using Number = unsigned long long;
 
-struct Options {
-  const Scenario* scenario = nullptr;  // null: each seed has one
-  std::uint64_t from = 1;
-  std::uint64_t count = 1;
-  std::chrono::seconds time{0};
-  bool repeats = false;
-};
+// Of the system's time: a run that takes longer goes round in circles.
+constexpr unsigned longest_run = 60;
+// A planted fault must be found by one of so many seeds.
+constexpr std::uint64_t planted_seeds = 300;
 
 /// What a run leaves.
 struct Result {
@@ -81,21 +73,29 @@ void simulate(const Scenario& scenario, std::uint64_t seed, Result& result) {
   result = {run.now(), run.trace().count(), run.trace().hash()};
 }
 
-const Scenario& scenario_of(const Options& options, std::uint64_t seed) {
-  if (options.scenario != nullptr) return *options.scenario;
-  return scenarios()[seed % scenarios().size()];
-}
-
 // In a process of its own: a run ends where it fails, and nothing of it reaches the next one.
-bool simulate_aside(const Options& options, std::uint64_t seed, Result& result) {
+// `output`, if any, gets what a failure prints.
+bool simulate_aside(const Wanted& wanted, Result& result, std::string* output = nullptr) {
   static auto* const shared = static_cast<Result*>(
       ::mmap(nullptr, sizeof(Result), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+  *shared = {};
+  std::array<int, 2> ends{-1, -1};
+  if (output != nullptr && ::pipe(ends.data()) != 0) return false;
   std::fflush(stdout);
   const pid_t child = ::fork();
   if (child == 0) {
-    ::alarm(20);
-    simulate(scenario_of(options, seed), seed, *shared);
+    if (output != nullptr) ::dup2(ends[1], STDOUT_FILENO);
+    ::alarm(longest_run);
+    simulate(*wanted.scenario, wanted.seed, *shared);
     _exit(0);
+  }
+  if (output != nullptr) {
+    ::close(ends[1]);
+    std::array<char, 4096> part{};
+    for (ssize_t size = 0; (size = ::read(ends[0], part.data(), part.size())) > 0;) {
+      output->append(part.data(), static_cast<std::size_t>(size));
+    }
+    ::close(ends[0]);
   }
   int status = 0;
   ::waitpid(child, &status, 0);
@@ -106,77 +106,95 @@ bool simulate_aside(const Options& options, std::uint64_t seed, Result& result) 
   return status == 0;
 }
 
-std::string again(const Options& options, std::uint64_t seed) {
-  return std::string("rr_sim --scenario ") + scenario_of(options, seed).name + " --seed " +
-         std::to_string(seed);
-}
+/// Runs, and what they come to.
+class Sweep {
+ public:
+  explicit Sweep(bool repeats) : repeats_(repeats) {}
+
+  void run(const Wanted& wanted) {
+    ++runs_;
+    Result result{};
+    if (!is_good(wanted, result)) {
+      ++failures_;
+      std::printf("  again: rr_sim --scenario %s --seed %llu\n", wanted.scenario->name,
+                  static_cast<Number>(wanted.seed));
+    }
+    simulated_ += result.simulated;
+    steps_ += result.steps;
+  }
+  [[nodiscard]] std::uint64_t runs() const { return runs_; }
+  [[nodiscard]] std::chrono::duration<double> took() const { return Clock::now() - begin_; }
+
+  /// Says what was done; the exit code.
+  [[nodiscard]] int finish() const {
+    const double hours = static_cast<double>(simulated_) / 3.6e12;
+    std::printf(
+        "%llu seeds, %llu failed; %.2f hours simulated in %.1f s (%.0f per hour), %.1f "
+        "million steps\n",
+        static_cast<Number>(runs_), static_cast<Number>(failures_), hours, took().count(),
+        hours * 3600 / took().count(), static_cast<double>(steps_) / 1e6);
+    return failures_ == 0 ? 0 : 1;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  [[nodiscard]] bool is_good(const Wanted& wanted, Result& result) const {
+    if (!simulate_aside(wanted, result)) return false;
+    if (!repeats_) return true;
+    const Result first = result;
+    if (!simulate_aside(wanted, result)) return false;
+    if (first.hash == result.hash) return true;
+    std::printf("FAILED: two runs differ: %llu and %llu steps\n", static_cast<Number>(first.steps),
+                static_cast<Number>(result.steps));
+    return false;
+  }
+
+  const bool repeats_;
+  const Clock::time_point begin_ = Clock::now();
+  std::uint64_t runs_ = 0;
+  std::uint64_t failures_ = 0;
+  std::uint64_t steps_ = 0;
+  Nanoseconds simulated_ = 0;
+};
 
 int sweep(const Options& options) {
-  using Clock = std::chrono::steady_clock;
-  const auto begin = Clock::now();
-  std::uint64_t runs = 0;
-  std::uint64_t failures = 0;
-  std::uint64_t steps = 0;
-  Nanoseconds simulated = 0;
-  const auto goes_on = [&] {
-    return options.time.count() == 0 ? runs < options.count : Clock::now() - begin < options.time;
-  };
-  for (std::uint64_t seed = options.from; goes_on(); ++seed, ++runs) {
-    Result result{};
-    bool is_good = simulate_aside(options, seed, result);
-    if (is_good && options.repeats) {
-      const Result first = result;
-      is_good = simulate_aside(options, seed, result);
-      if (is_good && first.hash != result.hash) {
-        std::printf("FAILED: two runs differ: %llu and %llu steps\n",
-                    static_cast<unsigned long long>(first.steps),
-                    static_cast<unsigned long long>(result.steps));
-        is_good = false;
-      }
-    }
-    if (!is_good) {
-      ++failures;
-      std::printf("  again: %s\n", again(options, seed).c_str());
-    }
-    simulated += result.simulated;
-    steps += result.steps;
+  Sweep sweep(options.repeats);
+  if (!options.seeds_file.empty()) {
+    for (const Wanted& each : read_seeds(options.seeds_file)) sweep.run(each);
+    return sweep.finish();
   }
-  const std::chrono::duration<double> took = Clock::now() - begin;
-  const double hours = static_cast<double>(simulated) / 3.6e12;
-  std::printf(
-      "%llu seeds, %llu failed; %.2f hours simulated in %.1f s (%.0f per hour), %.1f "
-      "million steps\n",
-      static_cast<unsigned long long>(runs), static_cast<unsigned long long>(failures), hours,
-      took.count(), hours * 3600 / took.count(), static_cast<double>(steps) / 1e6);
-  return failures == 0 ? 0 : 1;
+  for (std::uint64_t seed = options.from;; ++seed) {
+    const bool goes_on =
+        options.time.count() == 0 ? sweep.runs() < options.count : sweep.took() < options.time;
+    if (!goes_on) return sweep.finish();
+    const Scenario& each = scenarios()[seed % scenarios().size()];
+    sweep.run({options.scenario == nullptr ? &each : options.scenario, seed});
+  }
 }
 
-bool read_options(int count, char** words, Options& options) {
-  for (int i = 1; i < count; ++i) {
-    const std::string_view word = words[i];
-    if (word == "--repeat") {
-      options.repeats = true;
-      continue;
-    }
-    if (i + 1 == count) return false;
-    const char* const value = words[++i];
-    const std::uint64_t number = std::strtoull(value, nullptr, 10);
-    if (word == "--scenario") {
-      for (const Scenario& each : scenarios()) {
-        if (std::strcmp(each.name, value) == 0) options.scenario = &each;
-      }
-      if (options.scenario == nullptr) return false;
-    } else if (word == "--seed" || word == "--from") {
-      options.from = number;
-    } else if (word == "--count") {
-      options.count = number;
-    } else if (word == "--seconds") {
-      options.time = std::chrono::seconds(number);
-    } else {
-      return false;
-    }
+bool is_found(const Planted& planted) {
+  for (std::uint64_t seed = 1; seed <= planted_seeds; ++seed) {
+    Result result{};
+    std::string output;
+    if (simulate_aside({&planted.scenario, seed}, result, &output)) continue;
+    const bool is_right = output.find(planted.found) != std::string::npos;
+    std::printf("%-16s %s by seed %llu\n", planted.scenario.name,
+                is_right ? "found" : "FAILED otherwise", static_cast<Number>(seed));
+    if (!is_right) std::printf("%s\n", output.c_str());
+    return is_right;
   }
-  return true;
+  std::printf("%-16s NOT FOUND by %llu seeds: %s\n", planted.scenario.name,
+              static_cast<Number>(planted_seeds), planted.scenario.what);
+  return false;
+}
+
+int look_for_planted() {
+  int missing = 0;
+  for (const Planted& each : planted_faults()) {
+    if (!is_found(each)) ++missing;
+  }
+  return missing == 0 ? 0 : 1;
 }
 
 // Addresses are the same in each process, and memory is given out in one order. One processor:
@@ -214,5 +232,5 @@ int main(int count, char** words) {
     return 2;
   }
   rr::sim::settle(words);
-  return rr::sim::sweep(options);
+  return options.looks_for_planted ? rr::sim::look_for_planted() : rr::sim::sweep(options);
 }

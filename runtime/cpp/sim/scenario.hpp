@@ -16,6 +16,12 @@ struct Scenario {
   void (*run)(Scheduler& run);
 };
 
+/// A scenario with a fault, which runs have to find.
+struct Planted {
+  Scenario scenario;
+  const char* found;  ///< is in what the failure says
+};
+
 /// Clients with sessions that use all members of a service, each with its end.
 void run_sessions(Scheduler& run);
 /// Links that break or fall silent, and hosts that start anew, under clients and subscriptions.
@@ -25,5 +31,7 @@ void run_scarce(Scheduler& run);
 
 /// All of them.
 std::span<const Scenario> scenarios();
+/// All faults that are there to be found.
+std::span<const Planted> planted_faults();
 
 }  // namespace rr::sim
