@@ -31,6 +31,11 @@ void expect_no_lock(const char* where) {
   Scheduler::current()->fail(std::string("user code runs under a lock: ") + where);
 }
 
+std::chrono::milliseconds longest_delay() {
+  return std::chrono::ceil<std::chrono::milliseconds>(
+      std::chrono::nanoseconds(Scheduler::current()->longest_delay()));
+}
+
 Host::Host(stress::Lines& lines, std::uint32_t clients, NodeOptions options, std::uint16_t port)
     : shared_(lines),
       bench_(std::make_shared<stress::Bench>(shared_, clients)),
@@ -49,7 +54,9 @@ Host::Host(stress::Lines& lines, std::uint32_t clients, NodeOptions options, std
                                              bench_->forget(client.endpoint);
                                              --clients_;
                                            }})),
-      port_(node_.listen_tcp(port, "127.0.0.1")) {}
+      port_(node_.listen_tcp(port, "127.0.0.1")) {
+  shared_.longest_delay = longest_delay() + std::chrono::milliseconds(600);
+}
 
 std::string Host::url() const {
   return "rr+tcp://127.0.0.1:" + std::to_string(port_) + "/?service=bench";

@@ -18,6 +18,9 @@ namespace rr::sim {
 /// code.
 void expect_no_lock(const char* where);
 
+/// How long threads of the run may be held up in all.
+std::chrono::milliseconds longest_delay();
+
 /// A node with the service of the stress program.
 class Host {
  public:

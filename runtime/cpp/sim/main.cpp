@@ -123,6 +123,7 @@ class Sweep {
     steps_ += result.steps;
   }
   [[nodiscard]] std::uint64_t runs() const { return runs_; }
+  [[nodiscard]] bool has_failed() const { return failures_ != 0; }
   [[nodiscard]] std::chrono::duration<double> took() const { return Clock::now() - begin_; }
 
   /// Says what was done; the exit code.
@@ -165,6 +166,7 @@ int sweep(const Options& options) {
     return sweep.finish();
   }
   for (std::uint64_t seed = options.from;; ++seed) {
+    if (options.stops_at_first && sweep.has_failed()) return sweep.finish();
     const bool goes_on =
         options.time.count() == 0 ? sweep.runs() < options.count : sweep.took() < options.time;
     if (!goes_on) return sweep.finish();

@@ -10,12 +10,14 @@
 namespace rr::sim {
 
 const char* const usage =
-    "usage: rr_sim [--scenario NAME] [--seed N | --from N --count N | --seconds S] [--repeat]\n"
+    "usage: rr_sim [--scenario NAME] [--seed N | --from N --count N | --seconds S] [--first]\n"
+    "              [--repeat]\n"
     "       rr_sim --seeds FILE | --planted\n"
     "  --scenario   sessions, links, scarce; otherwise each seed has one of them\n"
     "  --seed N     one run; when it fails its last steps are printed (RR_SIM_STEPS of them)\n"
     "  --count N    so many seeds, from 1 or --from on\n"
     "  --seconds S  as many seeds as there is time for\n"
+    "  --first      stops at the first failure\n"
     "  --repeat     each seed twice: both runs must be the same\n"
     "  --seeds      the runs of a file: a scenario and a seed in each line\n"
     "  --planted    scenarios with faults: each must be found\n";
@@ -27,11 +29,22 @@ const Scenario* scenario_named(const std::string& name) {
   return nullptr;
 }
 
+namespace {
+
+bool* flag_of(std::string_view word, Options& options) {
+  if (word == "--repeat") return &options.repeats;
+  if (word == "--planted") return &options.looks_for_planted;
+  return word == "--first" ? &options.stops_at_first : nullptr;
+}
+
+}  // namespace
+
 bool read_options(int count, char** words, Options& options) {
   for (int i = 1; i < count; ++i) {
     const std::string_view word = words[i];
-    if (word == "--repeat" || word == "--planted") {
-      (word == "--repeat" ? options.repeats : options.looks_for_planted) = true;
+    bool* const flag = flag_of(word, options);
+    if (flag != nullptr) {
+      *flag = true;
       continue;
     }
     if (i + 1 == count) return false;

@@ -24,6 +24,7 @@ struct Options {
   std::chrono::seconds time{0};  ///< instead of a count
   bool repeats = false;          ///< each seed twice
   bool looks_for_planted = false;
+  bool stops_at_first = false;
   std::string seeds_file{};  ///< of seeds that have found something once
 };
 

@@ -70,6 +70,12 @@ class Scheduler {
   static Thread& self();
 
   [[nodiscard]] Nanoseconds now() const { return now_; }
+  /// How long threads may be held up in all.
+  [[nodiscard]] Nanoseconds longest_delay() const {
+    return turns_.stalls_once_in == 0
+               ? 0
+               : static_cast<Nanoseconds>(turns_.most_stalls) * turns_.longest_stall;
+  }
   Random& random() { return random_; }
   Trace& trace() { return trace_; }
 

@@ -42,6 +42,9 @@ class Visitor {
   void connect_streams();
   void act();
   void use_generator();
+  void be_asked();
+  void reach_part_twice();
+  void receive_in_two_threads();
   void use_part();
   void call_aside();
   void attempt(const char* what, const std::function<void()>& action,
