@@ -3,12 +3,12 @@
 
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/visibility.hpp"
 
 /// What generated Default classes stand on.
@@ -25,17 +25,17 @@ class Stored {
 
   /// A copy of the value.
   [[nodiscard]] T get() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return value_;
   }
   /// Sets the value.
   void set(T value) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     std::swap(value_, value);
   }
 
  private:
-  mutable std::mutex mutex_;
+  mutable Mutex mutex_;
   T value_{};
 };
 
@@ -67,7 +67,7 @@ class StoredPerClient {
   /// the initial one.
   [[nodiscard]] T get() const {
     const void* const session = ClientValues::current_session();
-    const std::lock_guard lock(values_->mutex);
+    const MutexLock lock(values_->mutex);
     const auto found = values_->own.find(session);
     return found != values_->own.end() ? found->second : values_->initial;
   }
@@ -75,7 +75,7 @@ class StoredPerClient {
   /// initial one.
   void set(T value) {
     const void* const session = ClientValues::current_session();
-    const std::lock_guard lock(values_->mutex);
+    const MutexLock lock(values_->mutex);
     if (session == nullptr) {
       std::swap(values_->initial, value);
     } else if (const auto found = values_->own.find(session); found != values_->own.end()) {
@@ -90,11 +90,11 @@ class StoredPerClient {
     explicit Values(T first) : initial(std::move(first)) {}
     void forget(const void* session) override {
       typename std::map<const void*, T>::node_type forgotten;  // goes when the lock has
-      const std::lock_guard lock(mutex);
+      const MutexLock lock(mutex);
       forgotten = own.extract(session);
     }
 
-    std::mutex mutex;
+    Mutex mutex;
     T initial;
     std::map<const void*, T> own;
   };

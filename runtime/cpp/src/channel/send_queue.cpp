@@ -19,23 +19,23 @@ SendQueue::SendQueue(const Terms& terms, const ConnectionTap& tap)
       last_sent_(coarse_now()) {}
 
 void SendQueue::set_account(std::shared_ptr<Account> account) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   charge_ = Charge(std::move(account));
 }
 
 void SendQueue::set_carrier(Carrier* carrier) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   carrier_ = carrier;
 }
 
 Carrier* SendQueue::carrier() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return carrier_;
 }
 
 SendQueue::Sent SendQueue::send(Writer& message, const How& how) {
   bool has_rest = false;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const bool had_rest = has_unsent_.load(std::memory_order_relaxed);
   if (!send_under_lock(message, how, has_rest)) return Sent::broken;
   return has_rest && !had_rest ? Sent::first : Sent::taken;
@@ -125,7 +125,7 @@ void SendQueue::queue(Writer& message, std::size_t sent, const How& how,
 // Under mutex_. A message that waits where another one of its stream did is told as such; one that
 // is older than that is not sent.
 void SendQueue::queue_newest_and_tell(Writer& message, const Newest& newest) {
-  const std::lock_guard lock(gathering_);
+  const MutexLock lock(gathering_);
   move_gathered();
   const Outbox::Queued queued = outbox_.add_newest(message, newest.stream, newest.time);
   if (queued.mark == nullptr) return;
@@ -134,7 +134,7 @@ void SendQueue::queue_newest_and_tell(Writer& message, const Newest& newest) {
 }
 
 bool SendQueue::hold_back(Writer& message, Priority priority) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (charge_.has_account() && has_unsent() &&
       !admit(message.size(), ErrorCode::out_of_system_resource)) {
     return false;
@@ -157,7 +157,7 @@ bool SendQueue::hold_back(Writer& message, Priority priority) {
 
 SendQueue::Flushed SendQueue::flush() {
   Flushed result;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   take_gathered();
   if ((outbox_.empty() && carrier_unsent() == 0) || is_closed()) return result;
   const std::size_t before = unsent();
@@ -177,7 +177,7 @@ SendQueue::Flushed SendQueue::flush() {
 }
 
 bool SendQueue::check_answers() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (has_unsent() && !is_closed() && waiting_answers() > most_answers()) answers_wait_ = true;
   return do_answers_wait();
 }
@@ -206,15 +206,15 @@ std::size_t SendQueue::carrier_unsent() const {
 }
 
 bool SendQueue::is_empty() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return outbox_.empty();
 }
 
 void SendQueue::clear() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   outbox_.clear();
   charge_.clear();
-  const std::lock_guard gathering(gathering_);
+  const MutexLock gathering(gathering_);
   gathered_ = {};
   gathered_size_ = 0;
 }

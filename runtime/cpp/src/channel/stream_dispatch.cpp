@@ -94,14 +94,14 @@ bool StreamConnection::must_yield(StrandTurn& turn) const {
 // With the strand: what the thread has not handled of a receive is next again.
 void StreamConnection::queue_rest(StrandTurn& turn) {
   holds_back_answers_ = false;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   strand_.push_rest(turn);
 }
 
 // With the strand, which is given back: the queue. True when reading had to stop because of it.
 // Whoever has stepped out and wants to step in again comes first.
 [[gnu::hot]] bool StreamConnection::drain(StrandTurn& turn) {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   bool is_looked_at = false;
   while (true) {
     if (strand_.is_anybody_returning()) {
@@ -161,14 +161,14 @@ void StreamConnection::drain_posted() {
   {
     bool must_read = false;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (!strand_.adopt()) return;  // somebody was faster
       must_read = must_read_on();
     }
     if (must_read) read_soon(false);
     const ScratchLease scratch;
     scratch->waiting.clear();
-    StrandTurn turn(strand_, *scratch, longest_turn_here());
+    StrandTurn turn(strand(), *scratch, longest_turn_here());
     was_stalled = drain(turn);
     if (threads_) note_pace(turn);
   }
@@ -219,12 +219,12 @@ bool StreamConnection::may_go_outside() const {
 }
 
 bool StreamConnection::step_out() {
-  StrandTurn* const turn = StrandTurn::current(strand_);
+  StrandTurn* const turn = StrandTurn::current(strand());
   if (turn == nullptr || !turn->is_held()) return false;
   bool must_post = false;
   bool must_flush = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!may_go_outside()) return false;
     must_flush = std::exchange(holds_back_answers_, false);
     must_post = strand_.step_out(*turn);
@@ -238,8 +238,8 @@ bool StreamConnection::step_in(Time deadline) {
   Reactor::about_to_wait();
   bool must_read = false;
   {
-    std::unique_lock lock(mutex_);
-    if (!strand_.step_in(*StrandTurn::current(strand_), lock, deadline)) return false;
+    const MutexLock lock(mutex_);
+    if (!strand_.step_in(*StrandTurn::current(strand()), mutex_, deadline)) return false;
     must_read = must_read_on();
   }
   if (must_read) read_soon(false);
@@ -247,7 +247,7 @@ bool StreamConnection::step_in(Time deadline) {
 }
 
 void StreamConnection::await_strand() {
-  const StrandTurn* const turn = StrandTurn::current(strand_);
+  const StrandTurn* const turn = StrandTurn::current(strand());
   if (turn != nullptr && !turn->is_held()) step_in(never);
 }
 
@@ -257,10 +257,10 @@ bool StreamConnection::must_read_on() {
 }
 
 bool StreamConnection::suspend() {
-  StrandTurn* const turn = StrandTurn::current(strand_);
+  StrandTurn* const turn = StrandTurn::current(strand());
   if (turn == nullptr || !turn->is_held() || turn->is_put_off()) return false;
   turn->set_put_off(true);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   strand_.begin_suspending();
   return true;
 }
@@ -269,13 +269,13 @@ bool StreamConnection::suspend() {
 bool StreamConnection::is_suspended(StrandTurn& turn, Frame frame) {
   turn.set_put_off(false);
   holds_back_answers_ = false;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return strand_.suspend(turn, std::move(frame));
 }
 
 void StreamConnection::resume() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!strand_.resume()) return;
   }
   drain_soon();
@@ -284,7 +284,7 @@ void StreamConnection::resume() {
 // Beside the strand
 
 bool StreamConnection::begin_beside() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!may_go_outside()) return false;
   strand_.go_beside();
   return true;
@@ -293,7 +293,7 @@ bool StreamConnection::begin_beside() {
 // The last one owes the end of the connection.
 void StreamConnection::end_beside() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     strand_.come_from_beside();
     if (!strand_.is_end_due() || strand_.is_taken()) return;
     strand_.orphan();
@@ -304,7 +304,7 @@ void StreamConnection::end_beside() {
 // The threads that the functions of callbacks take: several services together leave some to others.
 // Those of an address do not count as its clients.
 std::shared_ptr<ThreadShare> StreamConnection::callback_share() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!callback_threads_) {
     callback_threads_ = reactor_->open_share("to " + remote_key(remote_address_));
   }

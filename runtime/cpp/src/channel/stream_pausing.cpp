@@ -2,7 +2,6 @@
 // When a server does not read a connection on, nor hands on what it has read: for want of memory,
 // or while the other side does not take its answers. And how long a message may take to come.
 #include <algorithm>
-#include <mutex>
 #include <utility>
 
 #include "runtime/cpp/src/channel/stream_connection.hpp"
@@ -60,7 +59,7 @@ StreamConnection::Received StreamConnection::wait_for_memory() {
     return fail_reading({ErrorCode::out_of_system_resource,
                          "its message does not fit into what the node may hold for its clients"});
   }
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   is_refused_ = true;
   schedule_look(now + memory_pause);
   return Received::nothing;
@@ -76,7 +75,7 @@ StreamConnection::Received StreamConnection::wait_for_memory() {
     return;
   }
   message_deadline_.begin(size, options_->message_timeout);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   schedule_look(message_deadline_.due());
 }
 
@@ -92,7 +91,7 @@ void StreamConnection::look_at_message() {
   const Time now = Clock::now();
   bool must_read = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     look_due_ = never;
     if (is_closing_) return;
     must_read = std::exchange(is_refused_, false);
@@ -114,7 +113,7 @@ void StreamConnection::read_late(Time asked) {
   if (now < message_deadline_.due()) return;
   if (now - asked > late) {
     message_deadline_.restart();
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     schedule_look(message_deadline_.due());
     return;
   }
@@ -132,7 +131,7 @@ bool StreamConnection::look_at_answers() {
 void StreamConnection::go_on() {
   bool must_drain = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     message_deadline_.restart();
     must_drain = !strand_.is_taken() && strand_.has_queued();
     if (must_drain) strand_.orphan();

@@ -32,7 +32,7 @@ void StreamConnection::watch_input() {
 }
 
 void StreamConnection::expect() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!lease_.is_taken()) watch_input();
 }
 
@@ -42,7 +42,7 @@ void StreamConnection::nudge() { send_test(); }
 void StreamConnection::look_at_watch() {
   SocketWatch::Look look = SocketWatch::Look::done;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_closing_) return;
     look = watch_.look(lease_.uses(), lease_.is_taken(), sending_.has_unsent());
     if (look == SocketWatch::Look::later) schedule_watch_timer();
@@ -89,7 +89,7 @@ void StreamConnection::acknowledge_late() {
 }
 
 bool StreamConnection::begin_pinned(std::uint32_t& uses) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (is_closing_ || lease_.is_taken() || is_paused() || !watch_.is_full()) return false;
   uses = pin();
   return true;
@@ -97,7 +97,7 @@ bool StreamConnection::begin_pinned(std::uint32_t& uses) {
 
 [[gnu::hot]] bool StreamConnection::go_on_pinned(Received received, std::uint32_t& uses) {
   answers_wait();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const bool is_lone = lease_.uses() == uses;
   if (received == Received::some && is_lone && !is_closing_ && !lease_.is_taken() && !is_paused() &&
       watch_.state() == SocketWatch::State::idle && !reactor_->is_stay_over()) {

@@ -52,7 +52,7 @@ class TimerHeap {
 
    private:
     Timer& timer_;
-    const std::shared_ptr<void> owner_;
+    std::shared_ptr<void> owner_;
   };
   /// Of the first one, when next_due() has come.
   [[nodiscard]] Due take_first();

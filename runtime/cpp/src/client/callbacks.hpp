@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <condition_variable>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -11,6 +9,7 @@
 
 #include "rr/callbacks.hpp"
 #include "rr/definition.hpp"
+#include "rr/mutex.hpp"
 #include "rr/stub.hpp"
 
 namespace rr::client {
@@ -33,8 +32,8 @@ class CallbackSlot {
   std::shared_ptr<const void> call(const Arguments& arguments);
 
  private:
-  std::mutex mutex_;
-  std::condition_variable ended_;
+  Mutex mutex_;
+  Condition ended_;
   std::shared_ptr<CallbackFunction> function_;
   std::vector<std::thread::id> running_;
 };
@@ -55,7 +54,7 @@ class Callbacks {
  private:
   std::shared_ptr<CallbackSlot> find_locked(const Stub& stub, const Member& member);
 
-  std::mutex mutex_;
+  Mutex mutex_;
   bool has_ended_ = false;
   std::vector<std::shared_ptr<CallbackSlot>> slots_;
 };

@@ -7,11 +7,11 @@
 #include <deque>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "rr/mutex.hpp"
 #include "rr/pipes.hpp"
 #include "rr/reader.hpp"
 #include "runtime/cpp/src/channel/account.hpp"
@@ -88,7 +88,7 @@ class Pipes final : public endpoint::PipeSide {
   bool keep_early(const Entry& entry, const endpoint::PipePacket& packet, Decoder& decoder);
 
   Session& session_;
-  std::mutex mutex_;
+  Mutex mutex_;
   endpoint::PipeTable ends_;
   std::map<Key, Early> early_;
 };

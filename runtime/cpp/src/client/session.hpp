@@ -8,7 +8,6 @@
 #include <list>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,6 +17,7 @@
 
 #include "rr/client.hpp"
 #include "rr/definition.hpp"
+#include "rr/mutex.hpp"
 #include "rr/reader.hpp"
 #include "rr/registry.hpp"
 #include "rr/stub.hpp"
@@ -284,7 +284,7 @@ class Session final : public channel::Receiver,
   std::vector<std::string> object_implements_;
   std::map<std::string, VarValue> attributes_;
 
-  mutable std::mutex mutex_;
+  mutable Mutex mutex_;
   std::list<std::shared_ptr<const TypeRegistry>> known_types_;  // all that types_ has named
   std::atomic<const std::shared_ptr<const TypeRegistry>*> types_;
   endpoint::PendingTable pending_;

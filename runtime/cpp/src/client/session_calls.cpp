@@ -124,7 +124,7 @@ namespace {
 }  // namespace
 
 void Session::refuse_ended() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   refuse_closed(why_closed_.value());
 }
 
@@ -150,14 +150,14 @@ bool is_special(EntryType type) { return static_cast<std::uint16_t>(type) < 500;
 // A request that waits for its answer is open from now on.
 [[gnu::hot]] Session::Numbers Session::draw(endpoint::Pending& call, const Outgoing& request,
                                             endpoint::Asked asked) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   Numbers numbers = draw_numbers(is_special(request.type));
   numbers.request = pending_.add(call, std::move(asked));
   return numbers;
 }
 
 [[gnu::hot]] Session::Numbers Session::draw(const Outgoing& request, bool has_number) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   Numbers numbers = draw_numbers(is_special(request.type));
   if (has_number) numbers.request = pending_.skip();
   return numbers;
@@ -227,7 +227,7 @@ void Session::reply_packet(Writer& writer, const EntryHeader& header, std::uint3
 }
 
 bool Session::take(endpoint::Pending& call) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return pending_.take(call);
 }
 
@@ -242,7 +242,7 @@ void Session::fail_all(const Error& why, channel::DeferredCallbacks& deferred) {
   while (true) {
     endpoint::Pending* call = nullptr;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       call = pending_.take_any();
     }
     if (call == nullptr) return;
@@ -271,7 +271,7 @@ void Session::end_abandoned(const Message& message, const Entry& entry, const Me
                                        channel::DeferredCallbacks& deferred) {
   endpoint::PendingTable::Answered answered;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     answered = pending_.take_answered(entry);
   }
   if (answered.is_foreign && !has_told_foreign_.exchange(true)) {

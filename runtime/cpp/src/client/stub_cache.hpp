@@ -2,12 +2,12 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/stub.hpp"
 
 namespace rr::client {
@@ -53,7 +53,7 @@ class StubCache {
  private:
   std::shared_ptr<Stub> keep_locked(const std::string& path, const std::shared_ptr<Stub>& stub);
 
-  std::mutex mutex_;
+  Mutex mutex_;
   std::unordered_map<std::string, std::weak_ptr<Stub>> stubs_;
   std::vector<Lookup*> lookups_;
 };

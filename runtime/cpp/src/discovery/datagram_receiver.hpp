@@ -4,13 +4,13 @@
 #include <atomic>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "rr/discovery.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/channel/socket.hpp"
 
@@ -40,7 +40,7 @@ class DatagramReceiver : public std::enable_shared_from_this<DatagramReceiver> {
   const std::shared_ptr<channel::Reactor> reactor_;
   const DiscoveryNetwork network_;
   const Handler handler_;
-  std::mutex mutex_;
+  Mutex mutex_;
   std::vector<std::shared_ptr<Socket>> sockets_;
   std::shared_ptr<Socket> v6_;
   std::set<unsigned> joined_;

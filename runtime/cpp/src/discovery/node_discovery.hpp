@@ -4,13 +4,13 @@
 #include <chrono>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "rr/discovery.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/discovery/alarm.hpp"
 #include "runtime/cpp/src/discovery/announcer.hpp"
 #include "runtime/cpp/src/discovery/datagram_receiver.hpp"
@@ -82,8 +82,8 @@ class NodeDiscovery : public std::enable_shared_from_this<NodeDiscovery> {
   const std::shared_ptr<Announcer> announcer_;
   const std::shared_ptr<ServiceWatch> watch_;
   const std::shared_ptr<subscription::Notifier> notifier_;
-  std::mutex changing_;  // while listening begins or ends; before the other
-  mutable std::mutex mutex_;
+  Mutex changing_;  // while listening begins or ends; before the other
+  mutable Mutex mutex_;
   bool has_ended_ = false;
   std::unique_ptr<Listening> listening_;
   subscription::Listeners<const DetectedNode&> on_detected_;

@@ -3,11 +3,11 @@
 
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
 #include "rr/discovery.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/discovery/matching.hpp"
 #include "runtime/cpp/src/subscription/notifier.hpp"
 
@@ -35,7 +35,7 @@ class ServiceInfos final : public MatchingServices {
 
   const std::shared_ptr<ServiceWatch> watch_;
   const std::shared_ptr<subscription::Notifier> notifier_;
-  mutable std::mutex told_mutex_;
+  mutable Mutex told_mutex_;
   bool is_closed_ = false;
   std::map<std::string, FoundService> told_;  // those that were told of
   subscription::Listeners<const FoundService&> on_detected_;

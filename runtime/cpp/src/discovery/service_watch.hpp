@@ -7,12 +7,12 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "rr/discovery.hpp"
+#include "rr/mutex.hpp"
 #include "rr/service_filter.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/discovery/alarm.hpp"
@@ -91,7 +91,7 @@ class ServiceWatch : public std::enable_shared_from_this<ServiceWatch> {
 
   const subscription::Host host_;
   const std::shared_ptr<subscription::Notifier> notifier_;
-  std::mutex mutex_;
+  Mutex mutex_;
   bool has_ended_ = false;
   std::map<NodeId, Row> rows_;
   Followers followers_;

@@ -4,7 +4,6 @@
 #include <deque>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "compiler/model/model.hpp"
 #include "rr/definition.hpp"
 #include "rr/dynamic_definitions.hpp"
+#include "rr/mutex.hpp"
 #include "rr/registry.hpp"
 #include "runtime/cpp/src/dynamic/tables.hpp"
 
@@ -114,7 +114,7 @@ class Tables : public std::enable_shared_from_this<Tables> {
   std::map<std::string, Fields, std::less<>> constants_;  // by their scope
   TypeRegistry registry_;
   // Made when they are asked for; nodes never go.
-  mutable std::mutex mutex_;
+  mutable Mutex mutex_;
   mutable std::map<std::string, std::unique_ptr<const TypeNode>, std::less<>> nodes_;
 };
 

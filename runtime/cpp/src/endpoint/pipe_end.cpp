@@ -30,7 +30,7 @@ std::uint32_t PipeEnd::State::send_packet(const Write& write_value) {
   }
   const bool asks = asks_.load(std::memory_order_relaxed);
   Writer& writer = channel::thread_writer();
-  const std::lock_guard lock(sending_);
+  const MutexLock lock(sending_);
   if (!side_) throw_closed();
   writer.reset(side_->connection().version());
   endpoint::write_packet(writer, index_text_, next_number_, asks, [&] { write_value(writer); });
@@ -70,7 +70,7 @@ void PipeEnd::State::take_acknowledgement(std::uint32_t number) {
   if (acknowledged_.load() < asked_.load()) acknowledged_.fetch_add(1);
   Function<void(std::uint32_t)> function;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     function = acknowledged_function_;
   }
   if (function) call([&] { function(number); });
@@ -83,7 +83,7 @@ std::size_t PipeEnd::State::unacknowledged() const {
 }
 
 void PipeEnd::State::on_acknowledged(Function<void(std::uint32_t)> function) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::swap(acknowledged_function_, function);  // what was there before ends behind the lock
 }
 

@@ -104,7 +104,7 @@ PipeEnd::State::State(std::shared_ptr<const endpoint::Core> core,
   bool has_room = true;
   bool is_awaited = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_closed_) return true;
     is_awaited = waiting_ != 0;
     Packet packet{std::move(value), size, packet_cost + size + memory};
@@ -183,7 +183,7 @@ bool PipeEnd::State::hold_back(std::uint32_t number, Packet packet) {
 }
 
 [[gnu::hot]] void PipeEnd::State::deliver() {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   if (std::exchange(is_delivering_, true)) return;
   while (deliver_one(lock)) {
   }
@@ -191,7 +191,7 @@ bool PipeEnd::State::hold_back(std::uint32_t number, Packet packet) {
 }
 
 // Under the lock, which is given up meanwhile. False when there is nothing to be done.
-[[gnu::hot]] bool PipeEnd::State::deliver_one(std::unique_lock<std::mutex>& lock) {
+[[gnu::hot]] bool PipeEnd::State::deliver_one(MutexLock& lock) {
   if (receiver_ && !receiver_->is_connected()) {
     const auto ended = std::exchange(receiver_, nullptr);
     lock.unlock();
@@ -232,18 +232,18 @@ void PipeEnd::State::deliver_soon() {
 }
 
 std::shared_ptr<void> PipeEnd::State::take() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return queue_.empty() ? nullptr : pop().value;
 }
 
 std::shared_ptr<const void> PipeEnd::State::peek() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return queue_.empty() ? nullptr : queue_.front().value;
 }
 
 bool PipeEnd::State::wait(std::chrono::milliseconds limit) {
   const channel::Time deadline = channel::after(channel::Clock::now(), limit);
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   if (queue_.empty() && !is_closed_) {
     const auto side = side_;
     lock.unlock();
@@ -260,17 +260,17 @@ bool PipeEnd::State::wait(std::chrono::milliseconds limit) {
 }
 
 std::size_t PipeEnd::State::available() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return queue_.size();
 }
 
 std::size_t PipeEnd::State::lost_count() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return lost_;
 }
 
 void PipeEnd::State::set_queue_limit(std::size_t packets, WhenFull when_full, std::size_t bytes) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   limit_ = packets;
   byte_limit_ = bytes;
   when_full_ = when_full;
@@ -282,7 +282,7 @@ Subscription PipeEnd::State::on_received(Function<void(std::shared_ptr<void>)> f
   std::shared_ptr<Receiver> before = receiver;
   std::shared_ptr<endpoint::PipeSide> side;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     receiver_.swap(before);
     has_more = !queue_.empty();
     side = side_;
@@ -304,7 +304,7 @@ void PipeEnd::State::start_receive(std::unique_ptr<Completion> completion) {
   bool has_ended = false;
   std::shared_ptr<endpoint::PipeSide> side;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     has_ended = waiting->ended_by != ErrorCode::none;
     if (!has_ended) waitings_.push_back(waiting);
     is_due = !has_ended && (!queue_.empty() || is_closed_);
@@ -318,7 +318,7 @@ void PipeEnd::State::start_receive(std::unique_ptr<Completion> completion) {
 void PipeEnd::State::end_receive(Waiting& waiting, ErrorCode code) {
   std::shared_ptr<Waiting> found;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (waiting.ended_by != ErrorCode::none) return;
     waiting.ended_by = code;
     const auto place =
@@ -345,7 +345,7 @@ void PipeEnd::State::fail_receive(const std::shared_ptr<Waiting>& waiting) {
 
 void PipeEnd::State::on_closed(Function<void()> function) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     std::swap(closed_function_, function);  // the old one goes without the lock
     if (!is_closed_) return;
   }
@@ -356,7 +356,7 @@ bool PipeEnd::State::finish() {
   std::shared_ptr<endpoint::PipeSide> side;
   std::map<std::uint32_t, Packet> held;
   {
-    const std::scoped_lock lock(sending_, mutex_);
+    const MutexLock lock(sending_, mutex_);
     if (is_closed_) return false;
     is_closed_ = true;
     side = std::move(side_);
@@ -370,7 +370,7 @@ bool PipeEnd::State::finish() {
 }
 
 [[gnu::hot]] std::shared_ptr<endpoint::PipeSide> PipeEnd::State::side() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return side_;
 }
 

@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -11,11 +10,11 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "rr/mutex.hpp"
 #include "rr/pipes.hpp"
 #include "rr/writer.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
@@ -123,7 +122,7 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   Packet pop();
   [[nodiscard]] bool draw(std::size_t cost);
   void give_back(std::size_t cost);
-  bool deliver_one(std::unique_lock<std::mutex>& lock);
+  bool deliver_one(MutexLock& lock);
   void end_receive(Waiting& waiting, ErrorCode code);
   void fail_receive(const std::shared_ptr<Waiting>& waiting);
   /// Runs what is the program's; what it throws is logged.
@@ -137,15 +136,15 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   const std::shared_ptr<channel::ThreadShare> threads_;  // of the session
   std::atomic<bool> is_closed_{false};                   // written under both locks
 
-  std::mutex sending_;                        // before mutex_
+  Mutex sending_;                             // before mutex_
   std::shared_ptr<endpoint::PipeSide> side_;  // null when closed; written under both locks
   std::uint32_t next_number_ = 1;
   std::atomic<bool> asks_{false};
   std::atomic<std::uint64_t> asked_{0};
   std::atomic<std::uint64_t> acknowledged_{0};
 
-  mutable std::mutex mutex_;
-  mutable std::condition_variable arrived_;
+  mutable Mutex mutex_;
+  mutable Condition arrived_;
   std::size_t waiting_ = 0;  // threads in wait()
   std::uint32_t expected_ = 1;
   std::map<std::uint32_t, Packet> held_;

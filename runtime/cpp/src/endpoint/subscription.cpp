@@ -20,14 +20,14 @@ namespace rr {
 
 // True when the function is to be dropped.
 bool Subscription::Handler::leave_disconnected() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   ended_.notify_all();
   return !std::exchange(is_dropped_, true);
 }
 
 void Subscription::Handler::disconnect() {
   {
-    std::unique_lock lock(mutex_);
+    MutexLock lock(mutex_);
     state_.fetch_or(disconnected);
     const auto self = std::this_thread::get_id();
     while ((state_.load() & running) != 0) {

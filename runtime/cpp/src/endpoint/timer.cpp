@@ -24,7 +24,7 @@ void Timer::State::start() { reactor_->schedule(*this, weak_from_this(), due_); 
 void Timer::State::cancel() {
   std::function<void()> dropped;  // what it owns goes when the lock has
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     has_ended_ = true;
     if (calling_ == std::this_thread::get_id()) return;  // plan_next() lets go of the function
     if (calling_ == std::thread::id()) dropped.swap(work_);
@@ -32,12 +32,12 @@ void Timer::State::cancel() {
   reactor_->cancel(*this);
   if (dropped) return;
   channel::Reactor::about_to_wait();
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   ended_.wait(lock, [&] { return calling_ == std::thread::id(); });
 }
 
 bool Timer::State::is_running() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return !has_ended_;
 }
 
@@ -47,7 +47,7 @@ void Timer::State::on_timer() {
 
 void Timer::State::call() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (has_ended_) return;
     if (period_ == nanoseconds(0)) has_ended_ = true;
     calling_ = std::this_thread::get_id();
@@ -63,7 +63,7 @@ void Timer::State::call() {
 void Timer::State::plan_next() {
   std::function<void()> dropped;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     calling_ = {};
     if (has_ended_) {
       dropped.swap(work_);

@@ -3,17 +3,16 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/reader.hpp"
 #include "rr/registry.hpp"
 #include "rr/wires.hpp"
@@ -123,8 +122,8 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   const Member& member_;
   std::atomic<Phase> phase_{Phase::connecting};  // written under mutex_
 
-  mutable std::mutex mutex_;
-  mutable std::condition_variable arrived_;
+  mutable Mutex mutex_;
+  mutable Condition arrived_;
   endpoint::NewestValue in_;
   channel::Charge charge_;                   // for that value, if it is a large one of a client
   std::uint64_t sequence_ = 0;               // counts values that were taken

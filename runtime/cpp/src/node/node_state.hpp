@@ -4,13 +4,13 @@
 #include <atomic>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/node.hpp"
 #include "runtime/cpp/src/channel/channel.hpp"
 #include "runtime/cpp/src/client/session.hpp"
@@ -23,20 +23,20 @@ namespace rr {
 class Places {
  public:
   void add(std::unique_ptr<channel::Listener> listener) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (has_ended_) throw Error(ErrorCode::invalid_operation, "the node is shut down");
     listeners_.push_back(std::move(listener));
   }
   void end() {
     std::vector<std::unique_ptr<channel::Listener>> old;
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     has_ended_ = true;
     old.swap(listeners_);  // they end when the lock has gone
   }
   /// As the listeners say.
   std::vector<std::string> urls() {
     std::vector<std::string> result;
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (const auto& listener : listeners_) {
       for (std::string& url : listener->urls()) result.push_back(std::move(url));
     }
@@ -47,7 +47,7 @@ class Places {
   template <class Announcer>
   std::string tell_nonce(const Announcer& announcer) {
     std::string failure;
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const std::string nonce = announcer.nonce();
     for (const auto& listener : listeners_) {
       try {
@@ -60,7 +60,7 @@ class Places {
   }
 
  private:
-  std::mutex mutex_;
+  Mutex mutex_;
   bool has_ended_ = false;
   std::vector<std::unique_ptr<channel::Listener>> listeners_;
 };
@@ -82,7 +82,7 @@ struct NodeState {
   /// The part of a slot, which is made from the state unless it is there.
   template <class Part>
   Part& part(std::unique_ptr<NodePart> NodeState::*slot) {
-    const std::lock_guard lock(making);
+    const MutexLock lock(making);
     std::unique_ptr<NodePart>& place = this->*slot;
     if (!place) {
       place = std::make_unique<Part>(*this);
@@ -102,7 +102,7 @@ struct NodeState {
     std::shared_ptr<std::atomic<bool>> is_done;
   };
 
-  std::mutex mutex;
+  Mutex mutex;
   bool is_shut_down = false;
   const std::shared_ptr<Places> places = std::make_shared<Places>();
   std::vector<std::weak_ptr<channel::Connection>> accepted;
@@ -110,7 +110,7 @@ struct NodeState {
   std::vector<Worker> workers;
   static thread_local const NodeState* served_aside;  // by this thread, if it is a worker
 
-  std::mutex ending;  // while a thread waits for the others to end; taken before `mutex`
+  Mutex ending;  // while a thread waits for the others to end; taken before `mutex`
 
   /// Drops what has gone whenever the list would grow.
   template <class T>

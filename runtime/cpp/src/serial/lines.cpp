@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 
 namespace rr::serial {
 
@@ -23,20 +24,20 @@ Line::Line(const BoardPlace& place)
 }
 
 void Line::on_met(const std::string& name) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   name_ = name;
   changed_.notify_all();
 }
 
 void Line::on_failed(const Board::Failure& failure) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   failure_ = failure;
   ++failures_;
   changed_.notify_all();
 }
 
 std::string Line::wait(Deadline deadline) {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   const std::size_t before = failures_;
   const auto has_failed = [&] { return failures_ != before; };
   const auto is_hopeless = [&] {
@@ -58,8 +59,8 @@ std::unique_ptr<MessageLink> Line::connect() {
 // Lines
 
 struct Lines::State {
-  std::mutex mutex;
-  std::condition_variable changed;
+  Mutex mutex;
+  Condition changed;
   std::map<std::string, std::shared_ptr<Line>> lines;  // by path; null: it is being closed
   bool has_ended = false;
 
@@ -71,7 +72,7 @@ Lines::Lines()
 
 Lines::~Lines() {
   {
-    const std::lock_guard lock(state_->mutex);
+    const MutexLock lock(state_->mutex);
     state_->has_ended = true;
   }
   state_->changed.notify_all();
@@ -79,9 +80,9 @@ Lines::~Lines() {
 }
 
 std::shared_ptr<Lines> Lines::of_process() {
-  static std::mutex mutex;
+  static Mutex mutex;
   static std::weak_ptr<Lines> known;
-  const std::lock_guard lock(mutex);
+  const MutexLock lock(mutex);
   std::shared_ptr<Lines> lines = known.lock();
   if (!lines) known = lines = std::make_shared<Lines>();
   return lines;
@@ -90,7 +91,7 @@ std::shared_ptr<Lines> Lines::of_process() {
 std::unique_ptr<Lines::User> Lines::take(const BoardPlace& place, Deadline deadline) const {
   // As written: a link below /dev/serial names the same board whichever port it is plugged into.
   const std::string key = std::filesystem::path(place.path).lexically_normal().string();
-  std::unique_lock lock(state_->mutex);
+  MutexLock lock(state_->mutex);
   auto& lines = state_->lines;
   const auto is_closing = [&] {
     const auto found = lines.find(key);
@@ -113,7 +114,7 @@ std::unique_ptr<Lines::User> Lines::take(const BoardPlace& place, Deadline deadl
 }
 
 void Lines::State::close_unused() {
-  std::unique_lock lock(mutex);
+  MutexLock lock(mutex);
   while (true) {
     const auto now = std::chrono::steady_clock::now();
     Deadline next = Deadline::max();
@@ -148,7 +149,7 @@ Lines::User::User(std::shared_ptr<State> state, std::shared_ptr<Line> line)
     : state_(std::move(state)), line_(std::move(line)) {}
 
 Lines::User::~User() {
-  const std::lock_guard lock(state_->mutex);
+  const MutexLock lock(state_->mutex);
   line_->kept_until_ = std::max(line_->kept_until_, kept_until_);
   --line_->users_;
   // The line goes on the thread that closes it, never here.

@@ -6,13 +6,13 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "rr/mutex.hpp"
 #include "rr/node.hpp"
 #include "rr/pipes.hpp"
 #include "rr/serial.hpp"
@@ -64,7 +64,7 @@ class BoardService : public std::enable_shared_from_this<BoardService> {
   [[nodiscard]] Node& node() { return node_; }
 
  private:
-  std::mutex mutex_;
+  Mutex mutex_;
   std::shared_ptr<Board> board_;  ///< null when it has gone
   Node& node_;
   std::shared_ptr<dynamic::Tables> tables_;

@@ -3,10 +3,10 @@
 
 #include <atomic>
 #include <cstddef>
-#include <mutex>
 #include <unordered_map>
 
 #include "rr/definition.hpp"
+#include "rr/mutex.hpp"
 
 namespace rr::service {
 
@@ -25,7 +25,7 @@ class AnswerSizes {
 
  private:
   std::atomic<bool> has_any_{false};  // so that services with small answers do not lock
-  mutable std::mutex mutex_;
+  mutable Mutex mutex_;
   std::unordered_map<const Member*, std::size_t> sizes_;
 };
 

@@ -3,12 +3,12 @@
 #include <array>
 #include <cstdio>
 #include <ctime>
-#include <mutex>
 #include <system_error>
 #include <utility>
 
 #include "rr/audit.hpp"
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/platform/clock.hpp"
 #include "runtime/cpp/src/platform/files.hpp"
 
@@ -123,7 +123,7 @@ class AuditLog::File {
   File& operator=(const File&) = delete;
 
   void write(std::string_view line) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (size_ != 0 && size_ + line.size() > options_.max_size) rotate();
     const auto bytes = std::as_bytes(std::span(line));
     const std::error_code error = platform::write_all(file_.get(), bytes);
@@ -157,7 +157,7 @@ class AuditLog::File {
 
   const std::string path_;
   const Options options_;
-  std::mutex mutex_;
+  Mutex mutex_;
   platform::File file_;
   std::size_t size_ = 0;
 };

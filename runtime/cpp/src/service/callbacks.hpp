@@ -6,12 +6,12 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/reader.hpp"
 #include "rr/stub.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
@@ -60,7 +60,7 @@ class Callbacks final : public endpoint::Caller {
   void send(const CallbackRequest& request, Writer& writer, endpoint::Pending& call);
 
   ServerEndpoint& endpoint_;  // owns this
-  std::mutex mutex_;
+  Mutex mutex_;
   bool has_ended_ = false;
   bool has_told_foreign_ = false;  // answers to something else are logged once
   endpoint::PendingTable pending_;

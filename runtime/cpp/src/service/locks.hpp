@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/users.hpp"
 
 namespace rr::service {
@@ -76,7 +76,7 @@ class Locks {
   void remove_if(Condition condition);
 
   const std::size_t limit_;
-  mutable std::mutex mutex_;
+  mutable Mutex mutex_;
   std::atomic<bool> are_held_{false};
   std::vector<Lock> locks_;
   std::map<std::uint32_t, std::vector<std::string>> sessions_;  // who has logged in there

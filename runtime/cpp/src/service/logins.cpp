@@ -2,10 +2,8 @@
 #include "runtime/cpp/src/service/logins.hpp"
 
 #include <algorithm>
-#include <condition_variable>
 #include <deque>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <system_error>
 #include <thread>
@@ -13,6 +11,7 @@
 #include <vector>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/remote_address.hpp"
 #include "runtime/cpp/src/platform/threads.hpp"
 
@@ -88,9 +87,9 @@ struct Logins::State : std::enable_shared_from_this<State> {
   const unsigned threads_limit;
   const Log log;
 
-  std::mutex mutex;
-  std::condition_variable wake;
-  std::condition_variable ended;
+  Mutex mutex;
+  Condition wake;
+  Condition ended;
   bool is_stopping = false;
   unsigned live = 0;
   unsigned idle = 0;
@@ -143,7 +142,7 @@ std::shared_ptr<Logins::Attempt> Logins::add(Request request) {
   std::shared_ptr<Attempt> evicted;
   bool is_in = false;
   {
-    const std::lock_guard lock(state_->mutex);
+    const MutexLock lock(state_->mutex);
     is_in = state_->put(attempt, evicted);
   }
   state_->wake.notify_one();
@@ -154,7 +153,7 @@ std::shared_ptr<Logins::Attempt> Logins::add(Request request) {
 
 void Logins::cancel(const std::shared_ptr<Attempt>& attempt) {
   {
-    const std::lock_guard lock(state_->mutex);
+    const MutexLock lock(state_->mutex);
     const auto remote = state_->remotes.find(channel::remote_key(attempt->request.address));
     if (remote == state_->remotes.end()) return;
     if (std::erase(remote->second.waiting, attempt) == 0) return;
@@ -168,7 +167,7 @@ void Logins::cancel(const std::shared_ptr<Attempt>& attempt) {
 void Logins::refuse_all() {
   std::vector<std::shared_ptr<Attempt>> refused;
   {
-    const std::lock_guard lock(state_->mutex);
+    const MutexLock lock(state_->mutex);
     state_->is_stopping = true;
     for (auto& [key, remote] : state_->remotes) {
       refused.insert(refused.end(), remote.waiting.begin(), remote.waiting.end());
@@ -182,7 +181,7 @@ void Logins::refuse_all() {
 
 void Logins::stop() {
   refuse_all();
-  std::unique_lock lock(state_->mutex);
+  MutexLock lock(state_->mutex);
   const auto& runners = state_->runners;
   if (std::find(runners.begin(), runners.end(), std::this_thread::get_id()) != runners.end()) {
     return;
@@ -191,7 +190,7 @@ void Logins::stop() {
 }
 
 bool Logins::is_own_thread() const {
-  const std::lock_guard lock(state_->mutex);
+  const MutexLock lock(state_->mutex);
   const auto& runners = state_->runners;
   return std::find(runners.begin(), runners.end(), std::this_thread::get_id()) != runners.end();
 }
@@ -291,7 +290,7 @@ void Logins::State::run() {
   // Hashing is not to take the processor from the node's other threads, but to get on where other
   // programs want it as well.
   platform::lower_priority();
-  std::unique_lock lock(mutex);
+  MutexLock lock(mutex);
   runners.push_back(std::this_thread::get_id());
   Time idle_since = Clock::now();
   while (!is_stopping) {
@@ -334,7 +333,7 @@ void Logins::State::check(Attempt& attempt) {
   attempt.request.check = nullptr;
   if (attempt.refusal) {
     {
-      const std::lock_guard lock(mutex);
+      const MutexLock lock(mutex);
       Remote& remote = remote_of(channel::remote_key(attempt.request.address));
       ++remote.failures;
       remote.last_failure = Clock::now();
@@ -355,7 +354,7 @@ void Logins::State::note_failure(const Attempt& attempt) {
   unsigned rest = 0;
   bool is_told = false;
   {
-    const std::lock_guard lock(mutex);
+    const MutexLock lock(mutex);
     if (log_begin == Time::min() || now - log_begin >= log_period) {
       rest = log_count > logged_at_once ? log_count - logged_at_once : 0;
       log_begin = now;
@@ -373,7 +372,7 @@ void Logins::State::note_failure(const Attempt& attempt) {
 void Logins::State::report_rest() {
   unsigned rest = 0;
   {
-    const std::lock_guard lock(mutex);
+    const MutexLock lock(mutex);
     if (log_count <= logged_at_once) return;
     rest = log_count - logged_at_once;
     log_count = 0;

@@ -77,7 +77,7 @@ void Monitors::enter(const ServedObject& object, std::uint32_t endpoint,
                      channel::Milliseconds timeout, Reply reply) {
   std::shared_ptr<Monitor> monitor;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     check_count(endpoint);
     std::shared_ptr<Monitor>& place = monitors_[{object.path, object.owner}];
     if (!place) {
@@ -119,7 +119,7 @@ void Monitors::await(const std::shared_ptr<Attempt>& attempt, Reply reply) {
 
 void Monitors::go_on(const ServedObject& object, std::uint32_t endpoint, Reply reply) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto monitor = find(object);
     if (!monitor) throw not_in_line();
     if (monitor->holder != endpoint) {
@@ -141,7 +141,7 @@ void Monitors::step(const std::shared_ptr<Monitor>& monitor,
                     const std::shared_ptr<Attempt>& attempt) {
   Replies replies;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto place = std::find(monitor->line.begin(), monitor->line.end(), attempt);
     if (place == monitor->line.end()) return;
     const bool is_over = channel::Clock::now() >= attempt->deadline;
@@ -180,7 +180,7 @@ bool Monitors::take_out(Monitor& monitor, const Attempt& attempt) {
 
 void Monitors::admit_next(const std::shared_ptr<Monitor>& monitor) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (monitor->holder != 0 || monitor->is_busy || monitor->line.empty()) return;
     monitor->is_busy = true;
   }
@@ -193,7 +193,7 @@ void Monitors::ask(const std::shared_ptr<Monitor>& monitor) {
     std::shared_ptr<Attempt> attempt;
     channel::Milliseconds time = slice;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (monitor->line.empty()) {
         monitor->is_busy = false;
         return;
@@ -215,7 +215,7 @@ void Monitors::ask(const std::shared_ptr<Monitor>& monitor) {
     Replies replies;
     bool is_wanted = true;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (error) {
         fail(*monitor, *attempt, *error, replies);
       } else if (is_free) {
@@ -236,7 +236,7 @@ void Monitors::ask(const std::shared_ptr<Monitor>& monitor) {
     }
     for (const auto& reply : replies) reply();
     if (is_free && is_wanted) {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       schedule_drop();
       return;
     }
@@ -256,7 +256,7 @@ bool Monitors::begin_exit(Monitor& monitor, std::uint32_t endpoint) {
 void Monitors::give_back(const std::shared_ptr<Monitor>& monitor) {
   leave_object(*monitor);
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     monitor->is_busy = false;
   }
   admit_next(monitor);
@@ -270,7 +270,7 @@ bool Monitors::exit(const ServedObject& object, std::uint32_t endpoint) {
   std::shared_ptr<Monitor> monitor;
   Replies replies;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     monitor = find(object);
     if (!monitor) return false;
     if (!begin_exit(*monitor, endpoint)) {
@@ -288,7 +288,7 @@ bool Monitors::exit(const ServedObject& object, std::uint32_t endpoint) {
 
 void Monitors::leave_lines(std::uint32_t endpoint) {
   std::vector<std::shared_ptr<Attempt>> left;  // end when the lock has
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const auto& [path, monitor] : monitors_) {
     const std::shared_ptr<Attempt> attempt = find_attempt(*monitor, endpoint);
     if (!attempt) continue;
@@ -300,7 +300,7 @@ void Monitors::leave_lines(std::uint32_t endpoint) {
 void Monitors::leave(std::uint32_t endpoint) {
   std::vector<std::shared_ptr<Monitor>> held;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (const auto& [path, monitor] : monitors_) {
       std::erase_if(monitor->line, [&](const auto& item) { return item->endpoint == endpoint; });
       monitor->failures.erase(endpoint);
@@ -317,7 +317,7 @@ std::size_t Monitors::end_if(std::uint32_t endpoint,
   Replies replies;
   std::size_t count = 0;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (const auto& [place, monitor] : monitors_) {
       if (!is_over(place.first)) continue;
       if (const std::shared_ptr<Attempt> attempt = find_attempt(*monitor, endpoint)) {
@@ -337,7 +337,7 @@ void Monitors::forget(const ServedObject& object) {
   bool is_held = false;
   Replies replies;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     monitor = find(object);
     if (!monitor) return;
     monitors_.erase({object.path, object.owner});
@@ -353,7 +353,7 @@ void Monitors::forget(const ServedObject& object) {
 }
 
 void Monitors::check(const ServedObject& object, std::uint32_t endpoint) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto monitor = find(object);
   if (!monitor || monitor->holder == 0) return;
   if (monitor->holder != endpoint) {
@@ -370,7 +370,7 @@ void Monitors::on_timer() {
 void Monitors::drop_unused() {
   std::vector<std::shared_ptr<Monitor>> dropped;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const channel::Time now = channel::Clock::now();
     for (const auto& [path, monitor] : monitors_) {
       if (monitor->holder == 0 || now - monitor->used < patience_) continue;

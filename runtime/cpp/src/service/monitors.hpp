@@ -8,13 +8,13 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/skeleton.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
@@ -97,7 +97,7 @@ class Monitors final : public channel::Timer, public std::enable_shared_from_thi
   const channel::Milliseconds patience_;
   const std::size_t limit_;
   std::atomic<int> held_{0};
-  std::mutex mutex_;
+  Mutex mutex_;
   // By path, and by the client whose own the object is.
   using Place = std::pair<std::string, std::uint32_t>;
   std::map<Place, std::shared_ptr<Monitor>> monitors_;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/service/places.hpp"
 #include "runtime/cpp/src/service/turn_break.hpp"
@@ -102,7 +103,7 @@ ObjectTree::Object ObjectTree::find(std::string_view path, std::uint32_t client)
 ObjectTree::Known ObjectTree::find_known(const std::string& path, std::uint32_t client,
                                          bool is_below_own) {
   const channel::Time deadline = channel::after(channel::Clock::now(), patience_);
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   while (true) {
     const auto found = places_.find(path);
     if (found == places_.end()) {
@@ -133,7 +134,7 @@ ObjectTree::Known ObjectTree::find_known(const std::string& path, std::uint32_t 
 
 // Under the lock, which is given up meanwhile. Who looks for the object may be waiting for its
 // client, and that for this request. Throws rr::Error at the deadline.
-void ObjectTree::await_settlement(std::unique_lock<std::mutex>& lock, channel::Time deadline) {
+void ObjectTree::await_settlement(MutexLock& lock, channel::Time deadline) {
   const std::uint64_t seen = settlements_;
   lock.unlock();
   {
@@ -152,7 +153,7 @@ void ObjectTree::await_settlement(std::unique_lock<std::mutex>& lock, channel::T
 }
 
 // Under the lock. False when it was given up meanwhile, for what is not used to be released.
-bool ObjectTree::take_room(const std::string& path, std::unique_lock<std::mutex>& lock) {
+bool ObjectTree::take_room(const std::string& path, MutexLock& lock) {
   const auto draw = [&] {
     return size_ < limit_ && path_size_ + path.size() <= limit_ * path_room &&
            charge_.add(cost_of(path));
@@ -224,7 +225,7 @@ std::shared_ptr<ServedObject> ObjectTree::make(const ServedObject& parent,
   std::shared_ptr<Skeleton> skeleton = parent.skeleton->rr_child(*place, index);
   if (!skeleton) throw Error(ErrorCode::service_error, "there is no object at this path");
   const ObjectType& type = skeleton->rr_object_type();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return std::make_shared<ServedObject>(
       ServedObject{path, std::move(skeleton), &type, &members_of(type)});
 }
@@ -232,7 +233,7 @@ std::shared_ptr<ServedObject> ObjectTree::make(const ServedObject& parent,
 // Ends what find_known() has begun: `is_own` as it said then.
 void ObjectTree::settle(const std::string& path, std::uint32_t client, bool is_own, Object object) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     ++settlements_;
     Place& place = places_[path];
     if (object && object->owner != 0) {
@@ -291,7 +292,7 @@ ObjectTree::Released ObjectTree::release_if(Condition condition) {
 }
 
 ObjectTree::Released ObjectTree::release(std::string_view path) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = places_.find(std::string(path));
   if (found == places_.end()) return {};
   const Place& place = found->second;
@@ -303,7 +304,7 @@ ObjectTree::Released ObjectTree::release(std::string_view path) {
 }
 
 ObjectTree::Released ObjectTree::release(std::string_view path, std::uint32_t client) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = places_.find(std::string(path));
   if (found == places_.end()) return {};
   const auto own = found->second.own.find(client);
@@ -315,7 +316,7 @@ ObjectTree::Released ObjectTree::release(std::string_view path, std::uint32_t cl
 
 ObjectTree::Released ObjectTree::release_all_of(std::uint32_t client) {
   Released released;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto paths = own_paths_.extract(client);
   if (paths.empty()) return released;
   for (const std::string& path : paths.mapped()) {
@@ -346,7 +347,7 @@ ObjectTree::Released ObjectTree::release_unused() {
 }
 
 ObjectTree::Released ObjectTree::leave(std::uint32_t client, std::size_t limit) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (auto& [path, place] : places_) {
     const auto at = std::lower_bound(place.users.begin(), place.users.end(), client);
     if (at != place.users.end() && *at == client) place.users.erase(at);
@@ -356,7 +357,7 @@ ObjectTree::Released ObjectTree::leave(std::uint32_t client, std::size_t limit) 
 }
 
 ObjectTree::Released ObjectTree::clear() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   Released released = release_if([](const ServedObject& object) { return object.owner == 0; });
   released.push_back(root_);
   generation_.fetch_add(1, std::memory_order_release);

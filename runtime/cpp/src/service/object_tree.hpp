@@ -2,13 +2,11 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string>
 #include <string_view>
@@ -16,6 +14,7 @@
 #include <vector>
 
 #include "rr/definition.hpp"
+#include "rr/mutex.hpp"
 #include "rr/skeleton.hpp"
 #include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
@@ -98,9 +97,9 @@ class ObjectTree {
     bool is_own = false;
   };
 
-  void await_settlement(std::unique_lock<std::mutex>& lock, channel::Time deadline);
+  void await_settlement(MutexLock& lock, channel::Time deadline);
   Known find_known(const std::string& path, std::uint32_t client, bool is_below_own);
-  bool take_room(const std::string& path, std::unique_lock<std::mutex>& lock);
+  bool take_room(const std::string& path, MutexLock& lock);
   static void add_user(Place& place, std::uint32_t client);
   Object look_up(const ServedObject& parent, const endpoint::PathSegment& segment,
                  const std::string& path, std::uint32_t client, bool is_own);
@@ -119,8 +118,8 @@ class ObjectTree {
   const Notices notices_;
   const channel::Milliseconds patience_;
   std::atomic<std::uint32_t> generation_{0};
-  std::mutex mutex_;
-  std::condition_variable settled_;
+  Mutex mutex_;
+  Condition settled_;
   std::uint64_t settlements_ = 0;
   std::size_t size_ = 0;        // objects besides the root, and those that are looked for
   std::size_t path_size_ = 0;   // bytes of their paths

@@ -68,7 +68,7 @@ void OfferedWire::send_all(const void* value) {
   std::shared_ptr<const Ends> ends;
   endpoint::SenderTime time = 0;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     before = std::exchange(in_, kept);
     ends = ends_;
     if (ends->empty()) return;
@@ -92,7 +92,7 @@ void OfferedWire::join(const End& end) {
   endpoint::SenderTime time = 0;
   Shared<Connected> connected;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (std::find(ends_->begin(), ends_->end(), end) == ends_->end()) {
       ends_ = with_end(*ends_, end, [](const End& one) { return one->node(); });
     }
@@ -110,37 +110,37 @@ void OfferedWire::join(const End& end) {
 
 void OfferedWire::leave(const ServedWireEnd& end) {
   std::shared_ptr<const Ends> before;  // freed outside of the lock
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   auto ends = std::make_shared<Ends>(*ends_);
   std::erase_if(*ends, [&](const End& other) { return other.get() == &end; });
   before = std::exchange(ends_, std::move(ends));
 }
 
 std::shared_ptr<const void> OfferedWire::received(TimeSpec& time) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return out_.get(time);
 }
 
 void OfferedWire::set_lifespan(std::chrono::milliseconds lifespan) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   out_.set_lifespan(lifespan);
 }
 
 std::shared_ptr<const OfferedWire::Ends> OfferedWire::ends() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return ends_;
 }
 
 template <class Function>
 OfferedWire::Shared<Function> OfferedWire::get(const Shared<Function>& function) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return function;
 }
 
 template <class Function>
 void OfferedWire::set(Shared<Function>& place, Function function) {
   auto shared = function ? std::make_shared<const Function>(std::move(function)) : nullptr;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   place.swap(shared);  // what was there is freed outside of the lock: `shared` is the older
 }
 
@@ -155,7 +155,7 @@ void OfferedWire::set_received(Received function) {
 
 std::shared_ptr<const void> OfferedWire::peek_in() const {
   if (const auto function = get(peek_in_)) return need((*function)());
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return need(in_);
 }
 
@@ -167,7 +167,7 @@ std::shared_ptr<const void> OfferedWire::peek_out() const {
 
 void OfferedWire::keep(std::shared_ptr<const void> value, const TimeSpec& time) {
   std::shared_ptr<const void> before;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   before = out_.put(std::move(value), time);
 }
 

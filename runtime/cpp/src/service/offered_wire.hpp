@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <vector>
 
 #include "rr/definition.hpp"
+#include "rr/mutex.hpp"
 #include "rr/wires.hpp"
 #include "runtime/cpp/src/endpoint/newest_value.hpp"
 #include "runtime/cpp/src/endpoint/sender_clock.hpp"
@@ -66,7 +66,7 @@ class OfferedWire {
   endpoint::SenderTimes times_;
   std::atomic<bool> has_received_{false};
 
-  mutable std::mutex mutex_;
+  mutable Mutex mutex_;
   std::shared_ptr<const Ends> ends_ = std::make_shared<const Ends>();  // replaced, never changed
   std::shared_ptr<const void> in_;                                     // what was sent to all last
   endpoint::NewestValue out_;

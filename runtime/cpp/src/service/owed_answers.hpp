@@ -4,13 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <unordered_map>
 #include <utility>
 
 #include "rr/definition.hpp"
+#include "rr/mutex.hpp"
 #include "rr/reader.hpp"
 #include "runtime/cpp/src/channel/account.hpp"
 
@@ -61,7 +61,7 @@ class OwedAnswers {
   void end();
 
  private:
-  std::mutex mutex_;
+  Mutex mutex_;
   std::weak_ptr<ServerEndpoint> endpoint_;
   std::unordered_map<std::uint64_t, LateAnswer> answers_;
   channel::Charge charge_;  // for them

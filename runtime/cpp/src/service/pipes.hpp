@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string_view>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/pipes.hpp"
 #include "runtime/cpp/src/endpoint/pipe_state.hpp"
 #include "runtime/cpp/src/endpoint/pipe_table.hpp"
@@ -40,7 +40,7 @@ class PipePlace {
   [[nodiscard]] Audience audience() const;
 
  private:
-  mutable std::mutex mutex_;
+  mutable Mutex mutex_;
   Function<void(PipeEnd)> connected_;
   Audience audience_{std::make_shared<Ends>()};  // the list is replaced, never changed
 };
@@ -78,7 +78,7 @@ class Pipes final : public endpoint::PipeSide {
   void send_closed(const Served& end);
 
   ServerEndpoint& endpoint_;
-  std::mutex mutex_;
+  Mutex mutex_;
   endpoint::PipeTable ends_;
 };
 

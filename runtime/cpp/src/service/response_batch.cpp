@@ -72,12 +72,12 @@ void ResponseBatch::put(std::size_t place, const Entry& request, Writer& answer,
       answer_cost + answer.size() + request.service_path.size() + request.member.size();
   bool is_drawn = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_drawn = charge_.add(cost);
   }
   Answer result = kept(request, answer);  // the writer may be the thread's, which flush() uses
   result.cost = cost;
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   if (!is_drawn) {
     must_flush_ = true;  // what leaves may make room
     flush(lock, is_late);
@@ -89,7 +89,7 @@ void ResponseBatch::put(std::size_t place, const Entry& request, Writer& answer,
 }
 
 void ResponseBatch::put_nothing(std::size_t place) {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   settle(place);
   flush(lock, false);
 }
@@ -133,7 +133,7 @@ ResponseBatch::Answers ResponseBatch::take_ready() {
 }
 
 // One thread at a time sends, so that batches leave in their order; it sends what comes meanwhile.
-void ResponseBatch::flush(std::unique_lock<std::mutex>& lock, bool is_late) {
+void ResponseBatch::flush(MutexLock& lock, bool is_late) {
   if (std::exchange(is_sending_, true)) return;
   for (Answers answers = take_ready(); !answers.empty(); answers = take_ready()) {
     lock.unlock();

@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "rr/buffer.hpp"
+#include "rr/mutex.hpp"
 #include "rr/reader.hpp"
 #include "rr/wire.hpp"
 #include "rr/writer.hpp"
@@ -56,7 +56,7 @@ class ResponseBatch {
 
   static Answer kept(const Entry& request, Writer& answer);
   void settle(std::size_t place);
-  void flush(std::unique_lock<std::mutex>& lock, bool is_late);
+  void flush(MutexLock& lock, bool is_late);
   Answers take_ready();
   void send(ServerEndpoint& endpoint, std::span<const Answer> answers, bool is_late);
   void send_errors(ServerEndpoint& endpoint, const Answer& answer, bool is_late);
@@ -65,7 +65,7 @@ class ResponseBatch {
   const MessageVersion version_;
   const std::size_t message_room_;  // bytes of answers that one message holds
 
-  std::mutex mutex_;
+  Mutex mutex_;
   channel::Charge charge_;
   std::map<std::size_t, Answer> waiting_;  // by their places
   std::vector<bool> settled_;              // the places that nothing more comes for

@@ -6,7 +6,6 @@
 #include <exception>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,6 +13,7 @@
 
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/reader.hpp"
 #include "rr/service.hpp"
 #include "rr/skeleton.hpp"
@@ -262,7 +262,7 @@ class ServerEndpoint final : public channel::Receiver,
   Callbacks callbacks_{*this};
   Generators generators_;
   ClientScopedValues client_values_;
-  mutable std::mutex user_mutex_;
+  mutable Mutex user_mutex_;
   // The host and the client, for whoever has no turn; the same lock.
   std::pair<std::shared_ptr<ServiceHost>, ServiceClient> session_;
   std::shared_ptr<ServiceHost> present_at_;  // is to be told that the client leaves; the same lock

@@ -16,14 +16,14 @@ namespace rr {
 
 void Skeleton::Places::add(std::weak_ptr<service::ServiceHost> host,
                            const service::ServedObject& object) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   places_.push_back({std::move(host), object.path, object.owner});
 }
 
 void Skeleton::Places::remove(const service::ServiceHost& host,
                               const service::ServedObject& object) {
   const std::weak_ptr<const service::ServiceHost> self = host.weak_from_this();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   // Compared without taking hold of any: letting go of the last one would destroy it under the
   // lock.
   std::erase_if(places_, [&](const auto& place) {
@@ -35,7 +35,7 @@ void Skeleton::Places::remove(const service::ServiceHost& host,
 
 auto Skeleton::Places::all() -> std::vector<Place<std::shared_ptr<service::ServiceHost>>> {
   std::vector<Place<std::shared_ptr<service::ServiceHost>>> result;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const auto& place : places_) {
     if (auto alive = place.host.lock()) {
       result.push_back({std::move(alive), place.path, place.owner});
@@ -45,7 +45,7 @@ auto Skeleton::Places::all() -> std::vector<Place<std::shared_ptr<service::Servi
 }
 
 std::shared_ptr<service::OfferedWire> Skeleton::Places::wire(const Member& member) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   auto& wire = wires_[member.name];
   if (!wire) wire = std::make_shared<service::OfferedWire>(member);
   return wire;
@@ -160,13 +160,13 @@ void ServiceHost::tell_released_later(ObjectTree::Released released) const {
 }
 
 std::map<std::string, VarValue> ServiceHost::attributes() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return options_.attributes;
 }
 
 void ServiceHost::set_attributes(std::map<std::string, VarValue> attributes) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     options_.attributes.swap(attributes);  // the old ones go when the lock has
   }
   if (const auto directory = directory_.lock()) directory->services_changed();
@@ -178,18 +178,18 @@ std::optional<std::string> ServiceHost::root_type_for(
 }
 
 std::shared_ptr<const ServiceHost::Clients> ServiceHost::connected() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return clients_;
 }
 
 std::shared_ptr<const Rights> ServiceHost::rights() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return options_.rights;
 }
 
 void ServiceHost::set_rights(std::shared_ptr<const Rights> rights) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     options_.rights.swap(rights);  // the old ones go when the lock has
   }
   const auto clients = connected();
@@ -210,7 +210,7 @@ std::vector<ServiceClient> ServiceHost::clients() const {
 bool ServiceHost::add_client(const std::shared_ptr<ServerEndpoint>& client) {
   std::shared_ptr<const Clients> old;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_closed_) return false;
     auto clients = std::make_shared<Clients>(*clients_);
     clients->push_back(client);
@@ -224,7 +224,7 @@ bool ServiceHost::add_client(const std::shared_ptr<ServerEndpoint>& client) {
 void ServiceHost::remove_client(const ServerEndpoint& client) {
   std::shared_ptr<const Clients> old;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     auto clients = std::make_shared<Clients>(*clients_);
     std::erase_if(*clients, [&](const auto& other) { return other.get() == &client; });
     old = std::exchange(clients_, std::move(clients));
@@ -331,7 +331,7 @@ void ServiceHost::fire(const std::string& path, std::uint32_t owner, const Membe
 void ServiceHost::close() {
   const auto self = shared_from_this();  // the directory's reference may be the last
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (std::exchange(is_closed_, true)) return;
   }
   if (const auto directory = directory_.lock()) directory->remove(*this);

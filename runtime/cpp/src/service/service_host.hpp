@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/service.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
 #include "runtime/cpp/src/service/answer_sizes.hpp"
@@ -110,7 +110,7 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   std::shared_ptr<RightsFile> rights_file_;  // null without one
 
   std::atomic<bool> is_started_{false};
-  mutable std::mutex mutex_;
+  mutable Mutex mutex_;
   std::shared_ptr<const Clients> clients_;  // replaced, never changed
   bool is_closed_ = false;
 };

@@ -4,10 +4,10 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <string_view>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/rights.hpp"
 #include "rr/users.hpp"
 #include "rr/wire.hpp"
@@ -83,7 +83,7 @@ class SessionAccess {
   std::atomic<std::uint32_t> standing_{0};
   std::atomic<std::uint32_t> login_{0};
 
-  mutable std::mutex mutex_;
+  mutable Mutex mutex_;
   bool is_open_ = false;
   bool has_users_ = false;
   bool requires_user_ = false;

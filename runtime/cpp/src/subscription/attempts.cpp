@@ -17,7 +17,7 @@ void Target::on_timer() {
 
 // On the watching thread.
 void Services::due(const TargetPointer& target) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (target->phase == Target::Phase::resting) {
     begin_soon(target);
   } else if (target->phase == Target::Phase::attempting) {
@@ -51,7 +51,7 @@ void Services::begin(const TargetPointer& target) {
   try {
     auto made = std::make_shared<Attempt>();
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       const bool is_idle =
           target->phase == Target::Phase::resting || target->phase == Target::Phase::waiting;
       if (is_closed_ || !is_idle) return;
@@ -98,7 +98,7 @@ Services::Reached Services::reach(const TargetPointer& target, const AttemptPoin
   bool is_known = false;
   const auto wanted = filter();
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     service = target->service;
     is_known = target->is_known;
   }
@@ -208,7 +208,7 @@ void Services::succeed(const TargetPointer& target, const AttemptPointer& attemp
   bool is_wanted = false;
   std::optional<Error> ended;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     ended = reached.end->why;
     is_wanted = target->phase == Target::Phase::attempting && target->attempt == attempt;
     if (is_wanted && !ended) {
@@ -253,7 +253,7 @@ void Services::rest(Target& target, const Error& why) {
 
 void Services::fail(const TargetPointer& target, const AttemptPointer& attempt, const Error& why) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const bool is_this = attempt ? target->phase == Target::Phase::attempting
                                  : target->phase == Target::Phase::resting;
     if (is_closed_ || target->attempt != attempt || !is_this) return;
@@ -269,7 +269,7 @@ void Services::fail(const TargetPointer& target, const AttemptPointer& attempt, 
 void Services::session_ended(const TargetPointer& target, SessionEnd& end, const Error& why) {
   TargetPointer gone;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     end.why = why;
     if (is_closed_ || target->phase != Target::Phase::connected || target->end.get() != &end)
       return;

@@ -4,13 +4,13 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "rr/member_subscription.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
 #include "runtime/cpp/src/subscription/notifier.hpp"
@@ -111,7 +111,7 @@ class Links : public std::enable_shared_from_this<Links> {
   [[nodiscard]] const std::shared_ptr<endpoint::Core>& core() const { return core_; }
   void check_open() const;  // throws invalid_operation; under the lock
 
-  mutable std::mutex mutex_;
+  mutable Mutex mutex_;
   bool is_open_ = true;
   std::vector<LinkPointer> links_;
   const std::shared_ptr<Notifier> notifier_;  // to functions of the program

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <deque>
 #include <memory>
 #include <string>
 #include <string_view>
 
+#include "rr/mutex.hpp"
 #include "rr/pipes.hpp"
 #include "runtime/cpp/src/subscription/links.hpp"
 
@@ -67,7 +67,7 @@ class PipeLinks final : public Links {
 
   const Holding& holding_;
   const std::size_t max_received_;
-  mutable std::condition_variable arrived_;
+  mutable Condition arrived_;
   std::deque<Packet> packets_;
   std::size_t lost_ = 0;
   std::size_t backlog_limit_ = 0;

@@ -5,12 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/subscription.hpp"
 #include "runtime/cpp/src/subscription/filter.hpp"
 #include "runtime/cpp/src/subscription/host.hpp"
@@ -150,7 +150,7 @@ class Services final : public Waits, public std::enable_shared_from_this<Service
   const std::shared_ptr<Notifier> inner_;    // to members
   const std::shared_ptr<Notifier> program_;  // to functions of the program
 
-  mutable std::mutex mutex_;
+  mutable Mutex mutex_;
   bool is_closed_ = false;
   std::shared_ptr<const Filter> filter_;  // replaced, never changed
   std::shared_ptr<FindingSource> source_;

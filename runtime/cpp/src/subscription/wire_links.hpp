@@ -2,7 +2,6 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -11,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/wires.hpp"
 #include "runtime/cpp/src/endpoint/newest_value.hpp"
 #include "runtime/cpp/src/subscription/links.hpp"
@@ -82,7 +82,7 @@ class WireLinks final : public Links {
   [[nodiscard]] std::vector<const WireLink*> fresh_links() const;
 
   const Holding& holding_;
-  std::condition_variable arrived_;
+  Condition arrived_;
   endpoint::NewestValue newest_;
   SubscriptionClientId newest_client_;
   std::uint64_t sequence_ = 0;  // counts values

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
-#include <condition_variable>
 #include <cstring>
 #include <limits>
-#include <mutex>
 #include <set>
 #include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/tap.hpp"
 #include "runtime/cpp/src/platform/files.hpp"
 #include "runtime/cpp/src/platform/threads.hpp"
@@ -60,13 +59,13 @@ class Recorder::Tape {
   Tape& operator=(const Tape&) = delete;
 
   std::uint32_t next_connection() {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return ++connections_;
   }
 
   // A record that is never left out for want of room: there are few, and they are small.
   void add(tap::Kind kind, std::uint32_t connection, std::span<const std::byte> body) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!is_closed_ && failure_.empty()) append(kind, 0, connection, body);
   }
 
@@ -74,7 +73,7 @@ class Recorder::Tape {
                             std::span<const Piece> message) {
     std::size_t size = 0;
     for (const Piece& piece : message) size += piece.size;
-    std::unique_lock lock(mutex_);
+    MutexLock lock(mutex_);
     if (is_closed_) return 0;
     if (!wait_for_room(lock, size)) {
       ++lost_;
@@ -89,20 +88,20 @@ class Recorder::Tape {
   }
 
   void add_definition(std::string_view text) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_closed_ || !failure_.empty() || !definitions_.insert(std::string(text)).second) return;
     append(tap::Kind::definition, 0, 0, bytes_of_text(text));
   }
 
   void flush() {
-    std::unique_lock lock(mutex_);
+    MutexLock lock(mutex_);
     const std::uint64_t wanted = told_;
     has_written_.wait(lock, [&] { return written_ >= wanted || !failure_.empty(); });
   }
 
   void close() {
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (is_closed_) return;
       note_lost();
       if (failure_.empty()) append(tap::Kind::end, 0, 0, {});
@@ -114,15 +113,15 @@ class Recorder::Tape {
   }
 
   [[nodiscard]] std::uint64_t messages() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return messages_;
   }
   [[nodiscard]] std::uint64_t lost() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return lost_;
   }
   [[nodiscard]] std::string failure() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return failure_;
   }
 
@@ -134,7 +133,7 @@ class Recorder::Tape {
 
   [[nodiscard]] std::size_t waiting() const { return filling_.size() + writing_size_; }
 
-  bool wait_for_room(std::unique_lock<std::mutex>& lock, std::size_t size) {
+  bool wait_for_room(MutexLock& lock, std::size_t size) {
     if (size > std::numeric_limits<std::uint32_t>::max()) return false;
     const std::size_t whole = size + tap::RecordHeader::size;
     const auto has_room = [&] {
@@ -185,7 +184,7 @@ class Recorder::Tape {
     // Signals are for the program's own threads, and a pipe that nobody reads is an error here.
     platform::leave_signals_to_others();
     Bytes writing;
-    std::unique_lock lock(mutex_);
+    MutexLock lock(mutex_);
     while (true) {
       is_idle_ = true;
       has_work_.wait(lock, [&] { return !filling_.empty() || is_closed_; });
@@ -245,9 +244,9 @@ class Recorder::Tape {
   const platform::File file_;
   const Clock::time_point start_;
 
-  mutable std::mutex mutex_;  // guards what follows
-  std::condition_variable has_work_;
-  std::condition_variable has_written_;
+  mutable Mutex mutex_;  // guards what follows
+  Condition has_work_;
+  Condition has_written_;
   Bytes filling_;
   std::size_t writing_size_ = 0;  // of what the thread writes now
   std::uint64_t told_ = 0;        // bytes, as the next one
