@@ -111,7 +111,7 @@ class Core::Rounds final : public channel::Timer, public std::enable_shared_from
   const std::shared_ptr<channel::Reactor> reactor_;
   const channel::Milliseconds period_;
   Mutex mutex_;
-  std::vector<std::weak_ptr<Attended>> attended_;
+  std::vector<std::weak_ptr<Attended>> attended_ RR_GUARDED_BY(mutex_);
 };
 
 Core::Core(NodeOptions options)

@@ -96,10 +96,11 @@ class Core : public NodeContext, public std::enable_shared_from_this<Core> {
   std::shared_ptr<const channel::Tls> tls_;
   std::shared_ptr<channel::WebSockets> web_sockets_;
   mutable Mutex mutex_;
-  std::set<std::shared_ptr<const Definition>> kept_definitions_;  // for types_
-  std::shared_ptr<const TypeRegistry> types_;
-  std::unordered_set<std::uint32_t> endpoints_;
-  std::map<std::string, std::shared_ptr<channel::Channel>> channels_;
+  std::set<std::shared_ptr<const Definition>> kept_definitions_
+      RR_GUARDED_BY(mutex_);  // for types_
+  std::shared_ptr<const TypeRegistry> types_ RR_GUARDED_BY(mutex_);
+  std::unordered_set<std::uint32_t> endpoints_ RR_GUARDED_BY(mutex_);
+  std::map<std::string, std::shared_ptr<channel::Channel>> channels_ RR_GUARDED_BY(mutex_);
   std::shared_ptr<Rounds> rounds_;
 };
 

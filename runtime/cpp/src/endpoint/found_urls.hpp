@@ -26,8 +26,8 @@ class FoundUrls {
 
  private:
   mutable Mutex mutex_;
-  std::unordered_set<std::string> known_;
-  std::deque<const std::string*> order_;  // oldest first
+  std::unordered_set<std::string> known_ RR_GUARDED_BY(mutex_);
+  std::deque<const std::string*> order_ RR_GUARDED_BY(mutex_);  // oldest first
 };
 
 }  // namespace rr::endpoint

@@ -183,48 +183,63 @@ bool PipeEnd::State::hold_back(std::uint32_t number, Packet packet) {
 }
 
 [[gnu::hot]] void PipeEnd::State::deliver() {
-  MutexLock lock(mutex_);
+  const MutexLock lock(mutex_);
   if (std::exchange(is_delivering_, true)) return;
-  while (deliver_one(lock)) {
+  while (deliver_one()) {
   }
   is_delivering_ = false;
 }
 
-// Under the lock, which is given up meanwhile. False when there is nothing to be done.
-[[gnu::hot]] bool PipeEnd::State::deliver_one(MutexLock& lock) {
+// The lock is given up meanwhile. False when there is nothing to be done. What the functions below
+// get is theirs, so that its last owner is never one with the lock.
+[[gnu::hot]] bool PipeEnd::State::deliver_one() {
   if (receiver_ && !receiver_->is_connected()) {
-    const auto ended = std::exchange(receiver_, nullptr);
-    lock.unlock();
+    auto ended = std::exchange(receiver_, nullptr);
+    const MutexUnlock unlock(mutex_);
+    ended.reset();
   } else if (!waitings_.empty() && (!queue_.empty() || is_closed_)) {
-    const std::shared_ptr<Waiting> waiting = std::move(waitings_.front());
+    std::shared_ptr<Waiting> waiting = std::move(waitings_.front());
     waitings_.pop_front();
     std::shared_ptr<void> value = queue_.empty() ? nullptr : pop().value;
-    lock.unlock();
-    waiting->leave();
-    call([&] {
-      Completion& completion = waiting->completion();
-      if (value) {
-        *static_cast<std::shared_ptr<void>*>(completion.result()) = std::move(value);
-        completion.succeed();
-      } else {
-        completion.fail(std::make_exception_ptr(closed_error()));
-      }
-    });
+    const MutexUnlock unlock(mutex_);
+    complete(std::move(waiting), std::move(value));
   } else if (receiver_ && !queue_.empty()) {
-    const auto receiver = receiver_;
+    auto receiver = receiver_;
     std::shared_ptr<void> value = pop().value;
-    lock.unlock();
-    call([&] { receiver->receive(std::move(value)); });
+    const MutexUnlock unlock(mutex_);
+    hand_to(std::move(receiver), std::move(value));
   } else if (is_closed_ && (receiver_ || closed_function_)) {
-    const auto ended = std::exchange(receiver_, nullptr);
-    const auto closed = std::exchange(closed_function_, nullptr);
-    lock.unlock();
-    if (closed) call(closed);
+    auto ended = std::exchange(receiver_, nullptr);
+    auto closed = std::exchange(closed_function_, nullptr);
+    const MutexUnlock unlock(mutex_);
+    tell_closed(std::move(ended), std::move(closed));
   } else {
     return false;
   }
-  lock.lock();
   return true;
+}
+
+void PipeEnd::State::complete(std::shared_ptr<Waiting> waiting, std::shared_ptr<void> value) const {
+  waiting->leave();
+  call([&] {
+    Completion& completion = waiting->completion();
+    if (value) {
+      *static_cast<std::shared_ptr<void>*>(completion.result()) = std::move(value);
+      completion.succeed();
+    } else {
+      completion.fail(std::make_exception_ptr(closed_error()));
+    }
+  });
+}
+
+[[gnu::hot]] void PipeEnd::State::hand_to(std::shared_ptr<Receiver> receiver,
+                                          std::shared_ptr<void> value) const {
+  call([&] { receiver->receive(std::move(value)); });
+}
+
+void PipeEnd::State::tell_closed(std::shared_ptr<Receiver> /*receiver*/,
+                                 Function<void()> function) const {
+  if (function) call(function);
 }
 
 void PipeEnd::State::deliver_soon() {
@@ -253,7 +268,7 @@ bool PipeEnd::State::wait(std::chrono::milliseconds limit) {
   }
   ++waiting_;
   while (queue_.empty() && !is_closed_ && channel::Clock::now() < deadline) {
-    channel::wait_until(arrived_, lock, deadline);
+    channel::wait_until(arrived_, mutex_, deadline);
   }
   --waiting_;
   return !queue_.empty();
@@ -356,7 +371,8 @@ bool PipeEnd::State::finish() {
   std::shared_ptr<endpoint::PipeSide> side;
   std::map<std::uint32_t, Packet> held;
   {
-    const MutexLock lock(sending_, mutex_);
+    const MutexLock sending(sending_);
+    const MutexLock lock(mutex_);
     if (is_closed_) return false;
     is_closed_ = true;
     side = std::move(side_);

@@ -27,12 +27,12 @@ bool Subscription::Handler::leave_disconnected() {
 
 void Subscription::Handler::disconnect() {
   {
-    MutexLock lock(mutex_);
+    const MutexLock lock(mutex_);
     state_.fetch_or(disconnected);
     const auto self = std::this_thread::get_id();
     while ((state_.load() & running) != 0) {
       if (runner_.load(std::memory_order_relaxed) == self) return;  // it drops when it leaves
-      ended_.wait(lock);
+      ended_.wait(mutex_);
     }
     if (std::exchange(is_dropped_, true)) return;
   }

@@ -51,7 +51,7 @@ struct Subscription::Handler {
   std::atomic<std::thread::id> runner_{};
   Mutex mutex_;
   Condition ended_;
-  bool is_dropped_ = false;
+  bool is_dropped_ RR_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace rr

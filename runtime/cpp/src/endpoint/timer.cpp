@@ -19,7 +19,12 @@ Timer::State::State(std::shared_ptr<channel::Reactor> reactor, Terms terms)
       due_(channel::Clock::now() +
            std::clamp<nanoseconds>(terms.delay, nanoseconds(0), channel::longest_span)) {}
 
-void Timer::State::start() { reactor_->schedule(*this, weak_from_this(), due_); }
+void Timer::State::start() {
+  const MutexLock lock(mutex_);
+  schedule();
+}
+
+void Timer::State::schedule() { reactor_->schedule(*this, weak_from_this(), due_); }
 
 void Timer::State::cancel() {
   std::function<void()> dropped;  // what it owns goes when the lock has
@@ -32,8 +37,8 @@ void Timer::State::cancel() {
   reactor_->cancel(*this);
   if (dropped) return;
   channel::Reactor::about_to_wait();
-  MutexLock lock(mutex_);
-  ended_.wait(lock, [&] { return calling_ == std::thread::id(); });
+  const MutexLock lock(mutex_);
+  while (calling_ != std::thread::id()) ended_.wait(mutex_);
 }
 
 bool Timer::State::is_running() const {
@@ -46,14 +51,16 @@ void Timer::State::on_timer() {
 }
 
 void Timer::State::call() {
+  const std::function<void()>* work = nullptr;
   {
     const MutexLock lock(mutex_);
     if (has_ended_) return;
     if (period_ == nanoseconds(0)) has_ended_ = true;
     calling_ = std::this_thread::get_id();
+    work = &work_;  // which nobody changes until plan_next()
   }
   try {
-    work_();
+    (*work)();
   } catch (...) {
     report_("a timer's function has thrown: " + endpoint::text_of_current_exception());
   }
@@ -70,7 +77,7 @@ void Timer::State::plan_next() {
     } else {
       const auto late = std::max<nanoseconds>(channel::Clock::now() - due_, nanoseconds(0));
       due_ += (late / period_ + 1) * period_;
-      start();
+      schedule();
     }
   }
   ended_.notify_all();

@@ -158,10 +158,10 @@ bool WireEnd::State::wait_received(std::chrono::milliseconds limit) {
   const channel::Time deadline = channel::after(channel::Clock::now(), limit);
   connection().expect();
   channel::Reactor::about_to_wait();
-  MutexLock lock(mutex_);
+  const MutexLock lock(mutex_);
   ++waiting_;
   while (!in_.is_fresh() && !is_ending() && channel::Clock::now() < deadline) {
-    channel::wait_until(arrived_, lock, deadline);
+    channel::wait_until(arrived_, mutex_, deadline);
   }
   --waiting_;
   return in_.is_fresh();

@@ -94,7 +94,8 @@ void WireEnd::State::finish_now() {
 bool WireEnd::State::has_to_tell() const {
   return (told_side_ != sequence_ && has_listener()) ||
          std::any_of(listeners_.begin(), listeners_.end(),
-                     [&](const auto& listener) { return listener->seen != sequence_; });
+                     [&](const auto& listener)
+                         RR_REQUIRES(mutex_) { return listener->seen != sequence_; });
 }
 
 bool WireEnd::State::must_start_telling() { return !is_telling_ && (is_telling_ = has_to_tell()); }

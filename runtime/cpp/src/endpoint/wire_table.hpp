@@ -44,8 +44,8 @@ class WireTable {
   };
 
   mutable Mutex mutex_;
-  bool is_ended_ = false;
-  std::unordered_map<Key, End, Hash> ends_;
+  bool is_ended_ RR_GUARDED_BY(mutex_) = false;
+  std::unordered_map<Key, End, Hash> ends_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::endpoint
