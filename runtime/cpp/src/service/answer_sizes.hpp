@@ -26,7 +26,7 @@ class AnswerSizes {
  private:
   std::atomic<bool> has_any_{false};  // so that services with small answers do not lock
   mutable Mutex mutex_;
-  std::unordered_map<const Member*, std::size_t> sizes_;
+  std::unordered_map<const Member*, std::size_t> sizes_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::service

@@ -132,7 +132,7 @@ class AuditLog::File {
   }
 
  private:
-  void open() {
+  void open() RR_REQUIRES(mutex_) {
     std::error_code error;
     platform::OpenLog log = platform::open_log(path_, error);
     if (error) throw Error(ErrorCode::invalid_configuration, failure(path_, "open", error));
@@ -145,7 +145,7 @@ class AuditLog::File {
   }
 
   // What cannot be renamed grows on.
-  void rotate() {
+  void rotate() RR_REQUIRES(mutex_) {
     for (unsigned i = options_.kept_files; i > 1; --i) {
       platform::rename_file(path_ + "." + std::to_string(i - 1), path_ + "." + std::to_string(i));
     }
@@ -158,8 +158,8 @@ class AuditLog::File {
   const std::string path_;
   const Options options_;
   Mutex mutex_;
-  platform::File file_;
-  std::size_t size_ = 0;
+  platform::File file_ RR_GUARDED_BY(mutex_);
+  std::size_t size_ RR_GUARDED_BY(mutex_) = 0;
 };
 
 AuditLog::AuditLog(std::string path, Options options)

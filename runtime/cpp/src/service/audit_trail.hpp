@@ -50,9 +50,9 @@ class AuditTrail {
   const AuditOptions* options_;  // null when nobody is told
   std::string address_;          // known while the connection lives
   Mutex mutex_;
-  channel::Time window_{};  // when the refusals began that are counted
-  std::size_t refusals_ = 0;
-  std::size_t left_out_ = 0;
+  channel::Time window_ RR_GUARDED_BY(mutex_){};  // when the refusals began that are counted
+  std::size_t refusals_ RR_GUARDED_BY(mutex_) = 0;
+  std::size_t left_out_ RR_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace rr::service

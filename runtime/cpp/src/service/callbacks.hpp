@@ -61,15 +61,16 @@ class Callbacks final : public endpoint::Caller {
 
   ServerEndpoint& endpoint_;  // owns this
   Mutex mutex_;
-  bool has_ended_ = false;
-  bool has_told_foreign_ = false;  // answers to something else are logged once
-  endpoint::PendingTable pending_;
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
+  bool has_told_foreign_ RR_GUARDED_BY(mutex_) =
+      false;  // answers to something else are logged once
+  endpoint::PendingTable pending_ RR_GUARDED_BY(mutex_);
   // What was asked, of those that are pending.
   struct Asked {
     std::string path;
     const Member* member;
   };
-  std::map<endpoint::Pending*, Asked> asked_;
+  std::map<endpoint::Pending*, Asked> asked_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::service

@@ -19,8 +19,8 @@ class ClientScopedValues {
 
  private:
   Mutex mutex_;
-  bool has_ended_ = false;
-  std::vector<std::weak_ptr<ClientValues>> keepers_;
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
+  std::vector<std::weak_ptr<ClientValues>> keepers_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::service

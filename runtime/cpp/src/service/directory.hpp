@@ -61,9 +61,9 @@ class Directory : public std::enable_shared_from_this<Directory> {
   const std::shared_ptr<endpoint::Core> core_;
   Logins logins_;
   Discovery discovery_;
+  std::shared_ptr<ServiceIndex> index_;  // set by start(), before anybody else uses this
   mutable Mutex mutex_;
-  std::vector<std::shared_ptr<ServiceHost>> services_;  // oldest first
-  std::shared_ptr<ServiceIndex> index_;
+  std::vector<std::shared_ptr<ServiceHost>> services_ RR_GUARDED_BY(mutex_);  // oldest first
 };
 
 }  // namespace rr::service

@@ -80,7 +80,7 @@ Generators::Use::Use(Generators& generators, const ServedObject& object, std::in
     --generator_->next_step;  // with the turn, so nobody has come behind
     throw Error(ErrorCode::member_busy, "too many steps wait for their turn");
   }
-  while (generator_->current_step != step) generators_.stepped_.wait(lock);
+  while (generator_->current_step != step) generators_.stepped_.wait(generators_.mutex_);
   lock.unlock();
   connection.step_in(channel::never);
 }

@@ -84,8 +84,9 @@ class Generators {
  private:
   Mutex mutex_;
   Condition stepped_;
-  bool has_ended_ = false;
-  std::unordered_map<std::int32_t, std::shared_ptr<ClientGenerator>> generators_;
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
+  std::unordered_map<std::int32_t, std::shared_ptr<ClientGenerator>> generators_
+      RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::service

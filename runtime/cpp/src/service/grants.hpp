@@ -36,7 +36,7 @@ class Grants {
   const std::shared_ptr<const Rights> rights_;
   std::vector<const Rights::Line*> lines_;
   mutable Mutex mutex_;
-  mutable std::map<Key, RightSet, Less> known_;
+  mutable std::map<Key, RightSet, Less> known_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::service

@@ -52,7 +52,7 @@ void Locks::log_in(std::uint32_t endpoint, const User& user) {
 void Locks::leave(std::uint32_t endpoint) {
   const MutexLock lock(mutex_);
   sessions_.erase(endpoint);
-  remove_if([&](const Lock& held) {
+  remove_if([&](const Lock& held) RR_REQUIRES(mutex_) {
     if (held.is_of_service) return false;
     if (held.endpoint != 0) return held.endpoint == endpoint;
     return std::none_of(sessions_.begin(), sessions_.end(), [&](const auto& session) {

@@ -90,23 +90,27 @@ struct Logins::State : std::enable_shared_from_this<State> {
   Mutex mutex;
   Condition wake;
   Condition ended;
-  bool is_stopping = false;
-  unsigned live = 0;
-  unsigned idle = 0;
-  std::vector<std::thread::id> runners;
-  std::size_t waiting_count = 0;
-  std::uint64_t turns = 0;
-  std::map<std::string, Remote> remotes;
+  bool is_stopping RR_GUARDED_BY(mutex) = false;
+  unsigned live RR_GUARDED_BY(mutex) = 0;
+  unsigned idle RR_GUARDED_BY(mutex) = 0;
+  std::vector<std::thread::id> runners RR_GUARDED_BY(mutex);
+  std::size_t waiting_count RR_GUARDED_BY(mutex) = 0;
+  std::uint64_t turns RR_GUARDED_BY(mutex) = 0;
+  std::map<std::string, Remote> remotes RR_GUARDED_BY(mutex);
   // The log: failures since `log_begin`, of which the first ones have been told.
-  Time log_begin = Time::min();
-  unsigned log_count = 0;
+  Time log_begin RR_GUARDED_BY(mutex) = Time::min();
+  unsigned log_count RR_GUARDED_BY(mutex) = 0;
 
-  bool put(const std::shared_ptr<Attempt>& attempt, std::shared_ptr<Attempt>& evicted);
-  bool make_room(std::size_t own, std::shared_ptr<Attempt>& evicted);
-  void make_thread();
-  Remote& remote_of(const std::string& key);
-  void forget_some(Time now);
-  std::shared_ptr<Attempt> next(Time now, Time& due);
+  bool put(const std::shared_ptr<Attempt>& attempt, std::shared_ptr<Attempt>& evicted)
+      RR_REQUIRES(mutex);
+  bool make_room(std::size_t own, std::shared_ptr<Attempt>& evicted) RR_REQUIRES(mutex);
+  void make_thread() RR_REQUIRES(mutex);
+  Remote& remote_of(const std::string& key) RR_REQUIRES(mutex);
+  void forget_some(Time now) RR_REQUIRES(mutex);
+  std::shared_ptr<Attempt> next(Time now, Time& due) RR_REQUIRES(mutex);
+  [[nodiscard]] bool is_runner() const RR_REQUIRES(mutex) {
+    return std::find(runners.begin(), runners.end(), std::this_thread::get_id()) != runners.end();
+  }
   void run();
   void check(Attempt& attempt);
   void note_failure(const Attempt& attempt);
@@ -181,18 +185,14 @@ void Logins::refuse_all() {
 
 void Logins::stop() {
   refuse_all();
-  MutexLock lock(state_->mutex);
-  const auto& runners = state_->runners;
-  if (std::find(runners.begin(), runners.end(), std::this_thread::get_id()) != runners.end()) {
-    return;
-  }
-  state_->ended.wait(lock, [&] { return state_->live == 0; });
+  const MutexLock lock(state_->mutex);
+  if (state_->is_runner()) return;
+  while (state_->live != 0) state_->ended.wait(state_->mutex);
 }
 
 bool Logins::is_own_thread() const {
   const MutexLock lock(state_->mutex);
-  const auto& runners = state_->runners;
-  return std::find(runners.begin(), runners.end(), std::this_thread::get_id()) != runners.end();
+  return state_->is_runner();
 }
 
 // Under the lock, as the next ones. False when there is no room.
@@ -310,7 +310,7 @@ void Logins::State::run() {
     const bool has_rest = log_count > logged_at_once;
     if (has_rest) until = std::min(until, log_begin + log_period);
     ++idle;
-    channel::wait_until(wake, lock, until);
+    channel::wait_until(wake, mutex, until);
     --idle;
     if (has_rest && Clock::now() >= log_begin + log_period) {
       lock.unlock();

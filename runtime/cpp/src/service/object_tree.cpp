@@ -103,12 +103,12 @@ ObjectTree::Object ObjectTree::find(std::string_view path, std::uint32_t client)
 ObjectTree::Known ObjectTree::find_known(const std::string& path, std::uint32_t client,
                                          bool is_below_own) {
   const channel::Time deadline = channel::after(channel::Clock::now(), patience_);
-  MutexLock lock(mutex_);
+  const MutexLock lock(mutex_);
   while (true) {
     const auto found = places_.find(path);
     if (found == places_.end()) {
       if (is_below_own && client == 0) break;
-      if (!take_room(path, lock)) continue;
+      if (!take_room(path)) continue;
       Place& place = places_[path];
       if (is_below_own) place.own.try_emplace(client);
       return {nullptr, true, is_below_own};
@@ -118,7 +118,7 @@ ObjectTree::Known ObjectTree::find_known(const std::string& path, std::uint32_t 
       if (client == 0) break;
       const auto own = place.own.find(client);
       if (own == place.own.end()) {
-        if (!take_room(path, lock)) continue;
+        if (!take_room(path)) continue;
         place.own.try_emplace(client);
         return {nullptr, true, true};
       }
@@ -127,51 +127,46 @@ ObjectTree::Known ObjectTree::find_known(const std::string& path, std::uint32_t 
       add_user(place, client);
       return {place.object, false, false};
     }
-    await_settlement(lock, deadline);
+    await_settlement(deadline);
   }
   throw Error(ErrorCode::object_not_found, "this object is for clients only");
 }
 
 // Under the lock, which is given up meanwhile. Who looks for the object may be waiting for its
 // client, and that for this request. Throws rr::Error at the deadline.
-void ObjectTree::await_settlement(MutexLock& lock, channel::Time deadline) {
+void ObjectTree::await_settlement(channel::Time deadline) {
   const std::uint64_t seen = settlements_;
-  lock.unlock();
   {
+    const MutexUnlock unlock(mutex_);
     const TurnBreak turn_break(channel::never);  // what follows needs the turn
     channel::Reactor::about_to_wait();
-    lock.lock();
+    const MutexLock lock(mutex_);  // not when the turn is taken again
     while (settlements_ == seen && channel::Clock::now() < deadline) {
-      channel::wait_until(settled_, lock, deadline);
+      channel::wait_until(settled_, mutex_, deadline);
     }
-    lock.unlock();
   }
-  lock.lock();
   if (settlements_ == seen) {
     throw Error(ErrorCode::operation_timeout, "another request still looks for this object");
   }
 }
 
 // Under the lock. False when it was given up meanwhile, for what is not used to be released.
-bool ObjectTree::take_room(const std::string& path, MutexLock& lock) {
-  const auto draw = [&] {
-    return size_ < limit_ && path_size_ + path.size() <= limit_ * path_room &&
-           charge_.add(cost_of(path));
-  };
-  if (!draw()) {
+bool ObjectTree::take_room(const std::string& path) {
+  const bool has_room = size_ < limit_ && path_size_ + path.size() <= limit_ * path_room &&
+                        charge_.add(cost_of(path));
+  if (!has_room) {
     // Not for each request of a client that asks for more and more.
     const channel::Time now = channel::coarse_now();
     Released released = now < next_sweep_ ? Released() : release_unused();
     if (released.empty() && now >= next_sweep_) next_sweep_ = now + sweep_pause;
     const bool is_full = released.empty();
-    lock.unlock();
+    const MutexUnlock unlock(mutex_);
     if (is_full) {
       throw Error(ErrorCode::out_of_system_resource,
                   "the objects of the service are as many as they may be, " +
                       std::to_string(limit_) + ", or take too much memory");
     }
     notices_.drop(std::move(released));
-    lock.lock();
     return false;
   }
   ++size_;
@@ -272,7 +267,7 @@ void ObjectTree::take(Object& object, Released& released) {
 template <class Condition>
 ObjectTree::Released ObjectTree::release_if(Condition condition) {
   Released released;
-  const auto is_released = [&](Object& object) {
+  const auto is_released = [&](Object& object) RR_REQUIRES(mutex_) {
     if (!object || !condition(*object)) return false;
     take(object, released);
     return true;

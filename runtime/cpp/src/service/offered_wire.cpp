@@ -132,35 +132,38 @@ std::shared_ptr<const OfferedWire::Ends> OfferedWire::ends() const {
 }
 
 template <class Function>
-OfferedWire::Shared<Function> OfferedWire::get(const Shared<Function>& function) const {
+OfferedWire::Shared<Function> OfferedWire::get(Shared<Function> OfferedWire::*place) const {
   const MutexLock lock(mutex_);
-  return function;
+  return this->*place;
 }
 
 template <class Function>
-void OfferedWire::set(Shared<Function>& place, Function function) {
+void OfferedWire::set(Shared<Function> OfferedWire::*place, Function function) {
   auto shared = function ? std::make_shared<const Function>(std::move(function)) : nullptr;
   const MutexLock lock(mutex_);
-  place.swap(shared);  // what was there is freed outside of the lock: `shared` is the older
+  (this->*place)
+      .swap(shared);  // what was there is freed outside of the lock: `shared` is the older
 }
 
-void OfferedWire::set_connected(Connected function) { set(connected_, std::move(function)); }
-void OfferedWire::set_peek_in(Peek function) { set(peek_in_, std::move(function)); }
-void OfferedWire::set_peek_out(Peek function) { set(peek_out_, std::move(function)); }
+void OfferedWire::set_connected(Connected function) {
+  set(&OfferedWire::connected_, std::move(function));
+}
+void OfferedWire::set_peek_in(Peek function) { set(&OfferedWire::peek_in_, std::move(function)); }
+void OfferedWire::set_peek_out(Peek function) { set(&OfferedWire::peek_out_, std::move(function)); }
 void OfferedWire::set_received(Received function) {
   const bool has_function = static_cast<bool>(function);
-  set(received_, std::move(function));
+  set(&OfferedWire::received_, std::move(function));
   has_received_ = has_function;
 }
 
 std::shared_ptr<const void> OfferedWire::peek_in() const {
-  if (const auto function = get(peek_in_)) return need((*function)());
+  if (const auto function = get(&OfferedWire::peek_in_)) return need((*function)());
   const MutexLock lock(mutex_);
   return need(in_);
 }
 
 std::shared_ptr<const void> OfferedWire::peek_out() const {
-  if (const auto function = get(peek_out_)) return need((*function)());
+  if (const auto function = get(&OfferedWire::peek_out_)) return need((*function)());
   TimeSpec time;
   return need(received(time));
 }
@@ -173,7 +176,7 @@ void OfferedWire::keep(std::shared_ptr<const void> value, const TimeSpec& time) 
 
 void OfferedWire::tell_received(const void* value, const TimeSpec& time,
                                 std::uint32_t client) const {
-  if (const auto function = get(received_)) (*function)(value, time, client);
+  if (const auto function = get(&OfferedWire::received_)) (*function)(value, time, client);
 }
 
 }  // namespace rr::service

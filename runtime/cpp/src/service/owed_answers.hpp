@@ -62,11 +62,11 @@ class OwedAnswers {
 
  private:
   Mutex mutex_;
-  std::weak_ptr<ServerEndpoint> endpoint_;
-  std::unordered_map<std::uint64_t, LateAnswer> answers_;
-  channel::Charge charge_;  // for them
-  std::uint64_t next_ = 0;
-  bool has_ended_ = false;
+  std::weak_ptr<ServerEndpoint> endpoint_ RR_GUARDED_BY(mutex_);
+  std::unordered_map<std::uint64_t, LateAnswer> answers_ RR_GUARDED_BY(mutex_);
+  channel::Charge charge_ RR_GUARDED_BY(mutex_);  // for them
+  std::uint64_t next_ RR_GUARDED_BY(mutex_) = 0;
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace rr::service

@@ -41,8 +41,9 @@ class PipePlace {
 
  private:
   mutable Mutex mutex_;
-  Function<void(PipeEnd)> connected_;
-  Audience audience_{std::make_shared<Ends>()};  // the list is replaced, never changed
+  Function<void(PipeEnd)> connected_ RR_GUARDED_BY(mutex_);
+  Audience audience_ RR_GUARDED_BY(mutex_){
+      std::make_shared<Ends>()};  // the list is replaced, never changed
 };
 
 /// The pipe endpoints of a client, on the service's side.
@@ -79,7 +80,7 @@ class Pipes final : public endpoint::PipeSide {
 
   ServerEndpoint& endpoint_;
   Mutex mutex_;
-  endpoint::PipeTable ends_;
+  endpoint::PipeTable ends_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::service

@@ -48,9 +48,10 @@ struct Skeleton::Places {
 
  private:
   Mutex mutex_;
-  std::vector<Place<std::weak_ptr<service::ServiceHost>>> places_;
-  std::map<std::string_view, std::shared_ptr<service::OfferedWire>> wires_;
-  std::map<std::string, std::shared_ptr<service::PipePlace>, std::less<>> pipes_;
+  std::vector<Place<std::weak_ptr<service::ServiceHost>>> places_ RR_GUARDED_BY(mutex_);
+  std::map<std::string_view, std::shared_ptr<service::OfferedWire>> wires_ RR_GUARDED_BY(mutex_);
+  std::map<std::string, std::shared_ptr<service::PipePlace>, std::less<>> pipes_
+      RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr

@@ -77,21 +77,21 @@ void ResponseBatch::put(std::size_t place, const Entry& request, Writer& answer,
   }
   Answer result = kept(request, answer);  // the writer may be the thread's, which flush() uses
   result.cost = cost;
-  MutexLock lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!is_drawn) {
     must_flush_ = true;  // what leaves may make room
-    flush(lock, is_late);
+    flush(is_late);
     if (!charge_.add(cost)) throw too_much();
   }
   waiting_.insert_or_assign(place, std::move(result));
   settle(place);
-  flush(lock, is_late);
+  flush(is_late);
 }
 
 void ResponseBatch::put_nothing(std::size_t place) {
-  MutexLock lock(mutex_);
+  const MutexLock lock(mutex_);
   settle(place);
-  flush(lock, false);
+  flush(false);
 }
 
 // Under the lock.
@@ -133,17 +133,18 @@ ResponseBatch::Answers ResponseBatch::take_ready() {
 }
 
 // One thread at a time sends, so that batches leave in their order; it sends what comes meanwhile.
-void ResponseBatch::flush(MutexLock& lock, bool is_late) {
+void ResponseBatch::flush(bool is_late) {
   if (std::exchange(is_sending_, true)) return;
   for (Answers answers = take_ready(); !answers.empty(); answers = take_ready()) {
-    lock.unlock();
-    if (const auto endpoint = endpoint_.lock(); endpoint && !endpoint->connection().is_closed()) {
-      send(*endpoint, answers, is_late);
-    }
     std::size_t cost = 0;
-    for (const Answer& answer : answers) cost += answer.cost;
-    answers.clear();
-    lock.lock();
+    {
+      const MutexUnlock unlock(mutex_);
+      if (const auto endpoint = endpoint_.lock(); endpoint && !endpoint->connection().is_closed()) {
+        send(*endpoint, answers, is_late);
+      }
+      for (const Answer& answer : answers) cost += answer.cost;
+      answers.clear();
+    }
     charge_.reduce(cost);  // not before: the connection has drawn for its copy
   }
   is_sending_ = false;

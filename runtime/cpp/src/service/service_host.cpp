@@ -90,6 +90,8 @@ ServiceHost::ServiceHost(std::shared_ptr<endpoint::Core> core, std::weak_ptr<Dir
     : core_(std::move(core)),
       directory_(std::move(directory)),
       name_(std::move(name)),
+      attributes_(std::move(options.attributes)),
+      rights_(std::move(options.rights)),
       options_(std::move(options)),
       types_(core_->types()),
       definitions_(all_definitions(*root, options_)),
@@ -108,11 +110,11 @@ ServiceHost::ServiceHost(std::shared_ptr<endpoint::Core> core, std::weak_ptr<Dir
           std::make_shared<Monitors>(core_, options_.monitor_patience, options_.limits.monitors)),
       clients_(std::make_shared<const Clients>()) {
   if (options_.rights_file.empty()) return;
-  if (options_.rights) {
+  if (rights_) {
     throw Error(ErrorCode::invalid_argument, "the rights of `" + name_ + "` are given twice");
   }
   rights_file_ = std::make_shared<RightsFile>(core_, options_.rights_file);
-  options_.rights = rights_file_->read();
+  rights_ = rights_file_->read();
 }
 
 void ServiceHost::start() {
@@ -161,13 +163,13 @@ void ServiceHost::tell_released_later(ObjectTree::Released released) const {
 
 std::map<std::string, VarValue> ServiceHost::attributes() const {
   const MutexLock lock(mutex_);
-  return options_.attributes;
+  return attributes_;
 }
 
 void ServiceHost::set_attributes(std::map<std::string, VarValue> attributes) {
   {
     const MutexLock lock(mutex_);
-    options_.attributes.swap(attributes);  // the old ones go when the lock has
+    attributes_.swap(attributes);  // the old ones go when the lock has
   }
   if (const auto directory = directory_.lock()) directory->services_changed();
 }
@@ -184,13 +186,13 @@ std::shared_ptr<const ServiceHost::Clients> ServiceHost::connected() const {
 
 std::shared_ptr<const Rights> ServiceHost::rights() const {
   const MutexLock lock(mutex_);
-  return options_.rights;
+  return rights_;
 }
 
 void ServiceHost::set_rights(std::shared_ptr<const Rights> rights) {
   {
     const MutexLock lock(mutex_);
-    options_.rights.swap(rights);  // the old ones go when the lock has
+    rights_.swap(rights);  // the old ones go when the lock has
   }
   const auto clients = connected();
   for (const auto& client : *clients) client->renew_rights(*this);
