@@ -28,7 +28,7 @@ void CallbackSlot::clear() {
   old.swap(function_);
   const auto self = std::this_thread::get_id();
   if (std::find(running_.begin(), running_.end(), self) == running_.end()) {
-    while (!running_.empty()) ended_.wait(lock);
+    while (!running_.empty()) ended_.wait(mutex_);
   }
   lock.unlock();
 }

@@ -34,8 +34,8 @@ class CallbackSlot {
  private:
   Mutex mutex_;
   Condition ended_;
-  std::shared_ptr<CallbackFunction> function_;
-  std::vector<std::thread::id> running_;
+  std::shared_ptr<CallbackFunction> function_ RR_GUARDED_BY(mutex_);
+  std::vector<std::thread::id> running_ RR_GUARDED_BY(mutex_);
 };
 
 /// The functions that a client has given to the callbacks of its stubs. No user code runs, and
@@ -52,11 +52,12 @@ class Callbacks {
   std::shared_ptr<CallbackSlot> find(std::string_view path, std::string_view member);
 
  private:
-  std::shared_ptr<CallbackSlot> find_locked(const Stub& stub, const Member& member);
+  std::shared_ptr<CallbackSlot> find_locked(const Stub& stub, const Member& member)
+      RR_REQUIRES(mutex_);
 
   Mutex mutex_;
-  bool has_ended_ = false;
-  std::vector<std::shared_ptr<CallbackSlot>> slots_;
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
+  std::vector<std::shared_ptr<CallbackSlot>> slots_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::client

@@ -264,8 +264,9 @@ void Pipes::release(std::string_view path, std::uint64_t notice) {
   {
     const MutexLock lock(mutex_);
     ended = ends_.take_below(path);
-    std::erase_if(ended,
-                  [&](const End& end) { return is_overtaken(end, notice) && ends_.add(end); });
+    std::erase_if(ended, [&](const End& end) RR_REQUIRES(mutex_) {
+      return is_overtaken(end, notice) && ends_.add(end);
+    });
   }
   for (const End& end : ended) end->finish();
 }

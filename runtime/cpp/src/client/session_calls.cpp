@@ -133,10 +133,10 @@ Session::Numbers Session::draw_numbers(bool has_name) {
   if (why_closed_) refuse_closed(*why_closed_);
   Numbers numbers{.message = next_message_id_++,
                   .is_connected = is_connected_,
-                  .remote_endpoint = remote_endpoint_,
-                  .remote_node = remote_node_,
+                  .remote_endpoint = remote_.endpoint,
+                  .remote_node = remote_.node,
                   .remote_name = {}};
-  if (has_name) numbers.remote_name = remote_name_;
+  if (has_name) numbers.remote_name = remote_.name;
   return numbers;
 }
 
@@ -191,9 +191,9 @@ void Session::send_newest(Writer& writer, const EntryHeader& header, std::uint32
                           const channel::Newest& newest) {
   writer.entry(header, element_count, 0);
   writer.message({.sender_node = core_->options().id,
-                  .receiver_node = remote_node_,
+                  .receiver_node = known_remote().node,
                   .sender_endpoint = endpoint_,
-                  .receiver_endpoint = remote_endpoint_,
+                  .receiver_endpoint = known_remote().endpoint,
                   .metadata = header.metadata,
                   .message_id = next_message_id_++,
                   .routing = false},

@@ -106,10 +106,12 @@ std::shared_ptr<channel::Account> make_account(std::size_t limit) {
 Session::Session(std::shared_ptr<endpoint::Core> core, const Url& url, ConnectOptions options)
     : core_(std::move(core)),
       service_(url.service),
+      on_closed_(std::move(options.on_closed)),
+      on_path_released_(std::move(options.on_path_released)),
       options_(std::move(options)),
       limits_(limits_of(core_->options())),
       endpoint_(core_->new_endpoint()),
-      remote_node_(url.node_id),
+      remote_{.endpoint = 0, .node = url.node_id, .name = {}},
       known_types_{options_.definition_reader ? options_.definition_reader->types()
                                               : core_->types()},
       types_(&known_types_.back()),
@@ -139,7 +141,7 @@ std::shared_ptr<Stub> Session::root(const ObjectType* wanted) {
 void Session::learn() {
   if (options_.definition_reader) return;  // whose types grow by themselves
   auto types = core_->types();
-  const auto is_known = [&] { return known_types_.back() == types; };
+  const auto is_known = [&]() RR_REQUIRES(mutex_) { return known_types_.back() == types; };
   {
     const MutexLock lock(mutex_);
     if (is_known()) return;
@@ -181,7 +183,7 @@ void Session::establish(const Url& url, const std::function<void()>& check) {
     std::function<void(const Error&)> on_closed;
     {
       const MutexLock lock(mutex_);
-      on_closed.swap(options_.on_closed);  // it never was open
+      on_closed.swap(on_closed_);  // it never was open
     }
     drop();
     connection_->close(Error(ErrorCode::connection_error, "the session has ended"));
@@ -348,9 +350,9 @@ void Session::take_remote(const Message& message, bool is_success) {
   {
     const MutexLock lock(mutex_);
     if (std::exchange(has_remote_, true)) return;
-    remote_node_ = message.sender_node;
-    remote_name_ = message.sender_name;
-    remote_endpoint_ = message.sender_endpoint;
+    remote_.node = message.sender_node;
+    remote_.name = message.sender_name;
+    remote_.endpoint = message.sender_endpoint;
     is_connected_ = is_success;
   }
   if (!is_success) return;
@@ -436,8 +438,8 @@ void Session::closed() {
   {
     const MutexLock lock(mutex_);
     why = why_closed_;
-    on_closed.swap(options_.on_closed);
-    on_path_released.swap(options_.on_path_released);
+    on_closed.swap(on_closed_);
+    on_path_released.swap(on_path_released_);
     stubs_.clear();
     handlers.swap(handlers_);
   }

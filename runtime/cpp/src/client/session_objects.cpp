@@ -154,7 +154,7 @@ void Session::release_path(std::string_view path, std::uint64_t notice) {
   std::function<void(const std::string&)> notify;
   {
     const MutexLock lock(mutex_);
-    notify = options_.on_path_released;
+    notify = on_path_released_;
   }
   channel::DeferredCallbacks deferred;
   const auto is_meant = [notice](const WireEnd::State& end) {

@@ -31,6 +31,7 @@ std::shared_ptr<Stub> StubCache::keep(const std::string& path, const std::shared
 
 std::shared_ptr<Stub> StubCache::keep(const Lookup& lookup, const std::shared_ptr<Stub>& stub) {
   const MutexLock lock(mutex_);
+  lookup.cache_.mutex_.assert_held();  // this one's
   return lookup.is_outdated_ ? nullptr : keep_locked(lookup.path_, stub);
 }
 
@@ -48,6 +49,7 @@ void StubCache::release(std::string_view path, std::string_view root) {
     return endpoint::is_at_or_below(item.first, path) && item.first != root;
   });
   for (Lookup* const lookup : lookups_) {
+    lookup->cache_.mutex_.assert_held();
     if (endpoint::is_at_or_below(lookup->path_, path)) lookup->is_outdated_ = true;
   }
 }
