@@ -29,8 +29,8 @@ class Notifier : public std::enable_shared_from_this<Notifier> {
 
   const std::shared_ptr<endpoint::Core> core_;
   Mutex mutex_;
-  std::deque<std::function<void()>> work_;
-  bool is_running_ = false;
+  std::deque<std::function<void()>> work_ RR_GUARDED_BY(mutex_);
+  bool is_running_ RR_GUARDED_BY(mutex_) = false;
 };
 
 /// A function of the program.

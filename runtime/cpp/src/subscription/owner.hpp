@@ -29,8 +29,8 @@ class Owner : public std::enable_shared_from_this<Owner> {
  private:
   const Host host_;
   Mutex mutex_;
-  bool has_ended_ = false;
-  std::vector<std::shared_ptr<Services>> subscriptions_;
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
+  std::vector<std::shared_ptr<Services>> subscriptions_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::subscription

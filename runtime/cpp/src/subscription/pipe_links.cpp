@@ -107,7 +107,7 @@ bool PipeLinks::wait(std::chrono::milliseconds limit) {
   channel::Reactor::about_to_wait();
   MutexLock lock(mutex_);
   while (packets_.empty() && is_open_ && channel::Clock::now() < deadline) {
-    channel::wait_until(arrived_, lock, deadline);
+    channel::wait_until(arrived_, mutex_, deadline);
   }
   return !packets_.empty();
 }

@@ -31,8 +31,8 @@ class UrlSource {
  private:
   Services& services_;
   Mutex mutex_;  // while it is changed; before those of Services
-  std::map<std::string, std::vector<std::string>> known_;
-  std::uint64_t last_key_ = 0;
+  std::map<std::string, std::vector<std::string>> known_ RR_GUARDED_BY(mutex_);
+  std::uint64_t last_key_ RR_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace rr::subscription

@@ -84,7 +84,7 @@ std::shared_ptr<Stub> Waits::wait(const ObjectType* type, std::chrono::milliseco
     channel::Reactor::about_to_wait();
     MutexLock lock(waiting_mutex_);
     while (changes_ == seen && channel::Clock::now() < deadline) {
-      channel::wait_until(waiting_changed_, lock, deadline);
+      channel::wait_until(waiting_changed_, waiting_mutex_, deadline);
     }
     if (changes_ != seen) continue;
     lock.unlock();

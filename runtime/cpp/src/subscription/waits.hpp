@@ -49,8 +49,8 @@ class Waits {
   const std::shared_ptr<endpoint::Core> core_;
   Mutex waiting_mutex_;
   Condition waiting_changed_;
-  std::uint64_t changes_ = 0;
-  std::vector<std::shared_ptr<Waiting>> waiting_;
+  std::uint64_t changes_ RR_GUARDED_BY(waiting_mutex_) = 0;
+  std::vector<std::shared_ptr<Waiting>> waiting_ RR_GUARDED_BY(waiting_mutex_);
 };
 
 }  // namespace rr::subscription

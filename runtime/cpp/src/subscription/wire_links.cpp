@@ -148,7 +148,7 @@ bool WireLinks::wait(std::chrono::milliseconds limit) {
   channel::Reactor::about_to_wait();
   MutexLock lock(mutex_);
   while (!newest_.is_fresh() && is_open_ && channel::Clock::now() < deadline) {
-    channel::wait_until(arrived_, lock, deadline);
+    channel::wait_until(arrived_, mutex_, deadline);
   }
   return newest_.is_fresh();
 }
