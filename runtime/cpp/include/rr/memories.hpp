@@ -145,14 +145,14 @@ class StoredArrayMemory : public ArrayMemorySource<T> {
   }
 
  private:
-  void check(std::uint64_t position, std::size_t count) const {
+  void check(std::uint64_t position, std::size_t count) const RR_REQUIRES(mutex_) {
     if (position > items_.size() || count > items_.size() - position) {
       throw Error(ErrorCode::out_of_range, "Index out of range");
     }
   }
 
   mutable Mutex mutex_;
-  Array<T> items_;
+  Array<T> items_ RR_GUARDED_BY(mutex_);
 };
 
 /// The same, of several dimensions.
@@ -190,7 +190,7 @@ class StoredMultiMemory : public MultiMemorySource<T> {
  private:
   const std::vector<std::uint64_t> dims_;
   mutable Mutex mutex_;
-  Array<T> items_;
+  Array<T> items_ RR_GUARDED_BY(mutex_);
 };
 
 /// A memory of an object on another node, without its type: a handle, which is copied freely and

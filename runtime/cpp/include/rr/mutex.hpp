@@ -131,6 +131,16 @@ class Condition {
     lock.release();
     return status;
   }
+  /// Waits until `is_true()` or `deadline`; returns what `is_true()` says then. Not analyzed: the
+  /// lock that `is_true` requires has another name here.
+  template <class Clock, class Duration, class Predicate>
+  bool wait_until(Mutex& mutex, const std::chrono::time_point<Clock, Duration>& deadline,
+                  Predicate is_true) RR_REQUIRES(mutex) RR_NO_THREAD_SAFETY_ANALYSIS {
+    while (!is_true()) {
+      if (wait_until(mutex, deadline) == std::cv_status::timeout) return is_true();
+    }
+    return true;
+  }
   /// Wakes one thread that waits.
   void notify_one() noexcept { condition_.notify_one(); }
   /// Wakes all threads that wait.

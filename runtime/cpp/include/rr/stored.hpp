@@ -36,7 +36,7 @@ class Stored {
 
  private:
   mutable Mutex mutex_;
-  T value_{};
+  T value_ RR_GUARDED_BY(mutex_){};
 };
 
 /// What is kept for clients. Forgets what it keeps for one when that leaves.
@@ -95,8 +95,8 @@ class StoredPerClient {
     }
 
     Mutex mutex;
-    T initial;
-    std::map<const void*, T> own;
+    T initial RR_GUARDED_BY(mutex);
+    std::map<const void*, T> own RR_GUARDED_BY(mutex);
   };
 
   const std::shared_ptr<Values> values_;

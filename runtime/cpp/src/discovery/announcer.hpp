@@ -41,11 +41,11 @@ class Announcer : public std::enable_shared_from_this<Announcer> {
   const std::string name_;
   const std::function<std::vector<std::string>()> listening_;
   mutable Mutex mutex_;
-  std::optional<AnnounceOptions> options_;  // nothing: nobody is told
-  std::string nonce_;
-  std::shared_ptr<Alarm> alarm_;
-  channel::Time due_ = channel::never;
-  channel::Time last_ = channel::Time::min();
+  std::optional<AnnounceOptions> options_ RR_GUARDED_BY(mutex_);  // nothing: nobody is told
+  std::string nonce_ RR_GUARDED_BY(mutex_);
+  std::shared_ptr<Alarm> alarm_ RR_GUARDED_BY(mutex_);
+  channel::Time due_ RR_GUARDED_BY(mutex_) = channel::never;
+  channel::Time last_ RR_GUARDED_BY(mutex_) = channel::Time::min();
 };
 
 }  // namespace rr::discovery

@@ -41,9 +41,9 @@ class DatagramReceiver : public std::enable_shared_from_this<DatagramReceiver> {
   const DiscoveryNetwork network_;
   const Handler handler_;
   Mutex mutex_;
-  std::vector<std::shared_ptr<Socket>> sockets_;
-  std::shared_ptr<Socket> v6_;
-  std::set<unsigned> joined_;
+  std::vector<std::shared_ptr<Socket>> sockets_ RR_GUARDED_BY(mutex_);
+  std::shared_ptr<Socket> v6_ RR_GUARDED_BY(mutex_);
+  std::set<unsigned> joined_ RR_GUARDED_BY(mutex_);
 };
 
 /// The groups of IPv6 that a network uses, as texts.

@@ -273,7 +273,7 @@ std::vector<FoundService> ServiceWatch::look(channel::Time deadline) {
       lookers_.push_back(looker);
     }
   }
-  const auto forget = [&] { std::erase(lookers_, looker); };
+  const auto forget = [&]() RR_REQUIRES(mutex_) { std::erase(lookers_, looker); };
   try {
     if (looker) wait_for_either(*looker, deadline);
   } catch (...) {

@@ -39,8 +39,8 @@ class DefinitionStore final : public client::DefinitionReader,
  private:
   mutable Mutex mutex_;
   TypeRegistry types_;
-  std::vector<std::shared_ptr<Tables>> all_;
-  std::size_t known_ = 0;
+  std::vector<std::shared_ptr<Tables>> all_ RR_GUARDED_BY(mutex_);
+  std::size_t known_ RR_GUARDED_BY(mutex_) = 0;
 };
 
 namespace {

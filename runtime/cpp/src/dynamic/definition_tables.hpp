@@ -103,9 +103,11 @@ class Tables : public std::enable_shared_from_this<Tables> {
     const RecordTable* record = nullptr;
     ElementType number = ElementType::void_;
   };
-  Base find_base(std::string_view name) const;
-  const TypeNode& make_array(const Base& base, ArrayBounds bounds, const std::string& text) const;
-  const TypeNode& make_container(const TypeNode& item, Kind kind, const std::string& text) const;
+  Base find_base(std::string_view name) const RR_REQUIRES(mutex_);
+  const TypeNode& make_array(const Base& base, ArrayBounds bounds, const std::string& text) const
+      RR_REQUIRES(mutex_);
+  const TypeNode& make_container(const TypeNode& item, Kind kind, const std::string& text) const
+      RR_REQUIRES(mutex_);
 
   std::map<std::string, RecordTable, std::less<>> records_;
   std::map<std::string, EnumTable, std::less<>> enums_;
@@ -115,7 +117,8 @@ class Tables : public std::enable_shared_from_this<Tables> {
   TypeRegistry registry_;
   // Made when they are asked for; nodes never go.
   mutable Mutex mutex_;
-  mutable std::map<std::string, std::unique_ptr<const TypeNode>, std::less<>> nodes_;
+  mutable std::map<std::string, std::unique_ptr<const TypeNode>, std::less<>> nodes_
+      RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::dynamic

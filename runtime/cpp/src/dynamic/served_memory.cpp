@@ -121,7 +121,7 @@ class ItemMemory final : public KeptMemory {
   const MemberTable& member_;
   std::vector<std::uint64_t> dims_;
   mutable Mutex mutex_;
-  std::vector<std::byte> items_;
+  std::vector<std::byte> items_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace

@@ -117,8 +117,9 @@ class DynamicSkeleton final : public Skeleton {
   const std::shared_ptr<const Tables> tables_;
   const ObjectTable& table_;
   mutable Mutex mutex_;
-  std::vector<std::shared_ptr<const MemberFunctions>> functions_;  ///< as the members
-  std::shared_ptr<const ObjectFunctions> object_functions_;
+  std::vector<std::shared_ptr<const MemberFunctions>> functions_
+      RR_GUARDED_BY(mutex_);  ///< as the members
+  std::shared_ptr<const ObjectFunctions> object_functions_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::dynamic

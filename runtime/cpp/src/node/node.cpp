@@ -45,7 +45,7 @@ subscription::Host NodeState::host() {
 
 bool NodeState::is_own_thread() const {
   if (served_aside == this || core->reactor().is_own_thread()) return true;
-  const MutexLock lock(making);
+  const RecursiveMutexLock lock(making);
   return services && services->is_own_thread();
 }
 
@@ -54,7 +54,7 @@ thread_local const NodeState* NodeState::served_aside = nullptr;
 void NodeState::end_part(std::unique_ptr<NodePart> NodeState::*slot) {
   NodePart* part = nullptr;
   {
-    const MutexLock lock(making);
+    const RecursiveMutexLock lock(making);
     have_parts_ended = true;
     part = (this->*slot).get();
   }

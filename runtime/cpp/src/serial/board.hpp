@@ -112,7 +112,7 @@ class Board {
   std::atomic<bool> stops_ = false;
 
   Mutex mutex_;
-  std::deque<Job> jobs_;
+  std::deque<Job> jobs_ RR_GUARDED_BY(mutex_);
   std::thread thread_;  // last: it uses all of the above
 };
 

@@ -44,9 +44,9 @@ class Line {
 
   Mutex mutex_;
   Condition changed_;
-  std::optional<std::string> name_;  // empty: not met so far
-  Board::Failure failure_;           // the last one
-  std::size_t failures_ = 0;
+  std::optional<std::string> name_ RR_GUARDED_BY(mutex_);  // empty: not met so far
+  Board::Failure failure_ RR_GUARDED_BY(mutex_);           // the last one
+  std::size_t failures_ RR_GUARDED_BY(mutex_) = 0;
 
   // For Lines, under its lock.
   std::size_t users_ = 0;

@@ -74,8 +74,8 @@ class BusService {
   const Nanoseconds period_;
   Mutex mutex_;
   Condition changed_;
-  bool is_over_ = false;
-  std::vector<std::function<void()>> new_tasks_;
+  bool is_over_ RR_GUARDED_BY(mutex_) = false;
+  std::vector<std::function<void()>> new_tasks_ RR_GUARDED_BY(mutex_);
   std::thread thread_;
 };
 

@@ -66,8 +66,8 @@ class CommandGroup {
   }
 
   mutable Mutex mutex_;
-  T newest_;
-  std::uint64_t count_ = 0;  // of values that were set
+  T newest_ RR_GUARDED_BY(mutex_);
+  std::uint64_t count_ RR_GUARDED_BY(mutex_) = 0;  // of values that were set
   Mailbox<T> mailbox_;
 };
 

@@ -58,9 +58,10 @@ struct Poller::System {
 
   const HANDLE event = CreateEventW(nullptr, FALSE, FALSE, nullptr);
   Mutex mutex;  // guards what follows
-  std::map<int, Watched> sockets;
-  int last = -1;  // the socket that was reported last: the next one comes first
-  bool is_woken = false;
+  std::map<int, Watched> sockets RR_GUARDED_BY(mutex);
+  int last RR_GUARDED_BY(mutex) =
+      -1;  // the socket that was reported last: the next one comes first
+  bool is_woken RR_GUARDED_BY(mutex) = false;
 };
 
 void Poller::System::watch(int socket, std::uint32_t events, void* key, bool is_new) {

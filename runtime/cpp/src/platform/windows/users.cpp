@@ -35,7 +35,7 @@ UserId number_of(PSID user) {
   const std::string name = text;
   LocalFree(text);
   static Mutex mutex;
-  static std::vector<std::string> names;
+  static std::vector<std::string> names RR_GUARDED_BY(mutex);
   const MutexLock lock(mutex);
   const auto found = std::find(names.begin(), names.end(), name);
   const auto number = static_cast<UserId>(found - names.begin());

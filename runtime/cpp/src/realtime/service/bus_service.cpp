@@ -30,7 +30,8 @@ void BusService::run() {
     lock.unlock();
     for (const auto& task : tasks) task();
     lock.lock();
-    changed_.wait_for(lock, period_, [this] { return is_over_; });
+    changed_.wait_until(mutex_, std::chrono::steady_clock::now() + period_,
+                        [this]() RR_REQUIRES(mutex_) { return is_over_; });
   }
 }
 
