@@ -80,7 +80,7 @@ std::string LayeredCarrier::failure() const {
   return failure_;
 }
 
-// Under the lock: through the layers from this one on, the rest as plain bytes.
+// Through the layers from this one on, the rest as plain bytes.
 void LayeredCarrier::pass(std::span<const std::byte> wire, std::size_t layer) {
   Bytes bytes(wire.begin(), wire.end());
   for (; layer < layers_.size() && !has_failed_; ++layer) {
@@ -105,7 +105,7 @@ void LayeredCarrier::fail(std::string why) {
   if (failure_.empty()) failure_ = std::move(why);
 }
 
-// Under the lock: bytes for the socket from above so many layers.
+// Bytes for the socket from above so many layers.
 void LayeredCarrier::say(std::size_t layers, Bytes bytes) {
   while (layers != 0) {
     Bytes wire;
@@ -116,7 +116,7 @@ void LayeredCarrier::say(std::size_t layers, Bytes bytes) {
   unsent_size_.store(unsent_.size() - unsent_at_, std::memory_order_relaxed);
 }
 
-// Under the lock. False when the socket is broken.
+// False when the socket is broken.
 bool LayeredCarrier::flush_under_lock() {
   bool is_broken = false;
   while (unsent_at_ != unsent_.size()) {

@@ -53,7 +53,7 @@ class LayeredCarrier final : public Carrier {
   void fail(std::string why) RR_REQUIRES(mutex_);
 
   const int socket_;
-  mutable Mutex mutex_;  // guards what follows but plain_
+  mutable Mutex mutex_;
   std::vector<std::unique_ptr<Layer>> layers_ RR_GUARDED_BY(mutex_);
   Bytes unsent_ RR_GUARDED_BY(mutex_);
   std::size_t unsent_at_ RR_GUARDED_BY(mutex_) = 0;

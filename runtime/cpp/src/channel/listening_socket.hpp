@@ -46,7 +46,7 @@ class ListeningSocket final : public Pollable,
   const LinkTerms terms_;
   const AcceptHandler accept_;
   std::atomic<bool> is_stopped_{false};
-  Mutex mutex_;  // guards what follows
+  Mutex mutex_;
   platform::File spare_ RR_GUARDED_BY(mutex_);
   Time gave_way_ RR_GUARDED_BY(mutex_){};
 };

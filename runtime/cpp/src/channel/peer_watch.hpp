@@ -55,7 +55,7 @@ class PeerWatch final : public Timer, public std::enable_shared_from_this<PeerWa
   const Log log_;
   std::atomic<bool> is_started_{false};
   Mutex mutex_;
-  std::vector<Peer> peers_ RR_GUARDED_BY(mutex_);  // guarded by mutex_
+  std::vector<Peer> peers_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::channel

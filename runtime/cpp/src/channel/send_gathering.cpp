@@ -88,7 +88,7 @@ void SendQueue::uncork(const std::atomic<unsigned>& expected) {
   is_corked_ = false;
 }
 
-// Under gathering_, when there is room.
+// When there is room.
 [[gnu::hot]] void SendQueue::gather(Writer& message) {
   if (gathered_size_ == 0) gathered_ = allocate(stream_chunk);
   for (const Piece& piece : message.pieces()) {
@@ -99,14 +99,13 @@ void SendQueue::uncork(const std::atomic<unsigned>& expected) {
   if (tap_.is_open()) tap_.sent(message.pieces());
 }
 
-// Under mutex_: what was gathered is next.
+// What was gathered is next.
 [[gnu::hot]] void SendQueue::take_gathered() {
   if (!has_gathered()) return;
   const MutexLock lock(gathering_);
   move_gathered();
 }
 
-// Under mutex_ and gathering_.
 void SendQueue::move_gathered() {
   Allocation memory = std::exchange(gathered_, {});
   const std::size_t size = std::exchange(gathered_size_, 0);
@@ -115,7 +114,7 @@ void SendQueue::move_gathered() {
   note_waiting();
 }
 
-// Under mutex_. What was gathered goes first, and nothing comes in between: the tap is told of
+// What was gathered goes first, and nothing comes in between: the tap is told of
 // messages in the order in which they leave.
 std::uint64_t SendQueue::take_gathered_and_tell(Writer& message) {
   const MutexLock lock(gathering_);

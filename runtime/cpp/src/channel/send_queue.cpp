@@ -41,7 +41,7 @@ SendQueue::Sent SendQueue::send(Writer& message, const How& how) {
   return has_rest && !had_rest ? Sent::first : Sent::taken;
 }
 
-// Under mutex_. False when the connection is broken or far too much waits.
+// False when the connection is broken or far too much waits.
 [[gnu::hot]] bool SendQueue::send_under_lock(Writer& message, const How& how, bool& has_rest) {
   if (is_closed()) return false;
   const bool is_unsent = has_unsent_.load(std::memory_order_relaxed);
@@ -78,7 +78,7 @@ SendQueue::Sent SendQueue::send(Writer& message, const How& how) {
   return outbox_.size() <= terms_.limit;
 }
 
-// Under mutex_, with an account: whether so many bytes more may wait. Throws `refusal` when a
+// With an account: whether so many bytes more may wait. Throws `refusal` when a
 // large message may not; what is small may, so that the other side learns of it, up to a point.
 bool SendQueue::admit(std::size_t size, ErrorCode refusal) {
   constexpr std::size_t small = 4 * 1024;
@@ -94,7 +94,7 @@ bool SendQueue::admit(std::size_t size, ErrorCode refusal) {
   return true;
 }
 
-// Under mutex_: the account is charged for what the socket did not take, and nothing else.
+// The account is charged for what the socket did not take, and nothing else.
 void SendQueue::settle() {
   if (!charge_.has_account()) return;
   const std::size_t waiting = has_unsent() ? unsent() : 0;
@@ -108,7 +108,7 @@ void SendQueue::settle() {
   }
 }
 
-// Under mutex_: what is left of a message behind its first `sent` bytes.
+// What is left of a message behind its first `sent` bytes.
 void SendQueue::queue(Writer& message, std::size_t sent, const How& how,
                       std::optional<std::uint64_t> mark) {
   if (how.newest != nullptr && tap_.is_open() && !mark) {
@@ -122,7 +122,7 @@ void SendQueue::queue(Writer& message, std::size_t sent, const How& how,
   if (how.priority != Priority::usual) outbox_.fix_order();
 }
 
-// Under mutex_. A message that waits where another one of its stream did is told as such; one that
+// A message that waits where another one of its stream did is told as such; one that
 // is older than that is not sent.
 void SendQueue::queue_newest_and_tell(Writer& message, const Newest& newest) {
   const MutexLock lock(gathering_);
@@ -182,17 +182,16 @@ bool SendQueue::check_answers() {
   return do_answers_wait();
 }
 
-// Under mutex_: bytes of answers that may wait before requests do.
+// Bytes of answers that may wait before requests do.
 std::size_t SendQueue::most_answers() const {
   return is_over_.load(std::memory_order_relaxed) ? std::min(stream_chunk, terms_.answer_limit)
                                                   : terms_.answer_limit;
 }
 
-// Under mutex_: bytes of answers that wait, at most. Events and packets do not count: a client that
+// Bytes of answers that wait, at most. Events and packets do not count: a client that
 // takes them slowly may still ask, and be it to stop something.
 std::size_t SendQueue::waiting_answers() const { return std::min(answer_bytes_, unsent()); }
 
-// Under mutex_.
 [[gnu::hot]] void SendQueue::note_waiting() {
   const std::size_t waiting = unsent();
   if (waiting == 0) answer_bytes_ = 0;

@@ -14,7 +14,7 @@ namespace rr::channel {
   begin_lead(waiter);
 }
 
-// Under mutex_, with the lease free.
+// With the lease free.
 void StreamConnection::begin_lead(Waiter& waiter) {
   lease_.lead(waiter);
   if (watch_.is_full()) watch_.go_idle(sending_.has_unsent());

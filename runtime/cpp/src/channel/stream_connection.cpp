@@ -183,7 +183,7 @@ void StreamConnection::close(const Error& why) {
   if (has_lease) finish_close();
 }
 
-// Under mutex_. Whoever has the read lease, or gets it now, keeps it for ever and finishes.
+// Whoever has the read lease, or gets it now, keeps it for ever and finishes.
 void StreamConnection::begin_close(const Error& why) {
   if (is_closing_) return;
   is_closing_ = true;

@@ -45,7 +45,7 @@ void StreamConnection::handle_in_turn(StrandTurn& turn, Handling admission, bool
   threads_->ran(is_slow);
 }
 
-// Under mutex_. Messages are handled by this thread if it may and nobody else does; then true.
+// Messages are handled by this thread if it may and nobody else does; then true.
 // Otherwise they join the queue, and somebody is made to handle it.
 [[gnu::hot]] bool StreamConnection::hand_on(Scratch& scratch, bool may_dispatch, bool& must_post) {
   if (scratch.waiting.empty()) return false;
@@ -212,7 +212,7 @@ std::chrono::microseconds StreamConnection::longest_turn_here() const {
 
 // Waiting inside a handler
 
-// Under mutex_. Of a service these are the members that wait, without the one that runs.
+// Of a service these are the members that wait, without the one that runs.
 bool StreamConnection::may_go_outside() const {
   if (threads_ == nullptr) return strand_.outside() < most_outside;
   return strand_.outside() + 1 < reactor_->session_threads();
@@ -251,7 +251,7 @@ void StreamConnection::await_strand() {
   if (turn != nullptr && !turn->is_held()) step_in(never);
 }
 
-// Under mutex_: a thread has the strand of a client, which did not read while nobody had it.
+// A thread has the strand of a client, which did not read while nobody had it.
 bool StreamConnection::must_read_on() {
   return role_ == Role::client && !lease_.is_taken() && lease_.is_asked_again();
 }

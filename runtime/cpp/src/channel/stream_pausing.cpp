@@ -17,18 +17,17 @@ constexpr std::size_t stranger_receive = 8 * 1024;
 
 }  // namespace
 
-// Under mutex_.
 [[gnu::hot]] bool StreamConnection::is_paused() const {
   return strand_.is_full() || is_refused_ || sending_.do_answers_wait();
 }
 
-// Under mutex_. A client's callers read on, whatever waits. A service that waits for its client may
+// A client's callers read on, whatever waits. A service that waits for its client may
 // have to read on even where that one does not take its answers.
 bool StreamConnection::may_callers_read() const {
   return role_ == Role::client || !(strand_.is_full() || is_refused_);
 }
 
-// Under mutex_: no more may wait to be handled.
+// No more may wait to be handled.
 bool StreamConnection::is_overdrawn() const {
   return strand_.is_full() && account_ != nullptr && strand_.has_queued() &&
          !Charge(account_).can_add(bytes_beside_frame);
@@ -79,7 +78,7 @@ StreamConnection::Received StreamConnection::wait_for_memory() {
   schedule_look(message_deadline_.due());
 }
 
-// Under mutex_. One timer looks for all; it is not taken back.
+// One timer looks for all; it is not taken back.
 void StreamConnection::schedule_look(Time when) {
   if (when >= look_due_ || is_closing_) return;
   look_due_ = when;

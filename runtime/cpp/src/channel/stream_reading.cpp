@@ -88,7 +88,7 @@ bool StreamConnection::take_read_lease(bool until_end) {
   return true;
 }
 
-// Under mutex_. What a client reads while its queue waits for a thread would have to be copied into
+// What a client reads while its queue waits for a thread would have to be copied into
 // it. A service reads on: its handlers may wait for answers to callbacks, and its queue for them.
 bool StreamConnection::is_drained_first() const {
   return role_ == Role::client && strand_.is_orphaned() && !is_end_in_sight_;

@@ -12,12 +12,12 @@ constexpr unsigned receives_of_late_acknowledgements = 64;
 
 }  // namespace
 
-// Under mutex_, when nobody reads.
+// When nobody reads.
 void StreamConnection::watch_input() {
   if (!is_closing_) watch_.go_full(sending_.has_unsent());
 }
 
-// Under mutex_: a caller has ended reading, and nobody goes on.
+// A caller has ended reading, and nobody goes on.
 [[gnu::hot]] void StreamConnection::end_call() {
   const bool has_more = lease_.is_asked_again();
   const Time last_received = last_received_.load(std::memory_order_relaxed);
@@ -26,7 +26,6 @@ void StreamConnection::watch_input() {
   }
 }
 
-// Under mutex_.
 [[gnu::hot]] void StreamConnection::schedule_watch_timer() {
   reactor_->schedule(watch_timer_, weak_from_this(), Clock::now() + watch_.period());
 }
@@ -109,7 +108,7 @@ bool StreamConnection::begin_pinned(std::uint32_t& uses) {
   return false;
 }
 
-// Under mutex_. Returns what the uses of the lease will be as long as no caller reads.
+// Returns what the uses of the lease will be as long as no caller reads.
 [[gnu::hot]] std::uint32_t StreamConnection::pin() {
   lease_.take();
   lease_.count_use();

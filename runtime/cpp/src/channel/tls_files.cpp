@@ -115,7 +115,7 @@ void TlsFiles::look_again(bool thoroughly) {
   look_at_ends();
 }
 
-// Under the lock. True when something was read.
+// True when something was read.
 bool TlsFiles::read_again(WatchedFiles& files, const std::vector<std::string>& names,
                           bool thoroughly, const std::function<void()>& read) {
   const bool is_first_look = files.have_changed(names, false);
@@ -133,7 +133,6 @@ bool TlsFiles::read_again(WatchedFiles& files, const std::vector<std::string>& n
   }
 }
 
-// Under the lock, as the next ones.
 void TlsFiles::read_certificate() {
   std::shared_ptr<SSL_CTX> context = make_context();
   Lifetime life;

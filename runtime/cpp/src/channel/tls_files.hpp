@@ -97,7 +97,7 @@ class TlsFiles {
   const TlsOptions options_;
   const NodeId own_;
 
-  mutable Mutex mutex_;  // guards what follows
+  mutable Mutex mutex_;
   WatchedFiles certificate_files_ RR_GUARDED_BY(mutex_);
   WatchedFiles authority_files_ RR_GUARDED_BY(mutex_);
   WatchedFiles revocation_files_ RR_GUARDED_BY(mutex_);

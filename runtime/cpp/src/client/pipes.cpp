@@ -175,7 +175,7 @@ Pipes::End Pipes::open(const Wish& wish, Decoder& decoder, const Entry& entry) {
   return end;
 }
 
-// Under the lock. Returns the end whose index the new one has been given; null: none.
+// Returns the end whose index the new one has been given; null: none.
 Pipes::End Pipes::add(const End& end) {
   if (ends_.add(end)) return nullptr;
   const PipeEnd::State::Identity& what = end->identity;
@@ -190,7 +190,6 @@ bool Pipes::is_overtaken(const End& end, std::uint64_t notice) {
   return static_cast<const Used&>(*end).notices_before >= notice;
 }
 
-// Under the lock.
 bool Pipes::keep_early(const Entry& entry, const endpoint::PipePacket& packet, Decoder& decoder) {
   const auto found = early_.find(Key(entry.service_path, entry.member));
   if (found == early_.end()) return false;

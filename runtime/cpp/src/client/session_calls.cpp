@@ -128,7 +128,6 @@ void Session::refuse_ended() const {
   refuse_closed(why_closed_.value());
 }
 
-// Under the lock.
 Session::Numbers Session::draw_numbers(bool has_name) {
   if (why_closed_) refuse_closed(*why_closed_);
   Numbers numbers{.message = next_message_id_++,

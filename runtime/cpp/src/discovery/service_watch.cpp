@@ -156,7 +156,7 @@ void ServiceWatch::repeat(const std::shared_ptr<ServiceFollower>& follower) {
   }
 }
 
-// Under the lock, so that the order is that of what has happened.
+// The lock keeps the order that of what has happened.
 void ServiceWatch::tell(const Followers& followers, const DetectedNode& node,
                         const std::vector<FoundService>& services) {
   if (followers.empty()) return;

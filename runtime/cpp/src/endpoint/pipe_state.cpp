@@ -130,7 +130,7 @@ PipeEnd::State::State(std::shared_ptr<const endpoint::Core> core,
   return has_room;
 }
 
-// Under mutex_. Numbers that have passed already come from a sender that counts wrong.
+// Numbers that have passed already come from a sender that counts wrong.
 bool PipeEnd::State::hold_back(std::uint32_t number, Packet packet) {
   if (static_cast<std::int32_t>(number - expected_) < 0) return true;
   if (held_.size() >= held_packets || held_bytes_ + packet.size > held_bytes) return false;
@@ -141,7 +141,6 @@ bool PipeEnd::State::hold_back(std::uint32_t number, Packet packet) {
   return true;
 }
 
-// Under mutex_.
 [[gnu::hot]] bool PipeEnd::State::push(Packet packet) {
   while (true) {
     const bool is_full =
@@ -157,7 +156,6 @@ bool PipeEnd::State::hold_back(std::uint32_t number, Packet packet) {
   return true;
 }
 
-// Under mutex_.
 [[gnu::hot]] PipeEnd::State::Packet PipeEnd::State::pop() {
   Packet packet = std::move(queue_.front());
   queue_.pop_front();
@@ -166,7 +164,7 @@ bool PipeEnd::State::hold_back(std::uint32_t number, Packet packet) {
   return packet;
 }
 
-// Under mutex_. False when the other side makes this one hold too much.
+// False when the other side makes this one hold too much.
 [[gnu::hot]] bool PipeEnd::State::draw(std::size_t cost) {
   if (cost_ + cost > charge_.bytes()) {
     const std::size_t more = cost_ + cost - charge_.bytes();
@@ -176,7 +174,7 @@ bool PipeEnd::State::hold_back(std::uint32_t number, Packet packet) {
   return true;
 }
 
-// Under mutex_. A little stays drawn, for the packet that comes next.
+// A little stays drawn, for the packet that comes next.
 [[gnu::hot]] void PipeEnd::State::give_back(std::size_t cost) {
   cost_ -= cost;
   if (charge_.bytes() > cost_ + 2 * quantum) charge_.reduce(charge_.bytes() - cost_ - quantum);

@@ -195,7 +195,7 @@ bool Logins::is_own_thread() const {
   return state_->is_runner();
 }
 
-// Under the lock, as the next ones. False when there is no room.
+// False when there is no room.
 bool Logins::State::put(const std::shared_ptr<Attempt>& attempt,
                         std::shared_ptr<Attempt>& evicted) {
   if (is_stopping) return false;

@@ -59,7 +59,7 @@ Monitors::~Monitors() { core_->reactor().cancel(*this); }
 
 void Monitors::post(std::function<void()> work) { core_->reactor().post(std::move(work)); }
 
-// Null when the session is not in line. Under the lock, as find().
+// Null when the session is not in line. With the lock.
 std::shared_ptr<Monitors::Attempt> Monitors::find_attempt(const Monitor& monitor,
                                                           std::uint32_t endpoint) {
   for (const auto& attempt : monitor.line) {
@@ -98,7 +98,6 @@ void Monitors::enter(const ServedObject& object, std::uint32_t endpoint,
   admit_next(monitor);
 }
 
-// Under the lock.
 void Monitors::check_count(std::uint32_t endpoint) const {
   if (monitors_.size() < limit_) return;
   const auto count = std::count_if(monitors_.begin(), monitors_.end(), [&](const auto& each) {
@@ -110,7 +109,6 @@ void Monitors::check_count(std::uint32_t endpoint) const {
   }
 }
 
-// Under the lock.
 void Monitors::await(const std::shared_ptr<Attempt>& attempt, Reply reply) {
   attempt->reply = std::move(reply);
   const channel::Time step_end = channel::after(channel::Clock::now(), step_time);
@@ -160,7 +158,7 @@ void Monitors::step(const std::shared_ptr<Monitor>& monitor,
   for (const auto& reply : replies) reply();
 }
 
-// Under the lock. The client hears it now, or when it asks.
+// The client hears it now, or when it asks.
 void Monitors::fail(Monitor& monitor, Attempt& attempt, const Error& error, Replies& replies) {
   const auto self = attempt.shared_from_this();
   if (!take_out(monitor, attempt)) return;
@@ -173,7 +171,7 @@ void Monitors::fail(Monitor& monitor, Attempt& attempt, const Error& error, Repl
   }
 }
 
-// Under the lock. False when it has been taken out already.
+// False when it has been taken out already.
 bool Monitors::take_out(Monitor& monitor, const Attempt& attempt) {
   return std::erase_if(monitor.line, [&](const auto& item) { return item.get() == &attempt; }) != 0;
 }
@@ -244,7 +242,7 @@ void Monitors::ask(const std::shared_ptr<Monitor>& monitor) {
   }
 }
 
-// Under the lock. When the session is in, the object is to be given back.
+// When the session is in, the object is to be given back.
 bool Monitors::begin_exit(Monitor& monitor, std::uint32_t endpoint) {
   if (endpoint == 0 || monitor.holder != endpoint) return false;
   monitor.holder = 0;
@@ -382,7 +380,6 @@ void Monitors::drop_unused() {
   for (const auto& monitor : dropped) give_back(monitor);
 }
 
-// Under the lock.
 void Monitors::schedule_drop() {
   channel::Time next = channel::never;
   for (const auto& [path, monitor] : monitors_) {

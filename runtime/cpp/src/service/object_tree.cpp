@@ -132,7 +132,7 @@ ObjectTree::Known ObjectTree::find_known(const std::string& path, std::uint32_t 
   throw Error(ErrorCode::object_not_found, "this object is for clients only");
 }
 
-// Under the lock, which is given up meanwhile. Who looks for the object may be waiting for its
+// The lock is given up meanwhile. Who looks for the object may be waiting for its
 // client, and that for this request. Throws rr::Error at the deadline.
 void ObjectTree::await_settlement(channel::Time deadline) {
   const std::uint64_t seen = settlements_;
@@ -150,7 +150,7 @@ void ObjectTree::await_settlement(channel::Time deadline) {
   }
 }
 
-// Under the lock. False when it was given up meanwhile, for what is not used to be released.
+// False when the lock was given up meanwhile, for what is not used to be released.
 bool ObjectTree::take_room(const std::string& path) {
   const bool has_room = size_ < limit_ && path_size_ + path.size() <= limit_ * path_room &&
                         charge_.add(cost_of(path));
@@ -174,14 +174,12 @@ bool ObjectTree::take_room(const std::string& path) {
   return true;
 }
 
-// Under the lock.
 void ObjectTree::count_out(const std::string& path) {
   --size_;
   path_size_ -= path.size();
   charge_.reduce(cost_of(path));
 }
 
-// Under the lock.
 void ObjectTree::add_user(Place& place, std::uint32_t client) {
   if (client == 0) return;
   const auto at = std::lower_bound(place.users.begin(), place.users.end(), client);
@@ -252,7 +250,6 @@ const MemberIndex& ObjectTree::members_of(const ObjectType& type) {
   return *index;
 }
 
-// Under the lock, as the next.
 void ObjectTree::take(Object& object, Released& released) {
   if (object->owner != 0) {
     const auto paths = own_paths_.find(object->owner);
@@ -324,7 +321,7 @@ ObjectTree::Released ObjectTree::release_all_of(std::uint32_t client) {
   return released;
 }
 
-// Under the lock: objects of all that no client uses, but for those that something holds. Whoever
+// Objects of all that no client uses, but for those that something holds. Whoever
 // uses one has used those above it.
 ObjectTree::Released ObjectTree::release_unused() {
   Released released;

@@ -94,7 +94,6 @@ void ResponseBatch::put_nothing(std::size_t place) {
   flush(false);
 }
 
-// Under the lock.
 void ResponseBatch::settle(std::size_t place) {
   settled_[place] = true;
   --missing_;
@@ -108,7 +107,7 @@ void ResponseBatch::settle(std::size_t place) {
   }
 }
 
-// Under the lock: the next answers, if they fill a message or no more will come.
+// The next answers, if they fill a message or no more will come.
 ResponseBatch::Answers ResponseBatch::take_ready() {
   Answers answers;
   const bool is_full =

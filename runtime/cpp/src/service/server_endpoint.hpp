@@ -263,12 +263,12 @@ class ServerEndpoint final : public channel::Receiver,
   Generators generators_;
   ClientScopedValues client_values_;
   mutable Mutex user_mutex_;
-  // The host and the client, for whoever has no turn; the same lock.
+  // The host and the client, for whoever has no turn.
   std::pair<std::shared_ptr<ServiceHost>, ServiceClient> session_ RR_GUARDED_BY(user_mutex_);
   std::shared_ptr<ServiceHost> present_at_
-      RR_GUARDED_BY(user_mutex_);  // is to be told that the client leaves; the same lock
+      RR_GUARDED_BY(user_mutex_);  // is to be told that the client leaves
   std::shared_ptr<Logins::Attempt> login_
-      RR_GUARDED_BY(user_mutex_);  // of the message that is handled; under user_mutex_
+      RR_GUARDED_BY(user_mutex_);  // of the message that is handled
   // With the dispatch turn:
   std::vector<Unfinished> unfinished_;       // the next one is the last
   bool has_outcome_ = false;                 // of login_

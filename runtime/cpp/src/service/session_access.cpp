@@ -78,7 +78,6 @@ bool SessionAccess::renew_rights(const ServiceHost& host) {
   return true;
 }
 
-// Under the lock.
 void SessionAccess::renew() {
   grants_ = rights_ ? std::make_shared<const Grants>(rights_, user_.get()) : nullptr;
   std::uint32_t bits = 0;

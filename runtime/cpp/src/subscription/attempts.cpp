@@ -26,7 +26,6 @@ void Services::due(const TargetPointer& target) {
   }
 }
 
-// Under the lock, as the next one.
 void Services::begin_soon(const TargetPointer& target) {
   host_.core->reactor().post([self = shared_from_this(), target] { self->begin(target); });
 }
@@ -238,7 +237,7 @@ void Services::succeed(const TargetPointer& target, const AttemptPointer& attemp
        ended ? *ended : Error(ErrorCode::operation_cancelled, "connecting was given up"));
 }
 
-// Under the lock: the target has no attempt, and is tried again later.
+// The target has no attempt, and is tried again later.
 void Services::rest(Target& target, const Error& why) {
   target.phase = Target::Phase::resting;
   target.attempt.reset();

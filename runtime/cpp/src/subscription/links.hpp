@@ -81,7 +81,7 @@ class Links : public std::enable_shared_from_this<Links> {
  protected:
   using LinkPointer = std::shared_ptr<Link>;
 
-  // What the three kinds do in their own ways. None under the lock but make_link().
+  // What the three kinds do in their own ways.
   virtual LinkPointer make_link(std::shared_ptr<const LiveClient> client) RR_REQUIRES(mutex_) = 0;
   /// The object is there: connects the member, then opened() or failed() is to be called. Throws
   /// rr::Error.

@@ -11,7 +11,6 @@
 
 namespace rr::subscription {
 
-// Under the lock.
 std::shared_ptr<Links> Services::add_member(std::shared_ptr<Links> member) {
   check_open();
   members_.push_back(member);

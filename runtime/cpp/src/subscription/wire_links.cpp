@@ -118,7 +118,7 @@ WireLinks::Value WireLinks::received() const {
   return result;
 }
 
-// Under the lock: those that have a value, in the order of arrival.
+// Those that have a value, in the order of arrival.
 std::vector<const WireLinks::WireLink*> WireLinks::fresh_links() const {
   std::vector<const WireLink*> result;
   for (const LinkPointer& link : links_) {

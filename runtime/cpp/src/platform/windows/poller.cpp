@@ -57,7 +57,7 @@ struct Poller::System {
   std::size_t collect(std::span<Event> events);
 
   const HANDLE event = CreateEventW(nullptr, FALSE, FALSE, nullptr);
-  Mutex mutex;  // guards what follows
+  Mutex mutex;
   std::map<int, Watched> sockets RR_GUARDED_BY(mutex);
   int last RR_GUARDED_BY(mutex) =
       -1;  // the socket that was reported last: the next one comes first
