@@ -17,7 +17,7 @@ LOADER.exec_module(mutate)
 SOURCE = """
 // if (a < b) return 1;
 void f(const std::vector<int>& list) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (list.size() >= 3 && is_open_) say("a == b", 'x');
   if (const auto found = find(list); found != 0) return;
   list_.clear();

@@ -459,7 +459,7 @@ void Reactor::cancel(Timer& timer) {
     {
       TimerHeap::Due due = timers_.take_first();
       const MutexUnlock unlock(mutex_);
-      TimerHeap::Due(std::move(due)).run();  // its owner may go with it, under no lock
+      due.run();
     }
     next = timers_.next_due();
   }
