@@ -49,7 +49,7 @@ set(robdef_layers
 
   "runtime/cpp/include/rr:"
   # Of the wire runtime, errors only; what binds the two has a header of its own.
-  "runtime/cpp/include/rr/realtime: runtime/cpp/include/rr/error.hpp runtime/cpp/include/rr/visibility.hpp"
+  "runtime/cpp/include/rr/realtime: runtime/cpp/include/rr/error.hpp runtime/cpp/include/rr/mutex.hpp runtime/cpp/include/rr/visibility.hpp"
   "runtime/cpp/include/rr/realtime/service.hpp: runtime/cpp/include/rr"
   "runtime/cpp/src/realtime: runtime/cpp/include/rr/crc32.hpp runtime/cpp/include/rr/error.hpp runtime/cpp/include/rr/realtime"
   "runtime/cpp/src/realtime/service: runtime/cpp/include/rr runtime/cpp/src/realtime runtime/cpp/src/node/testing"

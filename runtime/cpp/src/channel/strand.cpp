@@ -5,6 +5,7 @@
 #include <cstring>
 #include <new>
 
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/strand_turn.hpp"
 #include "runtime/cpp/src/channel/stream_sizes.hpp"
 
@@ -12,7 +13,7 @@ namespace rr::channel {
 
 /// A thread that wants the strand back, on its stack.
 struct Strand::Returning {
-  std::condition_variable wake;
+  Condition wake;
   Returning* next = nullptr;
 };
 
@@ -137,14 +138,14 @@ bool Strand::step_out(StrandTurn& turn) {
   return must_post;
 }
 
-bool Strand::step_in(StrandTurn& turn, std::unique_lock<std::mutex>& lock, Time deadline) {
+bool Strand::step_in(StrandTurn& turn, Mutex& mutex, Time deadline) {
   Returning self;
   Returning** link = &returning_;
   while (*link != nullptr) link = &(*link)->next;
   *link = &self;
   // Posted work may come too late, as when the node is shut down: then this thread is faster.
   const auto is_elsewhere = [this] { return state_ == State::held || state_ == State::suspended; };
-  while (is_elsewhere() && Clock::now() < deadline) wait_until(self.wake, lock, deadline);
+  while (is_elsewhere() && Clock::now() < deadline) wait_until(self.wake, mutex, deadline);
   for (link = &returning_; *link != &self;) link = &(*link)->next;
   *link = self.next;
   if (is_elsewhere()) return false;

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <utility>
 
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
@@ -87,8 +86,8 @@ class Strand {
   /// somebody has to be made to go on.
   bool step_out(StrandTurn& turn);
   /// Waits until the calling thread hands on messages again. False at the deadline: it is still
-  /// outside.
-  bool step_in(StrandTurn& turn, std::unique_lock<std::mutex>& lock, Time deadline);
+  /// outside. `mutex`: the connection's.
+  bool step_in(StrandTurn& turn, Mutex& mutex, Time deadline) RR_REQUIRES(mutex);
   [[nodiscard]] bool is_anybody_returning() const { return returning_ != nullptr; }
   /// A thread handles a message beside the strand.
   void go_beside() { ++outside_; }

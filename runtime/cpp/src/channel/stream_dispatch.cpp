@@ -45,7 +45,7 @@ void StreamConnection::handle_in_turn(StrandTurn& turn, Handling admission, bool
   threads_->ran(is_slow);
 }
 
-// Under mutex_. Messages are handled by this thread if it may and nobody else does; then true.
+// Messages are handled by this thread if it may and nobody else does; then true.
 // Otherwise they join the queue, and somebody is made to handle it.
 [[gnu::hot]] bool StreamConnection::hand_on(Scratch& scratch, bool may_dispatch, bool& must_post) {
   if (scratch.waiting.empty()) return false;
@@ -100,7 +100,7 @@ bool StreamConnection::must_yield(StrandTurn& turn) const {
 // With the strand: what the thread has not handled of a receive is next again.
 void StreamConnection::queue_rest(StrandTurn& turn) {
   holds_back_answers_ = false;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   strand_.push_rest(turn);
   end_if_lost();
 }
@@ -108,7 +108,7 @@ void StreamConnection::queue_rest(StrandTurn& turn) {
 // With the strand, which is given back: the queue. True when reading had to stop because of it.
 // Whoever has stepped out and wants to step in again comes first.
 [[gnu::hot]] bool StreamConnection::drain(StrandTurn& turn) {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   bool is_looked_at = false;
   while (true) {
     if (strand_.is_anybody_returning()) {
@@ -168,14 +168,14 @@ void StreamConnection::drain_posted() {
   {
     bool must_read = false;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (!strand_.adopt()) return;  // somebody was faster
       must_read = must_read_on();
     }
     if (must_read) read_soon(false);
     const ScratchLease scratch;
     scratch->waiting.clear();
-    StrandTurn turn(strand_, *scratch, longest_turn_here());
+    StrandTurn turn(strand(), *scratch, longest_turn_here());
     was_stalled = drain(turn);
     if (threads_) note_pace(turn);
   }
@@ -223,19 +223,19 @@ std::chrono::microseconds StreamConnection::longest_turn_here() const {
 
 // Waiting inside a handler
 
-// Under mutex_. Of a service these are the members that wait, without the one that runs.
+// Of a service these are the members that wait, without the one that runs.
 bool StreamConnection::may_go_outside() const {
   if (threads_ == nullptr) return strand_.outside() < most_outside;
   return strand_.outside() + 1 < reactor_->session_threads();
 }
 
 bool StreamConnection::step_out() {
-  StrandTurn* const turn = StrandTurn::current(strand_);
+  StrandTurn* const turn = StrandTurn::current(strand());
   if (turn == nullptr || !turn->is_held()) return false;
   bool must_post = false;
   bool must_flush = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!may_go_outside()) return false;
     must_flush = std::exchange(holds_back_answers_, false);
     must_post = strand_.step_out(*turn);
@@ -250,8 +250,8 @@ bool StreamConnection::step_in(Time deadline) {
   Reactor::about_to_wait();
   bool must_read = false;
   {
-    std::unique_lock lock(mutex_);
-    if (!strand_.step_in(*StrandTurn::current(strand_), lock, deadline)) return false;
+    const MutexLock lock(mutex_);
+    if (!strand_.step_in(*StrandTurn::current(strand()), mutex_, deadline)) return false;
     must_read = must_read_on();
   }
   if (must_read) read_soon(false);
@@ -259,20 +259,20 @@ bool StreamConnection::step_in(Time deadline) {
 }
 
 void StreamConnection::await_strand() {
-  const StrandTurn* const turn = StrandTurn::current(strand_);
+  const StrandTurn* const turn = StrandTurn::current(strand());
   if (turn != nullptr && !turn->is_held()) step_in(never);
 }
 
-// Under mutex_: a thread has the strand of a client, which did not read while nobody had it.
+// A thread has the strand of a client, which did not read while nobody had it.
 bool StreamConnection::must_read_on() {
   return role_ == Role::client && !lease_.is_taken() && lease_.is_asked_again();
 }
 
 bool StreamConnection::suspend() {
-  StrandTurn* const turn = StrandTurn::current(strand_);
+  StrandTurn* const turn = StrandTurn::current(strand());
   if (turn == nullptr || !turn->is_held() || turn->is_put_off()) return false;
   turn->set_put_off(true);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   strand_.begin_suspending();
   return true;
 }
@@ -281,7 +281,7 @@ bool StreamConnection::suspend() {
 bool StreamConnection::is_suspended(StrandTurn& turn, Frame frame) {
   turn.set_put_off(false);
   holds_back_answers_ = false;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const bool is_suspended = strand_.suspend(turn, std::move(frame));
   end_if_lost();
   return is_suspended;
@@ -289,7 +289,7 @@ bool StreamConnection::is_suspended(StrandTurn& turn, Frame frame) {
 
 void StreamConnection::resume() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!strand_.resume()) return;
   }
   drain_soon();
@@ -298,7 +298,7 @@ void StreamConnection::resume() {
 // Beside the strand
 
 bool StreamConnection::begin_beside() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!may_go_outside()) return false;
   strand_.go_beside();
   return true;
@@ -307,7 +307,7 @@ bool StreamConnection::begin_beside() {
 // The last one owes the end of the connection.
 void StreamConnection::end_beside() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     strand_.come_from_beside();
     if (!strand_.is_end_due() || strand_.is_taken()) return;
     strand_.orphan();
@@ -318,7 +318,7 @@ void StreamConnection::end_beside() {
 // The threads that the functions of callbacks take: several services together leave some to others.
 // Those of an address do not count as its clients.
 std::shared_ptr<ThreadShare> StreamConnection::callback_share() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!callback_threads_) {
     callback_threads_ = reactor_->open_share("to " + remote_key(remote_address_));
   }
