@@ -51,7 +51,7 @@ namespace RR_VISIBLE rr {
 /// A std::mutex that the analysis knows.
 class RR_CAPABILITY("mutex") Mutex {
  public:
-  constexpr Mutex() = default;
+  Mutex() = default;
   ~Mutex() = default;
   Mutex(const Mutex&) = delete;
   Mutex& operator=(const Mutex&) = delete;
