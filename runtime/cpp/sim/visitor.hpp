@@ -44,7 +44,7 @@ class Visitor {
   void use_generator();
   void be_asked();
   void reach_part_twice();
-  void receive_in_two_threads();
+  void wait_in_two_threads();
   void use_part();
   void call_aside();
   void attempt(const char* what, const std::function<void()>& action,

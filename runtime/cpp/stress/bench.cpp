@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "rr/error.hpp"
@@ -154,6 +155,10 @@ std::int32_t Bench::asked_within(std::uint64_t value, std::uint32_t limit) {
     shared_.lines.fault("a callback takes longer than it may");
   }
   return 0;
+}
+
+void Bench::rest(std::uint32_t duration) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(duration));
 }
 
 void Bench::send_away() {

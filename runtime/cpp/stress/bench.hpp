@@ -85,6 +85,7 @@ class Bench final : public test::stress::BenchDefault {
   std::uint64_t level_number() override { return level_number_; }
   std::uint64_t tick_number() override { return tick_number_; }
   std::uint64_t broadcast_number() override { return broadcast_number_; }
+  void rest(std::uint32_t duration) override;
   void send_away() override;
   void release(std::int32_t part) override;
   rr::Sequence<std::uint64_t> count(std::uint64_t first, std::uint32_t steps) override;
