@@ -2,7 +2,6 @@
 #include "cli/discover.hpp"
 
 #include <map>
-#include <mutex>
 #include <ostream>
 #include <rr/discovery.hpp>
 #include <rr/error.hpp>
@@ -15,6 +14,7 @@
 #include "cli/end_signals.hpp"
 #include "cli/options.hpp"
 #include "compiler/output/json.hpp"
+#include "rr/mutex.hpp"
 
 namespace robdef {
 namespace {
@@ -95,7 +95,7 @@ class Live {
       : is_json_(options.format == Format::json), out_(out) {}
 
   void node(std::string_view event, std::string_view mark, const rr::DetectedNode& node) {
-    const std::lock_guard lock(mutex_);
+    const rr::MutexLock lock(mutex_);
     if (is_json_) {
       JsonWriter json(JsonWriter::Layout::one_line);
       json.begin_object().member("event", event).key("node").begin_object();
@@ -108,7 +108,7 @@ class Live {
     out_ << mark << ' ' << node_line(node) << std::endl;
   }
   void service(std::string_view event, std::string_view mark, const rr::FoundService& service) {
-    const std::lock_guard lock(mutex_);
+    const rr::MutexLock lock(mutex_);
     if (is_json_) {
       JsonWriter json(JsonWriter::Layout::one_line);
       json.begin_object().member("event", event).key("service");
@@ -124,8 +124,8 @@ class Live {
 
  private:
   const bool is_json_;
-  std::mutex mutex_;
-  std::ostream& out_;
+  rr::Mutex mutex_;
+  std::ostream& out_ RR_GUARDED_BY(mutex_);
 };
 
 void print_live(rr::Node& node, const Options& options, const EndSignals& signals,

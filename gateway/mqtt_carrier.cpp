@@ -7,14 +7,13 @@
 #include <algorithm>
 #include <atomic>
 #include <charconv>
-#include <condition_variable>
 #include <cstdlib>
-#include <mutex>
 #include <thread>
 #include <utility>
 
 #include "gateway/mqtt_properties.hpp"
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 
 namespace rr::gateway {
 namespace {
@@ -74,7 +73,7 @@ class MqttCarrier final : public Carrier {
 
   void stop(const Message& farewell) override {
     {
-      const std::scoped_lock lock(mutex_);
+      const MutexLock lock(mutex_);
       farewell_ = farewell;
       ends_ = true;
     }
@@ -83,7 +82,7 @@ class MqttCarrier final : public Carrier {
   }
 
   Published publish(const Message& message) override {
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!is_connected_ || ends_) return Published::later;
     if (waiting_ >= options_.in_flight) {
       wants_room_ = true;
@@ -94,9 +93,9 @@ class MqttCarrier final : public Carrier {
   }
 
   void subscribe(const std::string& filter) override {
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     {
-      const std::scoped_lock filters_lock(filters_mutex_);
+      const MutexLock filters_lock(filters_mutex_);
       if (std::ranges::find(filters_, filter) != filters_.end()) return;
       filters_.push_back(filter);
     }
@@ -126,7 +125,7 @@ class MqttCarrier final : public Carrier {
       was_connected_ = false;
       converse();
       {
-        std::unique_lock lock(mutex_);
+        const MutexLock lock(mutex_);
         is_connected_ = false;
         is_accepted_ = false;
         client_.reset();
@@ -135,8 +134,9 @@ class MqttCarrier final : public Carrier {
       if (ends_) return;
       handler_->on_disconnected(options_.url + ": " + reason_);
       delay = was_connected_ ? options_.retry : std::min(delay * 2, options_.max_retry);
-      std::unique_lock lock(mutex_);
-      changed_.wait_for(lock, delay, [this] { return ends_.load(); });
+      const MutexLock lock(mutex_);
+      changed_.wait_until(mutex_, std::chrono::steady_clock::now() + delay,
+                          [this] { return ends_.load(); });
     }
   }
 
@@ -169,7 +169,7 @@ class MqttCarrier final : public Carrier {
     mosquitto_subscribe_v5_callback_set(client.get(), on_subscribe);
     mosquitto_publish_v5_callback_set(client.get(), on_publish);
     mosquitto_message_v5_callback_set(client.get(), on_message);
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     client_ = std::move(client);
     return true;
   }
@@ -196,7 +196,7 @@ class MqttCarrier final : public Carrier {
     self.is_accepted_ = true;
     std::vector<std::string> filters;
     {
-      const std::scoped_lock lock(self.filters_mutex_);
+      const MutexLock lock(self.filters_mutex_);
       filters = self.filters_;
     }
     self.subscribing_ = static_cast<int>(filters.size());
@@ -257,17 +257,17 @@ class MqttCarrier final : public Carrier {
   const Place place_;
   CarrierHandler* handler_ = nullptr;
   Message life_;
-  Message farewell_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
+  Message farewell_;  // written before ends_ is set, read after
+  Mutex mutex_ RR_ACQUIRED_BEFORE(filters_mutex_);
+  Condition changed_;
   std::atomic<bool> ends_{false};
-  Client client_;
+  Client client_;  // written by the carrier's thread, with mutex_; others read it with mutex_
   std::atomic<bool> is_accepted_{false};   // by the broker
   std::atomic<bool> is_connected_{false};  // and it knows the subscriptions
   std::atomic<bool> wants_room_{false};
   std::atomic<std::size_t> waiting_{0};  // messages that are not acknowledged
-  std::mutex filters_mutex_;
-  std::vector<std::string> filters_;
+  Mutex filters_mutex_;
+  std::vector<std::string> filters_ RR_GUARDED_BY(filters_mutex_);
   // Of the carrier's thread.
   std::string reason_;
   bool is_refused_ = false;

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "gateway/stream_writer.hpp"
 #include "gateway/topics.hpp"
 #include "gateway/worker.hpp"
+#include "rr/mutex.hpp"
 
 namespace rr::gateway {
 
@@ -59,9 +59,9 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
     dynamic::ValueType type;
     std::chrono::nanoseconds period{0};
     std::optional<std::chrono::seconds> lifespan;
-    std::mutex mutex;
-    std::optional<Timed<dynamic::Value>> newest;  // under the mutex
-    bool is_announced = false;                    // under the mutex
+    Mutex mutex;
+    std::optional<Timed<dynamic::Value>> newest RR_GUARDED_BY(mutex);
+    bool is_announced RR_GUARDED_BY(mutex) = false;
     std::uint64_t number = 0;
     std::optional<Message> message;  // that is to be published
     std::chrono::steady_clock::time_point due{};

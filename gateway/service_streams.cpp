@@ -139,7 +139,7 @@ void ServiceExporter::attach_wire(const std::string& path, const dynamic::Object
 void ServiceExporter::take_value(const std::shared_ptr<WireExport>& wire,
                                  const dynamic::Value& value, const TimeSpec& time) {
   {
-    const std::scoped_lock lock(wire->mutex);
+    const MutexLock lock(wire->mutex);
     wire->newest = Timed<dynamic::Value>{value, time};
     if (std::exchange(wire->is_announced, true)) return;
   }
@@ -153,7 +153,7 @@ bool ServiceExporter::pump_wire(WireExport& wire, Carrier& carrier) {
   if (now < wire.due) return true;
   std::optional<Timed<dynamic::Value>> newest;
   {
-    const std::scoped_lock lock(wire.mutex);
+    const MutexLock lock(wire.mutex);
     newest = std::exchange(wire.newest, std::nullopt);
     wire.is_announced = false;
   }

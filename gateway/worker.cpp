@@ -15,15 +15,15 @@ void Worker::start() {
 }
 
 void Worker::post(Task task) {
-  const std::scoped_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   if (ends_) return;
   tasks_.push_back(std::move(task));
   changed_.notify_one();
 }
 
 void Worker::post_in_turn(Task task, std::size_t limit) {
-  std::unique_lock lock(mutex_);
-  taken_.wait(lock, [&] { return ends_ || !is_bounded_ || tasks_.size() < limit; });
+  const MutexLock lock(mutex_);
+  while (!ends_ && is_bounded_ && tasks_.size() >= limit) taken_.wait(mutex_);
   if (ends_) return;
   tasks_.push_back(std::move(task));
   changed_.notify_one();
@@ -31,20 +31,20 @@ void Worker::post_in_turn(Task task, std::size_t limit) {
 
 void Worker::set_bounded(bool is_bounded) {
   {
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     is_bounded_ = is_bounded;
   }
   taken_.notify_all();
 }
 
 bool Worker::has_room() const {
-  const std::scoped_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   return tasks_.size() < most_tasks;
 }
 
 void Worker::stop() {
   {
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     ends_ = true;
   }
   changed_.notify_all();
@@ -54,9 +54,10 @@ void Worker::stop() {
 
 void Worker::run() {
   auto next_tick = std::chrono::steady_clock::now() + period_;
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   for (;;) {
-    changed_.wait_until(lock, next_tick, [this] { return ends_ || !tasks_.empty(); });
+    changed_.wait_until(mutex_, next_tick,
+                        [this]() RR_REQUIRES(mutex_) { return ends_ || !tasks_.empty(); });
     if (ends_) break;
     Task task;
     bool is_tick = false;

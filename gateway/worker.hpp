@@ -2,14 +2,13 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <deque>
-#include <mutex>
 #include <thread>
 #include <utility>
 
 #include "rr/function.hpp"
+#include "rr/mutex.hpp"
 
 namespace rr::gateway {
 
@@ -46,12 +45,12 @@ class Worker {
 
   std::chrono::milliseconds period_;
   Task tick_;
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  std::condition_variable taken_;
-  std::deque<Task> tasks_;
-  bool ends_ = false;
-  bool is_bounded_ = true;
+  mutable Mutex mutex_;
+  Condition changed_;
+  Condition taken_;
+  std::deque<Task> tasks_ RR_GUARDED_BY(mutex_);
+  bool ends_ RR_GUARDED_BY(mutex_) = false;
+  bool is_bounded_ RR_GUARDED_BY(mutex_) = true;
   std::thread thread_;
 };
 

@@ -17,7 +17,7 @@ LOADER.exec_module(mutate)
 SOURCE = """
 // if (a < b) return 1;
 void f(const std::vector<int>& list) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (list.size() >= 3 && is_open_) say("a == b", 'x');
   if (const auto found = find(list); found != 0) return;
   list_.clear();
@@ -47,7 +47,7 @@ class Places(unittest.TestCase):
         self.assertEqual([after for _, _, after in changes("constant")], ["4", "1", "8", "2", "3"])
 
     def test_locks_and_statements_are_left_out(self):
-        self.assertEqual(changes("lock"), [(4, "const std::lock_guard lock(mutex_);", ";")])
+        self.assertEqual(changes("lock"), [(4, "const MutexLock lock(mutex_);", ";")])
         self.assertEqual([before for _, before, _ in changes("statement")], ["list_.clear();", "list_.push_back(7);"])
 
     def test_statements_that_may_depend_are_swapped(self):

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <mutex>
 #include <ostream>
 #include <rr/error.hpp>
 #include <rr/locks.hpp>
@@ -27,6 +26,7 @@
 #include "cli/live/watch.hpp"
 #include "cli/options.hpp"
 #include "compiler/diagnostics/spelling.hpp"
+#include "rr/mutex.hpp"
 
 namespace robdef::live {
 namespace {
@@ -223,12 +223,12 @@ class Prompt {
   class Watching {
    public:
     Watching(Prompt& prompt, Watch& watch) : prompt_(prompt), watch_(watch) {
-      const std::lock_guard lock(prompt_.mutex_);
+      const rr::MutexLock lock(prompt_.mutex_);
       prompt_.watch_ = &watch;
     }
     ~Watching() {
       {
-        const std::lock_guard lock(prompt_.mutex_);
+        const rr::MutexLock lock(prompt_.mutex_);
         prompt_.watch_ = nullptr;
       }
       watch_.close();
@@ -242,15 +242,15 @@ class Prompt {
   };
 
   void tell_closed(const rr::Error& why) {
-    const std::lock_guard lock(mutex_);
+    const rr::MutexLock lock(mutex_);
     if (watch_ != nullptr) watch_->post([why] { throw rr::Error(why); });
   }
 
   std::ostream& out_;
   std::ostream& err_;
   const EndSignals signals_;
-  std::mutex mutex_;
-  Watch* watch_ = nullptr;
+  rr::Mutex mutex_;
+  Watch* watch_ RR_GUARDED_BY(mutex_) = nullptr;
   ObjectPath path_;
   bool is_over_ = false;
   bool has_failed_ = false;

@@ -2,14 +2,14 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <deque>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
+
+#include "rr/mutex.hpp"
 
 namespace robdef::live {
 
@@ -23,23 +23,24 @@ class WatchQueue {
   };
 
   void put_line(std::string line) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return is_closed_ || items_.size() < limit; });
+    const rr::MutexLock lock(mutex_);
+    while (!is_closed_ && items_.size() >= limit) changed_.wait(mutex_);
     if (is_closed_) return;
     items_.push_back({std::move(line), {}});
     changed_.notify_all();
   }
   /// Does not wait.
   void put_work(std::function<void()> work) {
-    const std::lock_guard lock(mutex_);
+    const rr::MutexLock lock(mutex_);
     if (is_closed_) return;
     items_.push_back({{}, std::move(work)});
     changed_.notify_all();
   }
   /// Nothing when none has come in time.
   std::optional<Item> take(std::chrono::steady_clock::time_point until) {
-    std::unique_lock lock(mutex_);
-    if (!changed_.wait_until(lock, until, [&] { return !items_.empty(); })) return std::nullopt;
+    const rr::MutexLock lock(mutex_);
+    const auto has_items = [&]() RR_REQUIRES(mutex_) { return !items_.empty(); };
+    if (!changed_.wait_until(mutex_, until, has_items)) return std::nullopt;
     Item item = std::move(items_.front());
     items_.pop_front();
     changed_.notify_all();
@@ -48,7 +49,7 @@ class WatchQueue {
   /// Nobody waits any more.
   void close() {
     std::deque<Item> left;
-    const std::lock_guard lock(mutex_);
+    const rr::MutexLock lock(mutex_);
     is_closed_ = true;
     left.swap(items_);
     changed_.notify_all();
@@ -56,10 +57,10 @@ class WatchQueue {
 
  private:
   static constexpr std::size_t limit = 1024;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<Item> items_;
-  bool is_closed_ = false;
+  rr::Mutex mutex_;
+  rr::Condition changed_;
+  std::deque<Item> items_ RR_GUARDED_BY(mutex_);
+  bool is_closed_ RR_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace robdef::live

@@ -49,7 +49,7 @@ set(robdef_layers
 
   "runtime/cpp/include/rr:"
   # Of the wire runtime, errors only; what binds the two has a header of its own.
-  "runtime/cpp/include/rr/realtime: runtime/cpp/include/rr/error.hpp runtime/cpp/include/rr/visibility.hpp"
+  "runtime/cpp/include/rr/realtime: runtime/cpp/include/rr/error.hpp runtime/cpp/include/rr/mutex.hpp runtime/cpp/include/rr/visibility.hpp"
   "runtime/cpp/include/rr/realtime/service.hpp: runtime/cpp/include/rr"
   "runtime/cpp/src/realtime: runtime/cpp/include/rr/crc32.hpp runtime/cpp/include/rr/error.hpp runtime/cpp/include/rr/realtime"
   "runtime/cpp/src/realtime/service: runtime/cpp/include/rr runtime/cpp/src/realtime runtime/cpp/src/node/testing"
@@ -91,6 +91,8 @@ set(robdef_layers
   "runtime/cpp/browser: runtime/cpp/include/rr runtime/cpp/src/node/testing"
   "runtime/cpp/bench: runtime/cpp/include/rr runtime/cpp/src"
   "runtime/cpp/stress: runtime/cpp/include/rr runtime/cpp/src/node/testing"
+  # Stands below the runtime: it takes the place of the C library.
+  "runtime/cpp/sim: runtime/cpp/include/rr runtime/cpp/stress"
 
   # Both ends of the protocol read its numbers from one file.
   "runtime/cpp/src/serial: runtime/cpp/include/rr runtime/cpp/src/dynamic runtime/arduino/src/rr/protocol.h"
@@ -114,8 +116,8 @@ set(robdef_outside_headers
   "^(antlr4|Robdef(Lexer|Parser))| compiler/syntax"
   "^boost/| cli/inspect_page.cpp runtime/cpp/include/rr/async runtime/cpp/fuzz/client_programs.cpp runtime/cpp/src/channel/web_socket.cpp runtime/cpp/src/channel/memory_stream.hpp"
   "^openssl/| runtime/cpp/src/channel runtime/cpp/src/service/password_hash.cpp conformance/harness/web_socket_recording.cpp"
-  "^rr/async(\\.hpp$|/)| runtime/cpp/include/rr/async.hpp runtime/cpp/include/rr/async runtime/cpp/src runtime/cpp/fuzz runtime/cpp/stress examples conformance benchmarks compiler/backends"
-  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| compiler/plugin/program.cpp runtime/cpp/src/serial runtime/arduino/bench/tcp runtime/cpp/src/platform runtime/cpp/src/channel/testing runtime/cpp/src/discovery/testing.hpp runtime/cpp/src/realtime/udp_socket.cpp runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp examples/hardening/sandbox_probe.cpp conformance benchmarks"
+  "^rr/async(\\.hpp$|/)| runtime/cpp/include/rr/async.hpp runtime/cpp/include/rr/async runtime/cpp/src runtime/cpp/fuzz runtime/cpp/sim runtime/cpp/stress examples conformance benchmarks compiler/backends"
+  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| compiler/plugin/program.cpp runtime/cpp/src/serial runtime/arduino/bench/tcp runtime/cpp/src/platform runtime/cpp/src/channel/testing runtime/cpp/src/discovery/testing.hpp runtime/cpp/src/realtime/udp_socket.cpp runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/sim runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp examples/hardening/sandbox_probe.cpp conformance benchmarks"
   "^fmt/| cli compiler benchmarks"
   "^nlohmann/| compiler/lsp compiler/plugin/answer.cpp runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"
   "^toml\\+\\+/| compiler/project/toml_file.cpp"

@@ -132,6 +132,8 @@ target_compile_options(robdef_warnings INTERFACE
   $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow>
   # g++ 12 sees overlapping copies in `"text" + std::string()` (its bug 105651).
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
+  # Which lock guards what (rr/mutex.hpp); a finding is never let pass.
+  $<$<CXX_COMPILER_ID:Clang>:-Wthread-safety;-Wthread-safety-beta;-Werror=thread-safety>
   $<$<BOOL:${ROBDEF_WERROR}>:-Werror>)
 
 # robdef_library(NAME SOURCES... [DEPENDS targets...])

@@ -82,7 +82,7 @@ void MemberRequest::fail(const Error& why) { state_->fail(why); }
 void MemberRequest::State::drop() noexcept {
   try {
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (is_over_) return;
     }
     fail(released_unanswered());
@@ -103,7 +103,7 @@ void MemberRequest::State::answer(const rr_elements* value) {
   const Raw* const raw = wants_value() ? &values.single() : nullptr;
   std::optional<ReplyHandle> later;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     begin_answer();
     if (request_ != nullptr && handler_ == std::this_thread::get_id()) {
       request_->answer(raw);  // what cannot be sent leaves the request open
@@ -122,7 +122,7 @@ void MemberRequest::State::answer(const rr_elements* value) {
 }
 
 void MemberRequest::State::answer_generator(std::shared_ptr<GeneratorSource> source) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (is_over_) refuse_second_answer();
   if (member_.generator == GeneratorForm::none) refuse_answer();
   if (request_ == nullptr) {
@@ -138,7 +138,7 @@ void MemberRequest::State::answer_generator(std::shared_ptr<GeneratorSource> sou
 void MemberRequest::State::fail(const Error& why) {
   std::optional<ReplyHandle> later;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_over_) refuse_second_answer();
     is_over_ = true;
     if (request_ != nullptr) {
@@ -152,7 +152,7 @@ void MemberRequest::State::fail(const Error& why) {
 }
 
 void MemberRequest::State::leave() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   Request* const request = std::exchange(request_, nullptr);
   if (error_) std::rethrow_exception(error_);
   if (is_over_) return;

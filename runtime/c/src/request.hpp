@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <condition_variable>
 #include <cstdint>
 #include <exception>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
 #include <utility>
 
+#include "rr/mutex.hpp"
 #include "rr/service.hpp"
 #include "rr/skeleton.hpp"
 #include "rr/users.hpp"
@@ -58,10 +57,10 @@ template <class Result>
 class Wait {
  public:
   void give(Result result) {
-    end([&] { result_.emplace(std::move(result)); });
+    end([&]() RR_REQUIRES(mutex_) { result_.emplace(std::move(result)); });
   }
   void fail(const Error& why) {
-    end([&] { error_ = std::make_exception_ptr(why); });
+    end([&]() RR_REQUIRES(mutex_) { error_ = std::make_exception_ptr(why); });
   }
   /// The request is released: fails unless it has ended.
   void drop() noexcept {
@@ -73,12 +72,12 @@ class Wait {
   }
   /// Waits; throws what it failed with.
   Result take() {
-    std::unique_lock lock(mutex_);
+    MutexLock lock(mutex_);
     if (!is_over_) {
       lock.unlock();
       before_waiting();
       lock.lock();
-      ended_.wait(lock, [this] { return is_over_; });
+      while (!is_over_) ended_.wait(mutex_);
     }
     if (error_) std::rethrow_exception(error_);
     return std::move(*result_);
@@ -89,7 +88,7 @@ class Wait {
   template <class End>
   void end(const End& end) {
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (is_over_) refuse_second_answer();
       end();
       is_over_ = true;
@@ -97,11 +96,11 @@ class Wait {
     ended_.notify_all();
   }
 
-  std::mutex mutex_;
-  std::condition_variable ended_;
-  bool is_over_ = false;
-  std::optional<Result> result_;
-  std::exception_ptr error_;
+  Mutex mutex_;
+  Condition ended_;
+  bool is_over_ RR_GUARDED_BY(mutex_) = false;
+  std::optional<Result> result_ RR_GUARDED_BY(mutex_);
+  std::exception_ptr error_ RR_GUARDED_BY(mutex_);
 };
 void tell_about_wait();
 template <class Result>
@@ -200,7 +199,7 @@ class MemberRequest::State {
   void leave();
 
  private:
-  void begin_answer() const;
+  void begin_answer() const RR_REQUIRES(mutex_);
   [[nodiscard]] bool wants_value() const {
     return !is_set_ && (member_.kind == MemberKind::property || member_.type != nullptr);
   }
@@ -209,11 +208,11 @@ class MemberRequest::State {
   const std::shared_ptr<const void> keeper_;
   const bool is_set_;
   const std::thread::id handler_ = std::this_thread::get_id();
-  std::mutex mutex_;
-  Request* request_;  // while the handler runs
-  std::optional<ReplyHandle> later_;
-  std::exception_ptr error_;
-  bool is_over_ = false;
+  Mutex mutex_;
+  Request* request_ RR_GUARDED_BY(mutex_);  // while the handler runs
+  std::optional<ReplyHandle> later_ RR_GUARDED_BY(mutex_);
+  std::exception_ptr error_ RR_GUARDED_BY(mutex_);
+  bool is_over_ RR_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace rr::capi

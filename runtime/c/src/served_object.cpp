@@ -38,12 +38,12 @@ RawSkeleton::RawSkeleton(std::shared_ptr<const OwnedObjectType> type, Functions 
 
 void RawSkeleton::join(const std::shared_ptr<Keeper>& keeper) {
   keeper->keep(type_);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   keepers_.insert(keeper);
 }
 
 void RawSkeleton::set_memory(std::uint32_t place, std::shared_ptr<MemorySource> memory) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   memories_[place].swap(memory);  // what was there before goes when the lock has
 }
 
@@ -95,7 +95,7 @@ std::shared_ptr<Skeleton> RawSkeleton::rr_child(std::size_t place, const ObjectI
   if (const auto raw = std::dynamic_pointer_cast<RawSkeleton>(found)) {
     std::set<std::shared_ptr<Keeper>> keepers;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       keepers = keepers_;
     }
     for (const auto& keeper : keepers) raw->join(keeper);
@@ -112,7 +112,7 @@ std::shared_ptr<void> RawSkeleton::peek(std::uint32_t kind, std::uint32_t place)
 }
 
 std::shared_ptr<MemorySource> RawSkeleton::rr_memory(std::size_t place) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return memories_[place];
 }
 

@@ -3,11 +3,11 @@
 
 #include <cstddef>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/pipes.hpp"
 #include "rr/service.hpp"
 #include "rr/skeleton.hpp"
@@ -53,9 +53,9 @@ class RawSkeleton final : public Skeleton {
 
   const std::shared_ptr<const OwnedObjectType> type_;
   const Functions handler_;
-  mutable std::mutex mutex_;
-  std::set<std::shared_ptr<Keeper>> keepers_;
-  std::vector<std::shared_ptr<MemorySource>> memories_;
+  mutable Mutex mutex_;
+  std::set<std::shared_ptr<Keeper>> keepers_ RR_GUARDED_BY(mutex_);
+  std::vector<std::shared_ptr<MemorySource>> memories_ RR_GUARDED_BY(mutex_);
 };
 
 /// A generator whose steps are a program's.

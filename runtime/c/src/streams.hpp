@@ -2,9 +2,9 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <utility>
 
+#include "rr/mutex.hpp"
 #include "rr/pipes.hpp"
 #include "rr/wires.hpp"
 #include "runtime/c/src/border.hpp"
@@ -17,13 +17,13 @@ namespace rr::capi {
 class KeptSubscription {
  public:
   Subscription exchange(Subscription subscription) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return std::exchange(subscription_, std::move(subscription));
   }
 
  private:
-  std::mutex mutex_;
-  Subscription subscription_;
+  Mutex mutex_;
+  Subscription subscription_ RR_GUARDED_BY(mutex_);
 };
 
 /// What a program wants to be told of an end; replaced as a whole. The end's functions hold this.
@@ -33,26 +33,26 @@ class Told {
   using Functions = std::shared_ptr<const Handler<Struct>>;
   /// What was there before goes outside of the lock.
   Functions exchange(Functions functions) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     functions_.swap(functions);
     return functions;
   }
   [[nodiscard]] Functions now() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return functions_;
   }
   /// The first time only.
   [[nodiscard]] bool begin() {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return !std::exchange(is_begun_, true);
   }
   /// Of the function that gets what comes.
   [[nodiscard]] KeptSubscription& received() { return received_; }
 
  private:
-  mutable std::mutex mutex_;
-  Functions functions_;
-  bool is_begun_ = false;
+  mutable Mutex mutex_;
+  Functions functions_ RR_GUARDED_BY(mutex_);
+  bool is_begun_ RR_GUARDED_BY(mutex_) = false;
   KeptSubscription received_;
 };
 

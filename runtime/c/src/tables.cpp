@@ -219,7 +219,7 @@ std::shared_ptr<const TypeRegistry> ClientTables::types() const {
 }
 
 void ClientTables::read(const std::map<std::string, std::string>& texts) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::vector<const Told*> added;
   for (const auto& [name, text] : texts) {
     if (told_.contains(name)) continue;
@@ -234,7 +234,7 @@ void ClientTables::read(const std::map<std::string, std::string>& texts) {
 
 const Member& ClientTables::member(std::string_view name, MemberKind kind, std::uint8_t access,
                                    bool has_value, const Type* type) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto [place, is_new] =
       members_.try_emplace(Key(std::string(name), kind, access, has_value, type));
   if (is_new) {
@@ -249,7 +249,7 @@ const Member& ClientTables::member(std::string_view name, MemberKind kind, std::
 }
 
 const MemoryItems& ClientTables::memory(const rr_memory_type& memory) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return memories_.try_emplace({memory.element, memory.is_multi != 0, memory.transfer_size}, memory)
       .first->second;
 }

@@ -4,7 +4,6 @@
 #include <deque>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string>
 #include <string_view>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "rr/definition.hpp"
+#include "rr/mutex.hpp"
 #include "rr/registry.hpp"
 #include "rr/stub.hpp"
 #include "runtime/c/src/elements.hpp"
@@ -26,13 +26,13 @@ namespace rr::capi {
 class Keeper {
  public:
   void keep(std::shared_ptr<const void> constant) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     kept_.insert(std::move(constant));
   }
 
  private:
-  std::mutex mutex_;
-  std::set<std::shared_ptr<const void>> kept_;
+  Mutex mutex_;
+  std::set<std::shared_ptr<const void>> kept_ RR_GUARDED_BY(mutex_);
 };
 
 /// A definition from its text.
@@ -138,11 +138,12 @@ class ClientTables final : public client::DefinitionReader,
   using Key = std::tuple<std::string, MemberKind, std::uint8_t, bool, const Type*>;
 
   TypeRegistry first_;
-  mutable std::mutex mutex_;
-  std::map<std::string, std::unique_ptr<Told>> told_;
-  std::deque<TypeRegistry> registries_;
-  std::map<Key, Member> members_;
-  std::map<std::tuple<std::uint32_t, bool, std::uint32_t>, MemoryItems> memories_;
+  mutable Mutex mutex_;
+  std::map<std::string, std::unique_ptr<Told>> told_ RR_GUARDED_BY(mutex_);
+  std::deque<TypeRegistry> registries_ RR_GUARDED_BY(mutex_);
+  std::map<Key, Member> members_ RR_GUARDED_BY(mutex_);
+  std::map<std::tuple<std::uint32_t, bool, std::uint32_t>, MemoryItems> memories_
+      RR_GUARDED_BY(mutex_);
 };
 
 /// The stub of an object of any type.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "rr/error.hpp"
@@ -141,6 +142,25 @@ std::uint64_t Bench::asked(std::uint64_t value) {
   return question(ServiceContext::current_client(), value);
 }
 
+std::int32_t Bench::asked_within(std::uint64_t value, std::uint32_t limit) {
+  const auto begin = std::chrono::steady_clock::now();
+  try {
+    question(ServiceContext::current_client(), value, within(std::chrono::milliseconds(limit)));
+    return 1;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::request_timeout) throw;
+  }
+  const auto took = std::chrono::steady_clock::now() - begin;
+  if (took > std::chrono::milliseconds(limit) + shared_.longest_delay) {
+    shared_.lines.fault("a callback takes longer than it may");
+  }
+  return 0;
+}
+
+void Bench::rest(std::uint32_t duration) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(duration));
+}
+
 void Bench::send_away() {
   if (ServiceContext* const context = context_) {
     context->disconnect(ServiceContext::current_client());
@@ -190,6 +210,11 @@ void Bench::answer_later() {
     late.swap(late_);
   }
   for (Late& one : late) one.reply(mixed(one.value, 1));
+}
+
+std::shared_ptr<test::stress::PartSkeleton> Bench::get_asking(std::int32_t index) {
+  question(ServiceContext::current_client(), static_cast<std::uint64_t>(index));
+  return get_parts(index);
 }
 
 void Bench::produce(std::uint64_t random) {

@@ -46,6 +46,7 @@ struct Shared {
   Lines& lines;
   std::atomic<int> generators{0};
   std::atomic<int> parts{0};
+  std::chrono::milliseconds longest_delay{10'000};  ///< of a thread, beyond what it waits for
 };
 
 class Part final : public test::stress::PartDefault {
@@ -80,15 +81,18 @@ class Bench final : public test::stress::BenchDefault {
   void refuse(const std::string& text) override;
   void async_later(std::uint64_t value, rr::Answer<std::uint64_t> answer) override;
   std::uint64_t asked(std::uint64_t value) override;
+  std::int32_t asked_within(std::uint64_t value, std::uint32_t limit) override;
   std::uint64_t level_number() override { return level_number_; }
   std::uint64_t tick_number() override { return tick_number_; }
   std::uint64_t broadcast_number() override { return broadcast_number_; }
+  void rest(std::uint32_t duration) override;
   void send_away() override;
   void release(std::int32_t part) override;
   rr::Sequence<std::uint64_t> count(std::uint64_t first, std::uint32_t steps) override;
   rr::Sequence<void, std::uint64_t> collect(std::uint64_t first) override;
   rr::Sequence<std::uint64_t, std::uint64_t> sum() override;
   std::shared_ptr<test::stress::PartSkeleton> get_parts(std::int32_t index) override;
+  std::shared_ptr<test::stress::PartSkeleton> get_asking(std::int32_t index) override;
 
   /// One round of what goes to all clients.
   void produce(std::uint64_t random);

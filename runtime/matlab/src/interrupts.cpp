@@ -5,11 +5,10 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
-#include <mutex>
 #include <thread>
 #include <utility>
 
+#include "rr/mutex.hpp"
 #include "runtime/matlab/src/ending_signals.hpp"
 
 #ifdef RR_OCTAVE
@@ -32,9 +31,9 @@ struct Interrupts::State {
   std::function<void()> told;
   std::atomic<bool> is_waiting{false};
   std::atomic<bool> is_asleep{false};
-  std::mutex mutex;
-  std::condition_variable changed;
-  bool is_ending = false;
+  Mutex mutex;
+  Condition changed;
+  bool is_ending RR_GUARDED_BY(mutex) = false;
   std::thread watcher;
   EndingSignals ending;
 };
@@ -42,15 +41,15 @@ struct Interrupts::State {
 void Interrupts::State::look() {
   int idle = 0;
   bool was_told = false;
-  std::unique_lock lock(mutex);
+  MutexLock lock(mutex);
   while (!is_ending) {
     idle = is_waiting ? 0 : idle + 1;
     if (idle < idle_periods) {
-      changed.wait_for(lock, period);
+      changed.wait_until(mutex, std::chrono::steady_clock::now() + period);
     } else {
       // A call that begins now sees that this sleeps, or is seen.
       is_asleep = true;
-      changed.wait(lock, [&] { return is_ending || is_waiting; });
+      while (!is_ending && !is_waiting) changed.wait(mutex);
       is_asleep = false;
       idle = 0;
     }
@@ -79,7 +78,7 @@ Interrupts::Interrupts(std::function<void()> told) : state_(std::make_unique<Sta
 Interrupts::~Interrupts() {
   if (!state_->watcher.joinable()) return;
   {
-    const std::lock_guard lock(state_->mutex);
+    const MutexLock lock(state_->mutex);
     state_->is_ending = true;
   }
   state_->changed.notify_one();
@@ -89,7 +88,7 @@ Interrupts::~Interrupts() {
 void Interrupts::begin() {
   state_->is_waiting = true;
   if (!state_->is_asleep) return;
-  const std::lock_guard lock(state_->mutex);
+  const MutexLock lock(state_->mutex);
   state_->changed.notify_one();
 }
 

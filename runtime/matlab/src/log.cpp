@@ -40,7 +40,7 @@ void Log::set_level(std::string_view name) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   for (const auto& [word, number] : levels) {
     if (word != small) continue;
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     least_ = number;
     return;
   }
@@ -51,17 +51,17 @@ void Log::open(const std::string& path) {
   std::FILE* const file = std::fopen(path.c_str(), "a");
   if (file == nullptr) throw Error(ErrorCode::io_error, "cannot write to `" + path + "`");
   close();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   file_ = file;
 }
 
 void Log::close() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (std::FILE* const file = std::exchange(file_, nullptr)) std::fclose(file);
 }
 
 void Log::write(LogLevel level, std::string_view text) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (static_cast<int>(level) < least_) return;
   std::FILE* const to = file_ != nullptr ? file_ : stderr;
   std::fprintf(to, "robdef: %.*s\n", static_cast<int>(text.size()), text.data());

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstdio>
-#include <mutex>
 #include <string>
 #include <string_view>
 
+#include "rr/mutex.hpp"
 #include "rr/options.hpp"
 
 namespace rr::matlab {
@@ -28,9 +28,9 @@ class Log {
   void write(LogLevel level, std::string_view text);
 
  private:
-  std::mutex mutex_;
-  int least_ = static_cast<int>(LogLevel::warning);
-  std::FILE* file_ = nullptr;
+  Mutex mutex_;
+  int least_ RR_GUARDED_BY(mutex_) = static_cast<int>(LogLevel::warning);
+  std::FILE* file_ RR_GUARDED_BY(mutex_) = nullptr;
 };
 
 }  // namespace rr::matlab

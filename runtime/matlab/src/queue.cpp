@@ -8,29 +8,29 @@
 namespace rr::matlab {
 
 void PendingCall::finish(dynamic::Value result) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (std::exchange(has_ended_, true)) return;
   result_ = std::move(result);
   ended_.notify_all();
 }
 
 void PendingCall::fail(std::exception_ptr error) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (std::exchange(has_ended_, true)) return;
   error_ = std::move(error);
   ended_.notify_all();
 }
 
 dynamic::Value PendingCall::wait() {
-  std::unique_lock lock(mutex_);
-  ended_.wait(lock, [&] { return has_ended_; });
+  const MutexLock lock(mutex_);
+  while (!has_ended_) ended_.wait(mutex_);
   if (error_) std::rethrow_exception(error_);
   return result_;
 }
 
 void Queue::push(Work work, std::uint64_t key) {
   Work lost;  // destroyed behind the lock
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   is_woken_ = true;
   changed_.notify_one();
   const auto known = key != 0 ? numbers_.find(key) : numbers_.end();
@@ -55,29 +55,29 @@ Queue::Work Queue::take_oldest() {
 }
 
 Queue::Work Queue::pop() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return take_oldest();
 }
 
 std::size_t Queue::size() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return entries_.size() + calls_.size() + requests_.size();
 }
 
 std::uint64_t Queue::lost_count() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return lost_;
 }
 
 void Queue::push(std::shared_ptr<PendingCall> call) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   calls_.push_back(std::move(call));
   is_woken_ = true;
   changed_.notify_one();
 }
 
 std::shared_ptr<PendingCall> Queue::pop_call() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (calls_.empty()) return nullptr;
   auto call = std::move(calls_.front());
   calls_.pop_front();
@@ -89,7 +89,7 @@ std::shared_ptr<PendingCall> Queue::pop_call() {
 void Queue::abort_calls(std::uint64_t slot) {
   std::vector<std::shared_ptr<PendingCall>> calls;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (const auto& call : calls_) calls.push_back(call);
     for (const auto& one : running_) calls.push_back(one.lock());
     std::erase_if(calls_, [&](const auto& call) { return call->slot() == slot; });
@@ -102,7 +102,7 @@ void Queue::abort_calls(std::uint64_t slot) {
 }
 
 void Queue::push_request(Work work) {
-  const std::lock_guard lock(mutex_);  // goes before `work`, which may be the last of its request
+  const MutexLock lock(mutex_);  // goes before `work`, which may be the last of its request
   if (refuses_requests_ || requests_.size() >= limit) return;
   requests_.push_back(std::move(work));
   is_woken_ = true;
@@ -110,7 +110,7 @@ void Queue::push_request(Work work) {
 }
 
 Queue::Work Queue::pop_request() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (requests_.empty()) return {};
   Work work = std::move(requests_.front());
   requests_.pop_front();
@@ -119,26 +119,27 @@ Queue::Work Queue::pop_request() {
 
 void Queue::refuse_requests() {
   std::deque<Work> requests;  // destroyed behind the lock
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   refuses_requests_ = true;
   requests.swap(requests_);
 }
 
 void Queue::wait(std::chrono::milliseconds longest) {
-  std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, longest, [&] { return is_woken_; });
+  const MutexLock lock(mutex_);
+  changed_.wait_until(mutex_, std::chrono::steady_clock::now() + longest,
+                      [&]() RR_REQUIRES(mutex_) { return is_woken_; });
   is_woken_ = false;
 }
 
 void Queue::wake() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   is_woken_ = true;
   changed_.notify_one();
 }
 
 void Queue::clear() {
   std::deque<Entry> entries;  // destroyed behind the lock
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   taken_ += entries_.size();
   numbers_.clear();
   entries.swap(entries_);

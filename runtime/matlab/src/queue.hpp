@@ -2,19 +2,18 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <exception>
 #include <memory>
-#include <mutex>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "rr/dynamic.hpp"
 #include "rr/function.hpp"
+#include "rr/mutex.hpp"
 
 namespace rr::matlab {
 
@@ -37,11 +36,11 @@ class PendingCall {
  private:
   const std::uint64_t slot_;
   const dynamic::List arguments_;
-  std::mutex mutex_;
-  std::condition_variable ended_;
-  bool has_ended_ = false;
-  dynamic::Value result_;
-  std::exception_ptr error_;
+  Mutex mutex_;
+  Condition ended_;
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
+  dynamic::Value result_ RR_GUARDED_BY(mutex_);
+  std::exception_ptr error_ RR_GUARDED_BY(mutex_);
 };
 
 /// What threads of the node have for the interpreter's. Any thread puts in, the interpreter's takes
@@ -84,20 +83,21 @@ class Queue {
     Work work;
   };
   /// The oldest, if there is one; nobody else has its key then.
-  Work take_oldest();
+  Work take_oldest() RR_REQUIRES(mutex_);
 
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  bool is_woken_ = false;
-  std::deque<Entry> entries_;
+  mutable Mutex mutex_;
+  Condition changed_;
+  bool is_woken_ RR_GUARDED_BY(mutex_) = false;
+  std::deque<Entry> entries_ RR_GUARDED_BY(mutex_);
   /// How many entries have left at the front: the place of an entry plus this stays the same.
-  std::uint64_t taken_ = 0;
-  std::unordered_map<std::uint64_t, std::uint64_t> numbers_;  ///< of entries with a key, by it
-  std::deque<std::shared_ptr<PendingCall>> calls_;
-  std::vector<std::weak_ptr<PendingCall>> running_;
-  std::uint64_t lost_ = 0;
-  std::deque<Work> requests_;
-  bool refuses_requests_ = false;
+  std::uint64_t taken_ RR_GUARDED_BY(mutex_) = 0;
+  std::unordered_map<std::uint64_t, std::uint64_t> numbers_
+      RR_GUARDED_BY(mutex_);  ///< of entries with a key, by it
+  std::deque<std::shared_ptr<PendingCall>> calls_ RR_GUARDED_BY(mutex_);
+  std::vector<std::weak_ptr<PendingCall>> running_ RR_GUARDED_BY(mutex_);
+  std::uint64_t lost_ RR_GUARDED_BY(mutex_) = 0;
+  std::deque<Work> requests_ RR_GUARDED_BY(mutex_);
+  bool refuses_requests_ RR_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace rr::matlab

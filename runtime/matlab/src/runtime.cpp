@@ -39,13 +39,13 @@ Runtime::~Runtime() {
 
 Runtime::Waiting::Waiting(Runtime& runtime) : runtime_(runtime) {
   EndingSignals::prepare();
-  const std::lock_guard lock(runtime.waiting_mutex_);
+  const MutexLock lock(runtime.waiting_mutex_);
   runtime.waiting_.push_back(cancellation);
   if (runtime.waiting_.size() == 1) runtime.interrupts_->begin();
 }
 
 Runtime::Waiting::~Waiting() {
-  const std::lock_guard lock(runtime_.waiting_mutex_);
+  const MutexLock lock(runtime_.waiting_mutex_);
   runtime_.waiting_.pop_back();
   if (runtime_.waiting_.empty()) runtime_.interrupts_->end();
 }
@@ -87,7 +87,7 @@ Error Runtime::error_of_failure(const Failure& failure) const {
 void Runtime::interrupted() {
   std::vector<std::stop_source> waiting;
   {
-    const std::lock_guard lock(waiting_mutex_);
+    const MutexLock lock(waiting_mutex_);
     waiting = waiting_;
   }
   for (std::stop_source& one : waiting) one.request_stop();

@@ -7,7 +7,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +16,7 @@
 #include "rr/call.hpp"
 #include "rr/dynamic.hpp"
 #include "rr/matlab/failure.hpp"
+#include "rr/mutex.hpp"
 #include "rr/node.hpp"
 #include "runtime/matlab/src/call.hpp"
 #include "runtime/matlab/src/handles.hpp"
@@ -150,8 +150,8 @@ class Runtime {
   std::map<std::string, std::string> foreign_names_;
   UserFunctions functions_;
   Handles handles_;
-  std::mutex waiting_mutex_;
-  std::vector<std::stop_source> waiting_;
+  Mutex waiting_mutex_;
+  std::vector<std::stop_source> waiting_ RR_GUARDED_BY(waiting_mutex_);
   std::unique_ptr<Interrupts> interrupts_;
   std::unique_ptr<Node> node_;
 };

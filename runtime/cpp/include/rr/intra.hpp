@@ -3,11 +3,11 @@
 
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
 #include "rr/channel.hpp"
+#include "rr/mutex.hpp"
 #include "rr/node_id.hpp"
 #include "rr/visibility.hpp"
 
@@ -43,8 +43,8 @@ class IntraSpace : public std::enable_shared_from_this<IntraSpace> {
   class Listening;
   struct Entry;
 
-  mutable std::mutex mutex_;
-  std::map<NodeId, std::shared_ptr<Entry>> entries_;
+  mutable Mutex mutex_;
+  std::map<NodeId, std::shared_ptr<Entry>> entries_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr

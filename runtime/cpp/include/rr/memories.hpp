@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "rr/array.hpp"
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/stub.hpp"
 #include "rr/visibility.hpp"
 
@@ -122,37 +122,37 @@ class StoredArrayMemory : public ArrayMemorySource<T> {
 
   /// Number of items.
   [[nodiscard]] std::uint64_t length() const final {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return items_.size();
   }
   /// Copies items out. Throws rr::Error (out_of_range).
   void read(std::uint64_t position, std::span<T> items) override {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     check(position, items.size());
     if (!items.empty()) std::memcpy(items.data(), items_.data() + position, items.size_bytes());
   }
   /// Copies items in. Throws rr::Error (out_of_range).
   void write(std::uint64_t position, std::span<const T> items) override {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     check(position, items.size());
     if (items.empty()) return;
     std::memcpy(items_.mutate().data() + position, items.data(), items.size_bytes());
   }
   /// What it holds now; later writes do not show in it.
   [[nodiscard]] Array<T> items() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return items_;
   }
 
  private:
-  void check(std::uint64_t position, std::size_t count) const {
+  void check(std::uint64_t position, std::size_t count) const RR_REQUIRES(mutex_) {
     if (position > items_.size() || count > items_.size() - position) {
       throw Error(ErrorCode::out_of_range, "Index out of range");
     }
   }
 
-  mutable std::mutex mutex_;
-  Array<T> items_;
+  mutable Mutex mutex_;
+  Array<T> items_ RR_GUARDED_BY(mutex_);
 };
 
 /// The same, of several dimensions.
@@ -172,25 +172,25 @@ class StoredMultiMemory : public MultiMemorySource<T> {
   /// Copies a part out.
   void read(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
             std::span<T> items) override {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     copy_memory_part(dims_, position, count, sizeof(T), items_.data(), items.data());
   }
   /// Copies a part in.
   void write(std::span<const std::uint64_t> position, std::span<const std::uint64_t> count,
              std::span<const T> items) override {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     copy_into_memory(dims_, position, count, sizeof(T), items.data(), items_.mutate().data());
   }
   /// What it holds now; later writes do not show in it.
   [[nodiscard]] MultiArray<T> array() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return {{dims_.begin(), dims_.end()}, items_};
   }
 
  private:
   const std::vector<std::uint64_t> dims_;
-  mutable std::mutex mutex_;
-  Array<T> items_;
+  mutable Mutex mutex_;
+  Array<T> items_ RR_GUARDED_BY(mutex_);
 };
 
 /// A memory of an object on another node, without its type: a handle, which is copied freely and

@@ -3,12 +3,12 @@
 
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/visibility.hpp"
 
 /// What generated Default classes stand on.
@@ -25,18 +25,18 @@ class Stored {
 
   /// A copy of the value.
   [[nodiscard]] T get() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return value_;
   }
   /// Sets the value.
   void set(T value) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     std::swap(value_, value);
   }
 
  private:
-  mutable std::mutex mutex_;
-  T value_{};
+  mutable Mutex mutex_;
+  T value_ RR_GUARDED_BY(mutex_){};
 };
 
 /// What is kept for clients. Forgets what it keeps for one when that leaves.
@@ -67,7 +67,7 @@ class StoredPerClient {
   /// the initial one.
   [[nodiscard]] T get() const {
     const void* const session = ClientValues::current_session();
-    const std::lock_guard lock(values_->mutex);
+    const MutexLock lock(values_->mutex);
     const auto found = values_->own.find(session);
     return found != values_->own.end() ? found->second : values_->initial;
   }
@@ -75,7 +75,7 @@ class StoredPerClient {
   /// initial one.
   void set(T value) {
     const void* const session = ClientValues::current_session();
-    const std::lock_guard lock(values_->mutex);
+    const MutexLock lock(values_->mutex);
     if (session == nullptr) {
       std::swap(values_->initial, value);
     } else if (const auto found = values_->own.find(session); found != values_->own.end()) {
@@ -90,13 +90,13 @@ class StoredPerClient {
     explicit Values(T first) : initial(std::move(first)) {}
     void forget(const void* session) override {
       typename std::map<const void*, T>::node_type forgotten;  // goes when the lock has
-      const std::lock_guard lock(mutex);
+      const MutexLock lock(mutex);
       forgotten = own.extract(session);
     }
 
-    std::mutex mutex;
-    T initial;
-    std::map<const void*, T> own;
+    Mutex mutex;
+    T initial RR_GUARDED_BY(mutex);
+    std::map<const void*, T> own RR_GUARDED_BY(mutex);
   };
 
   const std::shared_ptr<Values> values_;

@@ -41,7 +41,7 @@ Pool::Pool(std::size_t limit, std::size_t reserve, std::size_t largest)
       rests_(std::min(largest, limit / 3)) {}
 
 std::size_t Pool::held() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return held_;
 }
 
@@ -52,7 +52,7 @@ bool Pool::lend(std::size_t held, std::size_t more, Use use) {
 }
 
 bool Pool::lend_under_lock(std::size_t held, std::size_t more, Use use) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (held + more > reserve_) {
     const std::size_t limit = limit_of(use);
     if (held_ > limit || more > limit - held_) return false;
@@ -80,12 +80,12 @@ std::size_t Pool::limit_of(Use use) const {
 }
 
 bool Pool::is_mostly_free(std::size_t more) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return held_ <= limit_ / 4 && more <= limit_ / 4 - held_;
 }
 
 void Pool::lend_anyway(std::size_t bytes) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   held_ += bytes;
   peak_ = std::max(peak_, held_);
 }
@@ -93,7 +93,7 @@ void Pool::lend_anyway(std::size_t bytes) {
 void Pool::take_back(std::size_t bytes) {
   std::size_t fallen = 0;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     held_ -= bytes;
     if (on_fall_ != nullptr && peak_ - held_ >= fall_) {
       fallen = peak_ - held_;
@@ -135,52 +135,52 @@ bool Account::draw_under_lock(std::size_t bytes, Use use) {
 }
 
 bool Account::draw(std::size_t bytes) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return draw_under_lock(bytes, Use::other);
 }
 
 bool Account::draw_part(std::size_t bytes) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return draw_under_lock(bytes, Use::part);
 }
 
 bool Account::draw_rest(std::size_t bytes) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return draw_under_lock(bytes, Use::rest);
 }
 
 bool Account::draw_reading(std::size_t bytes) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return draw_under_lock(bytes, Use::reading);
 }
 
 bool Account::draw_making(std::size_t bytes) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return draw_under_lock(bytes, Use::making);
 }
 
 bool Account::draw_ahead(std::size_t bytes) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return pool_->is_mostly_free(bytes) && draw_under_lock(bytes, Use::other);
 }
 
 void Account::draw_anyway(std::size_t bytes) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   draw_under_lock(bytes, Use::present);
 }
 
 void Account::give_back(std::size_t bytes) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   give_back_under_lock(bytes);
 }
 
 void Account::offer(std::size_t bytes) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   offered_ += bytes;
 }
 
 void Account::end_offer(std::size_t bytes) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const std::size_t left = std::min(bytes, offered_);
   offered_ -= left;
   if (left != 0) give_back_under_lock(left);
@@ -196,7 +196,7 @@ void Account::give_back_under_lock(std::size_t bytes) {
 }
 
 void Account::move_to(std::shared_ptr<Pool> pool) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   pool->lend_anyway(held_);
   pool_->take_back(lent_);
   lent_ = held_;
@@ -204,7 +204,7 @@ void Account::move_to(std::shared_ptr<Pool> pool) {
 }
 
 std::size_t Account::held() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return held_;
 }
 

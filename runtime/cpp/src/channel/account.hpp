@@ -5,8 +5,9 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <utility>
+
+#include "rr/mutex.hpp"
 
 namespace rr::channel {
 
@@ -65,9 +66,9 @@ class Pool {
   std::size_t fall_ = 0;
   std::function<void(std::size_t)> on_fall_;
   std::function<void()> on_full_;
-  mutable std::mutex mutex_;
-  std::size_t held_ = 0;
-  std::size_t peak_ = 0;  // of held_, since it has last fallen far
+  mutable Mutex mutex_;
+  std::size_t held_ RR_GUARDED_BY(mutex_) = 0;
+  std::size_t peak_ RR_GUARDED_BY(mutex_) = 0;  // of held_, since it has last fallen far
 };
 
 /// For accounts that their pool alone limits.
@@ -111,18 +112,18 @@ class Account {
 
  private:
   using Use = Pool::Use;
-  bool draw_under_lock(std::size_t bytes, Use use);
-  void give_back_under_lock(std::size_t bytes);
+  bool draw_under_lock(std::size_t bytes, Use use) RR_REQUIRES(mutex_);
+  void give_back_under_lock(std::size_t bytes) RR_REQUIRES(mutex_);
 
   // The pool is asked for so much at once, so that most draws do not lock it.
   static constexpr std::size_t quantum = 16 * 1024;
 
   const std::size_t limit_;
-  mutable std::mutex mutex_;
-  std::shared_ptr<Pool> pool_;
-  std::size_t held_ = 0;
-  std::size_t lent_ = 0;     // by the pool: held_ or more
-  std::size_t offered_ = 0;  // of held_
+  mutable Mutex mutex_;
+  std::shared_ptr<Pool> pool_ RR_GUARDED_BY(mutex_);
+  std::size_t held_ RR_GUARDED_BY(mutex_) = 0;
+  std::size_t lent_ RR_GUARDED_BY(mutex_) = 0;     // by the pool: held_ or more
+  std::size_t offered_ RR_GUARDED_BY(mutex_) = 0;  // of held_
 };
 
 /// Bytes of an account, for as long as this exists.

@@ -15,13 +15,13 @@ bool is_full(std::size_t count, std::size_t limit) { return limit != 0 && count 
 }  // namespace
 
 bool Admission::Place::take(const std::shared_ptr<Connection>& connection) {
-  const std::lock_guard lock(admission_->mutex_);
+  const MutexLock lock(admission_->mutex_);
   connection_ = connection;
   return is_counted_;
 }
 
 void Admission::Place::set_authorised(bool is_authorised) {
-  const std::lock_guard lock(admission_->mutex_);
+  const MutexLock lock(admission_->mutex_);
   if (!is_counted_ || is_stranger_ != is_authorised) return;
   if (is_authorised) {
     admission_->remove_stranger(*this);
@@ -31,7 +31,7 @@ void Admission::Place::set_authorised(bool is_authorised) {
 }
 
 void Admission::Place::leave() {
-  const std::lock_guard lock(admission_->mutex_);
+  const MutexLock lock(admission_->mutex_);
   if (is_counted_) admission_->remove(*this);
 }
 
@@ -41,7 +41,7 @@ std::shared_ptr<Admission::Place> Admission::enter(std::string address) {
   auto place = std::make_shared<Place>(shared_from_this(), std::move(address));
   std::vector<Leaving> leaving;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_full(count_, options_->max_connections) && !choose(strangers_, leaving)) return nullptr;
     if (is_full(strangers_.size(), options_->max_connections_before_session)) {
       choose(strangers_, leaving);
@@ -52,6 +52,7 @@ std::shared_ptr<Admission::Place> Admission::enter(std::string address) {
       choose(same->second, leaving);
     }
     ++count_;
+    place->admission_->mutex_.assert_held();  // this one's, here and below
     place->is_counted_ = true;
     add_stranger(*place);
   }
@@ -62,15 +63,15 @@ std::shared_ptr<Admission::Place> Admission::enter(std::string address) {
 bool Admission::give_way() {
   std::vector<Leaving> leaving;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!choose(strangers_, leaving)) return false;
   }
   close(leaving);
   return true;
 }
 
-// Under the lock, here and below.
 void Admission::add_stranger(Place& place) {
+  place.admission_->mutex_.assert_held();
   place.is_stranger_ = true;
   place.in_all_ = strangers_.insert(strangers_.end(), &place);
   if (place.address_.empty()) return;
@@ -79,6 +80,7 @@ void Admission::add_stranger(Place& place) {
 }
 
 void Admission::remove_stranger(Place& place) {
+  place.admission_->mutex_.assert_held();
   place.is_stranger_ = false;
   strangers_.erase(place.in_all_);
   if (place.address_.empty()) return;
@@ -88,6 +90,7 @@ void Admission::remove_stranger(Place& place) {
 }
 
 void Admission::remove(Place& place) {
+  place.admission_->mutex_.assert_held();
   if (place.is_stranger_) remove_stranger(place);
   place.is_counted_ = false;
   --count_;
@@ -97,6 +100,7 @@ void Admission::remove(Place& place) {
 bool Admission::choose(const Places& places, std::vector<Leaving>& leaving) {
   if (places.empty()) return false;
   Place& oldest = *places.front();
+  oldest.admission_->mutex_.assert_held();
   leaving.push_back({oldest.connection_.lock(), oldest.address_});
   remove(oldest);
   return true;
@@ -116,7 +120,7 @@ void Admission::warn(const std::string& text) {
   if (!options_->log) return;
   std::size_t unwarned = 0;
   {
-    const std::lock_guard lock(warning_);
+    const MutexLock lock(warning_);
     const Time now = Clock::now();
     if (now < next_warning_) {
       ++unwarned_;
@@ -131,12 +135,12 @@ void Admission::warn(const std::string& text) {
 }
 
 std::size_t Admission::size() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return count_;
 }
 
 std::size_t Admission::strangers() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return strangers_.size();
 }
 

@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <list>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/options.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
@@ -42,12 +42,11 @@ class Admission : public std::enable_shared_from_this<Admission> {
 
     const std::shared_ptr<Admission> admission_;
     const std::string address_;
-    // Guarded by the admission.
-    std::weak_ptr<Connection> connection_;
-    bool is_counted_ = false;
-    bool is_stranger_ = false;
-    Iterator in_all_;
-    Iterator in_address_;
+    std::weak_ptr<Connection> connection_ RR_GUARDED_BY(admission_->mutex_);
+    bool is_counted_ RR_GUARDED_BY(admission_->mutex_) = false;
+    bool is_stranger_ RR_GUARDED_BY(admission_->mutex_) = false;
+    Iterator in_all_ RR_GUARDED_BY(admission_->mutex_);
+    Iterator in_address_ RR_GUARDED_BY(admission_->mutex_);
   };
 
   explicit Admission(std::shared_ptr<const NodeOptions> options);
@@ -72,22 +71,22 @@ class Admission : public std::enable_shared_from_this<Admission> {
     std::string address;
   };
 
-  void add_stranger(Place& place);
-  void remove_stranger(Place& place);
-  void remove(Place& place);
-  bool choose(const Places& places, std::vector<Leaving>& leaving);
+  void add_stranger(Place& place) RR_REQUIRES(mutex_);
+  void remove_stranger(Place& place) RR_REQUIRES(mutex_);
+  void remove(Place& place) RR_REQUIRES(mutex_);
+  bool choose(const Places& places, std::vector<Leaving>& leaving) RR_REQUIRES(mutex_);
   void close(const std::vector<Leaving>& leaving);
 
   const std::shared_ptr<const NodeOptions> options_;
 
-  mutable std::mutex mutex_;
-  std::size_t count_ = 0;
-  Places strangers_;  // the oldest first
-  std::unordered_map<std::string, Places> by_address_;
+  mutable Mutex mutex_;
+  std::size_t count_ RR_GUARDED_BY(mutex_) = 0;
+  Places strangers_ RR_GUARDED_BY(mutex_);  // the oldest first
+  std::unordered_map<std::string, Places> by_address_ RR_GUARDED_BY(mutex_);
 
-  std::mutex warning_;
-  Time next_warning_{};
-  std::size_t unwarned_ = 0;
+  Mutex warning_;
+  Time next_warning_ RR_GUARDED_BY(warning_){};
+  std::size_t unwarned_ RR_GUARDED_BY(warning_) = 0;
 };
 
 }  // namespace rr::channel

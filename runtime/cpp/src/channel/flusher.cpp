@@ -10,24 +10,25 @@ namespace rr::channel {
 
 Flusher::~Flusher() { stop(); }
 
-void Flusher::add(std::shared_ptr<Flushable> flushable) {
+bool Flusher::add(std::shared_ptr<Flushable> flushable) {
   {
-    const std::lock_guard lock(mutex_);
-    if (is_stopping_) return;
-    due_.push_back(std::move(flushable));
+    const MutexLock lock(mutex_);
+    if (is_stopping_) return true;
     try {
       if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
     } catch (const std::system_error&) {
-      // Tried again with the next one; what is left until then goes with the next message.
+      return false;  // tried again with the next one
     }
+    due_.push_back(std::move(flushable));
   }
   wake_.notify_one();
+  return true;
 }
 
 void Flusher::stop() {
   std::thread thread;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_stopping_ = true;
     thread = std::move(thread_);
   }
@@ -40,11 +41,11 @@ void Flusher::run() {
   // until the producer pauses, or has gathered enough to send itself.
   platform::prefer_throughput();
   std::vector<std::shared_ptr<Flushable>> due;
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   while (true) {
     if (due_.empty()) {
       if (is_stopping_) return;
-      wake_.wait(lock);
+      wake_.wait(mutex_);
       continue;
     }
     due.swap(due_);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <condition_variable>
 #include <memory>
-#include <mutex>
 #include <thread>
 #include <vector>
+
+#include "rr/mutex.hpp"
 
 namespace rr::channel {
 
@@ -30,19 +30,20 @@ class Flusher {
   Flusher(const Flusher&) = delete;
   Flusher& operator=(const Flusher&) = delete;
 
-  /// Nothing happens when it has been stopped.
-  void add(std::shared_ptr<Flushable> flushable);
+  /// Nothing happens when it has been stopped. False when there is no thread for it: somebody else
+  /// has to flush.
+  [[nodiscard]] bool add(std::shared_ptr<Flushable> flushable);
   /// What was added before is flushed.
   void stop();
 
  private:
   void run();
 
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  std::vector<std::shared_ptr<Flushable>> due_;
-  bool is_stopping_ = false;
-  std::thread thread_;
+  Mutex mutex_;
+  Condition wake_;
+  std::vector<std::shared_ptr<Flushable>> due_ RR_GUARDED_BY(mutex_);
+  bool is_stopping_ RR_GUARDED_BY(mutex_) = false;
+  std::thread thread_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::channel

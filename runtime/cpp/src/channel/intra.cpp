@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 
 namespace rr {
 namespace {
@@ -24,7 +25,7 @@ class IntraLink final : public MessageLink {
     bool is_late = false;
     std::shared_ptr<LinkUser> other;
     {
-      const std::lock_guard lock(ends_->mutex);
+      const MutexLock lock(ends_->mutex);
       ends_->users[own_] = user;
       is_late = ends_->has_ended;
       other = ends_->users[1 - own_];
@@ -35,7 +36,7 @@ class IntraLink final : public MessageLink {
   bool send(MemoryRef owner, std::span<const std::byte> message) override {
     std::shared_ptr<LinkUser> other;
     {
-      const std::lock_guard lock(ends_->mutex);
+      const MutexLock lock(ends_->mutex);
       if (ends_->has_ended) return true;
       other = ends_->users[1 - own_];
     }
@@ -47,7 +48,7 @@ class IntraLink final : public MessageLink {
   void close() override {
     std::shared_ptr<LinkUser> other;
     {
-      const std::lock_guard lock(ends_->mutex);
+      const MutexLock lock(ends_->mutex);
       ends_->has_ended = true;
       other = std::move(ends_->users[1 - own_]);
       ends_->users[own_] = nullptr;
@@ -57,16 +58,16 @@ class IntraLink final : public MessageLink {
 
  private:
   struct Ends {
-    std::mutex mutex;
-    std::shared_ptr<LinkUser> users[2];
-    bool has_ended = false;
+    Mutex mutex;
+    std::shared_ptr<LinkUser> users[2] RR_GUARDED_BY(mutex);
+    bool has_ended RR_GUARDED_BY(mutex) = false;
   };
 
   IntraLink(std::shared_ptr<Ends> ends, int own, std::string url)
       : ends_(std::move(ends)), own_(own), url_(std::move(url)) {}
 
   std::shared_ptr<LinkUser> other_user() const {
-    const std::lock_guard lock(ends_->mutex);
+    const MutexLock lock(ends_->mutex);
     return ends_->users[1 - own_];
   }
 
@@ -79,9 +80,13 @@ class IntraLink final : public MessageLink {
 
 // A node that listens. The lock is held while a link is given to it, so that none is after its end.
 struct IntraSpace::Entry {
-  Present node;
-  std::mutex mutex;
-  std::function<void(std::unique_ptr<MessageLink>)> accept;  // empty: it has ended
+  Entry(Present present, std::function<void(std::unique_ptr<MessageLink>)> accept_links)
+      : node(std::move(present)), accept(std::move(accept_links)) {}
+
+  const Present node;
+  Mutex mutex;
+  std::function<void(std::unique_ptr<MessageLink>)> accept
+      RR_GUARDED_BY(mutex);  // empty: it has ended
 };
 
 class IntraSpace::Listening final : public LinkListener {
@@ -90,11 +95,11 @@ class IntraSpace::Listening final : public LinkListener {
       : space_(std::move(space)), entry_(std::move(entry)) {}
   ~Listening() override {
     {
-      const std::lock_guard lock(space_->mutex_);
+      const MutexLock lock(space_->mutex_);
       space_->entries_.erase(entry_->node.id);
     }
     std::function<void(std::unique_ptr<MessageLink>)> accept;
-    const std::lock_guard lock(entry_->mutex);
+    const MutexLock lock(entry_->mutex);
     accept.swap(entry_->accept);
   }
   [[nodiscard]] std::vector<std::string> urls() const override { return {"rr+intra://"}; }
@@ -122,7 +127,7 @@ class IntraSpace::Channel final : public MessageChannel {
     }
     const std::shared_ptr<Entry> entry = find(url);
     auto [own, others] = IntraLink::make_pair("rr+intra://");
-    const std::lock_guard lock(entry->mutex);
+    const MutexLock lock(entry->mutex);
     if (!entry->accept) fail(url);
     entry->accept(std::move(others));
     return std::move(own);
@@ -130,10 +135,8 @@ class IntraSpace::Channel final : public MessageChannel {
 
   std::unique_ptr<LinkListener> listen(
       const Url& /*url*/, std::function<void(std::unique_ptr<MessageLink>)> accept) override {
-    auto entry = std::make_shared<Entry>();
-    entry->node = node_;
-    entry->accept = std::move(accept);
-    const std::lock_guard lock(space_->mutex_);
+    auto entry = std::make_shared<Entry>(node_, std::move(accept));
+    const MutexLock lock(space_->mutex_);
     for (const auto& [id, other] : space_->entries_) {
       if (id == node_.id || (!node_.name.empty() && other->node.name == node_.name)) {
         throw Error(ErrorCode::invalid_operation,
@@ -153,7 +156,7 @@ class IntraSpace::Channel final : public MessageChannel {
   }
 
   std::shared_ptr<Entry> find(const Url& url) const {
-    const std::lock_guard lock(space_->mutex_);
+    const MutexLock lock(space_->mutex_);
     for (const auto& [id, entry] : space_->entries_) {
       if ((url.node_id.is_any() || url.node_id == id) &&
           (url.node_name.empty() || url.node_name == entry->node.name)) {
@@ -177,7 +180,7 @@ std::shared_ptr<IntraSpace> IntraSpace::of_process() {
 
 std::vector<IntraSpace::Present> IntraSpace::nodes() const {
   std::vector<Present> present;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const auto& [id, entry] : entries_) present.push_back(entry->node);
   return present;
 }

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/late_work.hpp"
 
-#include <condition_variable>
 #include <deque>
-#include <mutex>
 #include <system_error>
 #include <utility>
+
+#include "rr/mutex.hpp"
 
 namespace rr::channel {
 
 struct LateWork::Queue {
-  std::mutex mutex;
-  std::condition_variable ended;
-  std::deque<std::function<void()>> work;
-  bool has_thread = false;
-  std::thread::id runner;  // the thread, once it runs
-  std::thread thread;      // the last one, which may have ended
+  Mutex mutex;
+  Condition ended;
+  std::deque<std::function<void()>> work RR_GUARDED_BY(mutex);
+  bool has_thread RR_GUARDED_BY(mutex) = false;
+  std::thread::id runner RR_GUARDED_BY(mutex);  // the thread, once it runs
+  std::thread thread RR_GUARDED_BY(mutex);      // the last one, which may have ended
 
-  // Under the lock. Of a thread that has ended, but for its last instructions.
-  void join() {
+  // Of a thread that has ended, but for its last instructions.
+  void join() RR_REQUIRES(mutex) {
     if (thread.joinable()) thread.join();
   }
 
   void run() {
-    std::unique_lock lock(mutex);
+    MutexLock lock(mutex);
     runner = std::this_thread::get_id();
     while (!work.empty()) {
       std::function<void()> next = std::move(work.front());
@@ -47,12 +47,12 @@ LateWork::LateWork() : queue_(std::make_shared<Queue>()) {}
 
 LateWork::~LateWork() {
   wait();
-  const std::lock_guard lock(queue_->mutex);
+  const MutexLock lock(queue_->mutex);
   if (queue_->thread.joinable()) queue_->thread.detach();  // this is it
 }
 
 void LateWork::add(std::function<void()> work) {
-  const std::lock_guard lock(queue_->mutex);
+  const MutexLock lock(queue_->mutex);
   queue_->work.push_back(std::move(work));
   if (std::exchange(queue_->has_thread, true)) return;
   queue_->join();
@@ -64,9 +64,9 @@ void LateWork::add(std::function<void()> work) {
 }
 
 void LateWork::wait() {
-  std::unique_lock lock(queue_->mutex);
+  MutexLock lock(queue_->mutex);
   if (queue_->runner == std::this_thread::get_id()) return;
-  queue_->ended.wait(lock, [&] { return !queue_->has_thread; });
+  while (queue_->has_thread) queue_->ended.wait(queue_->mutex);
   if (!queue_->work.empty()) {
     queue_->has_thread = true;
     lock.unlock();
@@ -77,7 +77,7 @@ void LateWork::wait() {
 }
 
 bool LateWork::is_own_thread() const {
-  const std::lock_guard lock(queue_->mutex);
+  const MutexLock lock(queue_->mutex);
   return queue_->runner == std::this_thread::get_id();
 }
 

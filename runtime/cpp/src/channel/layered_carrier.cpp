@@ -23,13 +23,13 @@ constexpr std::size_t most_unsent = 1024 * 1024;
 }  // namespace
 
 void LayeredCarrier::add(std::unique_ptr<Layer> layer, std::span<const std::byte> received) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   layers_.push_back(std::move(layer));
   if (!received.empty()) pass(received, layers_.size() - 1);
 }
 
 void LayeredCarrier::begin(std::unique_ptr<Layer> layer) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   Bytes first;
   layer->begin(first);
   say(layers_.size(), std::move(first));
@@ -38,28 +38,28 @@ void LayeredCarrier::begin(std::unique_ptr<Layer> layer) {
 }
 
 const Layer* LayeredCarrier::outermost() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return layers_.empty() ? nullptr : layers_.back().get();
 }
 
 std::size_t LayeredCarrier::count() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return layers_.size();
 }
 
 bool LayeredCarrier::is_open() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return layers_.empty() || layers_.back()->is_open();
 }
 
 bool LayeredCarrier::is_encrypted() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return std::any_of(layers_.begin(), layers_.end(),
                      [](const auto& layer) { return layer->is_encrypted(); });
 }
 
 NodeId LayeredCarrier::certified_node() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const auto& layer : layers_) {
     const NodeId node = layer->certified_node();
     if (!node.is_any()) return node;
@@ -68,7 +68,7 @@ NodeId LayeredCarrier::certified_node() const {
 }
 
 std::shared_ptr<const PeerProof> LayeredCarrier::take_proof() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const auto& layer : layers_) {
     if (auto proof = layer->take_proof()) return proof;
   }
@@ -76,11 +76,11 @@ std::shared_ptr<const PeerProof> LayeredCarrier::take_proof() {
 }
 
 std::string LayeredCarrier::failure() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return failure_;
 }
 
-// Under the lock: through the layers from this one on, the rest as plain bytes.
+// Through the layers from this one on, the rest as plain bytes.
 void LayeredCarrier::pass(std::span<const std::byte> wire, std::size_t layer) {
   Bytes bytes(wire.begin(), wire.end());
   for (; layer < layers_.size() && !has_failed_; ++layer) {
@@ -105,7 +105,7 @@ void LayeredCarrier::fail(std::string why) {
   if (failure_.empty()) failure_ = std::move(why);
 }
 
-// Under the lock: bytes for the socket from above so many layers.
+// Bytes for the socket from above so many layers.
 void LayeredCarrier::say(std::size_t layers, Bytes bytes) {
   while (layers != 0) {
     Bytes wire;
@@ -116,7 +116,7 @@ void LayeredCarrier::say(std::size_t layers, Bytes bytes) {
   unsent_size_.store(unsent_.size() - unsent_at_, std::memory_order_relaxed);
 }
 
-// Under the lock. False when the socket is broken.
+// False when the socket is broken.
 bool LayeredCarrier::flush_under_lock() {
   bool is_broken = false;
   while (unsent_at_ != unsent_.size()) {
@@ -134,7 +134,7 @@ bool LayeredCarrier::flush_under_lock() {
 }
 
 bool LayeredCarrier::flush() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return flush_under_lock();
 }
 
@@ -147,7 +147,7 @@ std::ptrdiff_t LayeredCarrier::receive(std::span<std::byte> room, bool may_block
     plain_.clear();
     plain_at_ = 0;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (has_failed_) {
         flush_under_lock();
         return 0;
@@ -157,7 +157,7 @@ std::ptrdiff_t LayeredCarrier::receive(std::span<std::byte> room, bool may_block
     const auto wait = may_block ? platform::Wait::some : platform::Wait::none;
     const std::ptrdiff_t size = platform::receive(socket_, wire, wait);
     if (size <= 0) return size;
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     pass(std::span(wire).first(static_cast<std::size_t>(size)), 0);
   }
   const std::size_t size = std::min(room.size(), plain_.size() - plain_at_);
@@ -167,7 +167,7 @@ std::ptrdiff_t LayeredCarrier::receive(std::span<std::byte> room, bool may_block
 }
 
 std::ptrdiff_t LayeredCarrier::send(std::span<const platform::Buffer> pieces) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::ptrdiff_t taken = 0;
   Bytes plain;
   std::size_t piece = 0;

@@ -3,10 +3,10 @@
 
 #include <atomic>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/carrier.hpp"
 #include "runtime/cpp/src/channel/layer.hpp"
 
@@ -47,19 +47,19 @@ class LayeredCarrier final : public Carrier {
   [[nodiscard]] std::string failure() const override;
 
  private:
-  void pass(std::span<const std::byte> wire, std::size_t layer);
-  void say(std::size_t layers, Bytes bytes);
-  bool flush_under_lock();
-  void fail(std::string why);
+  void pass(std::span<const std::byte> wire, std::size_t layer) RR_REQUIRES(mutex_);
+  void say(std::size_t layers, Bytes bytes) RR_REQUIRES(mutex_);
+  bool flush_under_lock() RR_REQUIRES(mutex_);
+  void fail(std::string why) RR_REQUIRES(mutex_);
 
   const int socket_;
-  mutable std::mutex mutex_;  // guards what follows but plain_
-  std::vector<std::unique_ptr<Layer>> layers_;
-  Bytes unsent_;
-  std::size_t unsent_at_ = 0;
+  mutable Mutex mutex_;
+  std::vector<std::unique_ptr<Layer>> layers_ RR_GUARDED_BY(mutex_);
+  Bytes unsent_ RR_GUARDED_BY(mutex_);
+  std::size_t unsent_at_ RR_GUARDED_BY(mutex_) = 0;
   std::atomic<std::size_t> unsent_size_{0};
-  std::string failure_;
-  bool has_failed_ = false;
+  std::string failure_ RR_GUARDED_BY(mutex_);
+  bool has_failed_ RR_GUARDED_BY(mutex_) = false;
 
   Bytes plain_;  // with the read turn
   std::size_t plain_at_ = 0;

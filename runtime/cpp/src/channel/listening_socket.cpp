@@ -73,14 +73,14 @@ void ListeningSocket::on_ready(std::uint32_t /*events*/) {
 }
 
 bool ListeningSocket::keep_spare() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!spare_) spare_ = platform::open_spare();
   return static_cast<bool>(spare_);
 }
 
 // The descriptor of the one that gave way last may not be free yet.
 bool ListeningSocket::may_give_way() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const Time now = Clock::now();
   if (now < gave_way_ + giving_way) return false;
   gave_way_ = now;
@@ -91,7 +91,7 @@ bool ListeningSocket::may_give_way() {
 bool ListeningSocket::take_with_spare() {
   Descriptor accepted;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     gave_way_ = Clock::now();
     spare_ = platform::File();
     std::error_code error;

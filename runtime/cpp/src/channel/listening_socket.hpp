@@ -3,8 +3,8 @@
 
 #include <atomic>
 #include <memory>
-#include <mutex>
 
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/channel.hpp"
 #include "runtime/cpp/src/channel/link_terms.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
@@ -46,9 +46,9 @@ class ListeningSocket final : public Pollable,
   const LinkTerms terms_;
   const AcceptHandler accept_;
   std::atomic<bool> is_stopped_{false};
-  std::mutex mutex_;  // guards what follows
-  platform::File spare_;
-  Time gave_way_{};
+  Mutex mutex_;
+  platform::File spare_ RR_GUARDED_BY(mutex_);
+  Time gave_way_ RR_GUARDED_BY(mutex_){};
 };
 
 }  // namespace rr::channel

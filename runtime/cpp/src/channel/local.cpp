@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Local sockets (04, section 7).
 #include <filesystem>
-#include <mutex>
 #include <optional>
 #include <system_error>
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/channel.hpp"
 #include "runtime/cpp/src/channel/connected.hpp"
 #include "runtime/cpp/src/channel/listening_socket.hpp"
@@ -112,15 +112,15 @@ class LocalListener final : public Listener {
 
   [[nodiscard]] std::vector<std::string> urls() const override { return {url_}; }
   void services_changed(const std::string& nonce) override {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (files_) files_->set_nonce(nonce);
   }
 
  private:
   std::optional<PlacedSocket> socket_;
   std::string url_;
-  std::mutex mutex_;
-  std::unique_ptr<NodeFiles> files_;
+  Mutex mutex_;
+  std::unique_ptr<NodeFiles> files_ RR_GUARDED_BY(mutex_);
   std::shared_ptr<ListeningSocket> listening_;
 };
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/reader.hpp"
 
 namespace rr::channel {
@@ -60,7 +61,7 @@ class MessageCarrier::User final : public LinkUser {
   bool received(MemoryRef owner, std::span<const std::byte> message) override {
     bool must_ring = false;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (has_ended_) return true;
       if (!messages_.empty() &&
           (messages_.size() >= most_messages || bytes_ + message.size() > most_bytes)) {
@@ -87,7 +88,7 @@ class MessageCarrier::User final : public LinkUser {
   void has_room() override {
     std::function<void()> on_room;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (has_ended_) return;
       has_room_ = true;
       on_room = on_room_;
@@ -98,7 +99,7 @@ class MessageCarrier::User final : public LinkUser {
 
   void ended() override {
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (std::exchange(has_ended_, true)) return;
       on_room_ = nullptr;
     }
@@ -108,7 +109,7 @@ class MessageCarrier::User final : public LinkUser {
 
   // All that waits; true when the link is to be told that there is room.
   bool take(std::deque<Frame>& messages) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     messages.swap(messages_);
     messages_.clear();
     bytes_ = 0;
@@ -116,17 +117,17 @@ class MessageCarrier::User final : public LinkUser {
   }
 
   void set_on_room(std::function<void()> on_room) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!has_ended_) on_room_ = std::move(on_room);
   }
   void expect_room() {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     has_room_ = false;
   }
   void wait_for_room(Time deadline) {
-    std::unique_lock lock(mutex_);
+    MutexLock lock(mutex_);
     while (!has_room_ && !has_ended_ && Clock::now() < deadline) {
-      wait_until(room_, lock, deadline);
+      wait_until(room_, mutex_, deadline);
     }
   }
 
@@ -138,14 +139,14 @@ class MessageCarrier::User final : public LinkUser {
   }
 
   const Descriptor bell_;
-  std::mutex mutex_;
-  std::condition_variable room_;
-  std::deque<Frame> messages_;
-  std::size_t bytes_ = 0;
-  bool is_refusing_ = false;
-  bool has_room_ = true;
-  bool has_ended_ = false;
-  std::function<void()> on_room_;
+  Mutex mutex_;
+  Condition room_;
+  std::deque<Frame> messages_ RR_GUARDED_BY(mutex_);
+  std::size_t bytes_ RR_GUARDED_BY(mutex_) = 0;
+  bool is_refusing_ RR_GUARDED_BY(mutex_) = false;
+  bool has_room_ RR_GUARDED_BY(mutex_) = true;
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
+  std::function<void()> on_room_ RR_GUARDED_BY(mutex_);
 };
 
 namespace {

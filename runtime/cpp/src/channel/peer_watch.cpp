@@ -27,7 +27,7 @@ void PeerWatch::start() {
 void PeerWatch::add(const std::shared_ptr<Connection>& connection,
                     std::shared_ptr<const PeerProof> proof) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     peers_.push_back({connection, std::move(proof)});
   }
   start();
@@ -61,11 +61,11 @@ void PeerWatch::look_at_peers() {
   const auto trust = files_->trust();
   std::vector<Peer> peers;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     peers = std::exchange(peers_, {});
   }
   std::erase_if(peers, [&](Peer& peer) { return !is_right(peer, *trust); });
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   peers_.insert(peers_.end(), std::make_move_iterator(peers.begin()),
                 std::make_move_iterator(peers.end()));
 }

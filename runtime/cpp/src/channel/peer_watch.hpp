@@ -5,10 +5,10 @@
 #include <chrono>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string_view>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/options.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/channel/peer_judge.hpp"
@@ -54,8 +54,8 @@ class PeerWatch final : public Timer, public std::enable_shared_from_this<PeerWa
   const Milliseconds period_;
   const Log log_;
   std::atomic<bool> is_started_{false};
-  std::mutex mutex_;
-  std::vector<Peer> peers_;  // guarded by mutex_
+  Mutex mutex_;
+  std::vector<Peer> peers_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::channel

@@ -35,7 +35,7 @@ Reactor::Reactor(Terms terms)
 Reactor::~Reactor() { stop(); }
 
 void Reactor::start() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (is_stopping_) return;
   while (live_threads_ < duties) {
     if (!add_thread()) {
@@ -49,7 +49,7 @@ void Reactor::stop() {
   flusher_.stop();
   std::list<std::thread> threads;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_stopping_ = true;
     is_stay_over_ = true;
     threads.swap(threads_);
@@ -65,13 +65,13 @@ void Reactor::stop() {
   for (std::thread& thread : threads) thread.join();
   late_.wait();
   std::vector<std::shared_ptr<Pollable>> retired;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   has_ended_ = true;
   retired.swap(retired_);
 }
 
 bool Reactor::is_stopping() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return is_stopping_;
 }
 
@@ -89,7 +89,7 @@ void Reactor::remove(int socket) { sockets_.remove(socket); }
 
 void Reactor::retire(std::shared_ptr<Pollable> pollable) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (has_ended_) return;
     retired_.push_back(std::move(pollable));
     has_work_.store(true, std::memory_order_release);
@@ -99,7 +99,7 @@ void Reactor::retire(std::shared_ptr<Pollable> pollable) {
 
 void Reactor::post(Posted posted) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_stopping_) {
       late_.add(std::move(posted.work));
       return;
@@ -111,25 +111,25 @@ void Reactor::post(Posted posted) {
 }
 
 void Reactor::begin_connection() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   ++connections_;
 }
 
 void Reactor::end_connection() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (--connections_ == 0) no_connection_.notify_all();
 }
 
 void Reactor::wait_for_connections() {
-  std::unique_lock lock(mutex_);
-  no_connection_.wait(lock, [&] { return connections_ == 0; });
+  const MutexLock lock(mutex_);
+  while (connections_ != 0) no_connection_.wait(mutex_);
 }
 
 void Reactor::wake_polling_thread() { sockets_.wake(); }
 
 void Reactor::wake_watching_thread() {
   // The lock makes sure that the thread is really waiting.
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   watching_thread_sleeps_.store(false, std::memory_order_relaxed);
   watch_.notify_one();
 }
@@ -191,7 +191,7 @@ bool Reactor::holds_up_others() {
 }
 
 bool Reactor::is_posted_for_others(const Pollable* own) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return std::any_of(posted_.begin(), posted_.end(), [&](const Posted& posted) {
     return posted.pollable == nullptr || posted.pollable.get() != own;
   });
@@ -247,11 +247,12 @@ bool Reactor::run_posted(Polling& polling) {
 // No event is left that could name them. A thread that has lost its turn may still be about to
 // enter the handler of one.
 std::vector<std::shared_ptr<Pollable>> Reactor::take_retired() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   has_work_.store(false, std::memory_order_relaxed);
-  const auto kept = std::partition(retired_.begin(), retired_.end(), [&](const auto& pollable) {
+  const auto is_inside = [&](const auto& pollable) RR_REQUIRES(mutex_) {
     return std::find(inside_.begin(), inside_.end(), pollable.get()) != inside_.end();
-  });
+  };
+  const auto kept = std::partition(retired_.begin(), retired_.end(), is_inside);
   std::vector<std::shared_ptr<Pollable>> retired(std::make_move_iterator(kept),
                                                  std::make_move_iterator(retired_.end()));
   retired_.erase(kept, retired_.end());
@@ -271,7 +272,7 @@ void Reactor::run(const std::function<void()>& work) const {
 
 // False when there is none that may run now.
 bool Reactor::next_posted(Posted& next, Handling& admission) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   while (!posted_.empty()) {
     next = std::move(posted_.front());
     posted_.pop_front();
@@ -292,10 +293,10 @@ bool Reactor::next_posted(Posted& next, Handling& admission) {
   Reactor& reactor = *polling->reactor;
   Pollable* handling = nullptr;
   {
-    std::unique_lock lock(reactor.mutex_);
+    const MutexLock lock(reactor.mutex_);
     const bool is_handed_over = reactor.hand_over(*polling, true);
     if (is_handed_over) handling = reactor.handling_;  // nobody else's yet
-    reactor.report_missing_thread(lock);
+    reactor.report_missing_thread();
     if (!is_handed_over) return;
   }
   if (handling != nullptr) handling->on_stuck();
@@ -305,9 +306,9 @@ void Reactor::give_way() {
   Polling* const polling = current_polling;
   if (polling == nullptr) return;
   Reactor& reactor = *polling->reactor;
-  std::unique_lock lock(reactor.mutex_);
+  const MutexLock lock(reactor.mutex_);
   reactor.hand_over(*polling, true);
-  reactor.report_missing_thread(lock);
+  reactor.report_missing_thread();
 }
 
 // Others come first where one processor is for all, who wait for an answer of this thread, too.
@@ -360,7 +361,7 @@ bool Reactor::hand_over(Polling& polling, bool is_held) {
 bool Reactor::begin_stay() {
   Polling* const polling = current_polling;
   if (polling == nullptr || polling->reactor != this) return false;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (stays_ >= max_stays_ || is_stay_over_ || is_tight_) return false;
   if (!is_inside(*polling) || event_count_ > 1) return false;
   if (!hand_over(*polling, false)) return false;
@@ -369,40 +370,40 @@ bool Reactor::begin_stay() {
 }
 
 void Reactor::end_stay() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (--stays_ == 0) is_stay_over_ = is_stopping_.load();
 }
 
 unsigned Reactor::stays() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return stays_;
 }
 
 unsigned Reactor::held() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return held_;
 }
 
 unsigned Reactor::live_threads() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return live_threads_;
 }
 
 std::size_t Reactor::waiting() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return waiting_.size();
 }
 
 // Watching
 
 // Returns true when this thread is to poll from now on.
-[[gnu::hot]] bool Reactor::watch(std::unique_lock<std::mutex>& lock) {
+[[gnu::hot]] bool Reactor::watch() {
   std::uint64_t last_turn = turn_.load();
   int stuck_looks = 0;
   int quiet_looks = 0;
   while (!is_stopping_) {
-    report_missing_thread(lock);
-    const Time next_timer = run_timers(lock);
+    report_missing_thread();
+    const Time next_timer = run_timers();
     if (is_stopping_) break;  // since the lock was given up
     const std::uint64_t turn = turn_.load();
     const bool is_busy = turn % 2 != 0;
@@ -412,9 +413,8 @@ std::size_t Reactor::waiting() const {
     if (stuck_looks >= looks_until_stuck && take_over(turn)) {
       is_watched_ = false;
       Pollable* const stuck = handling_;
-      lock.unlock();
+      const MutexUnlock unlock(mutex_);
       if (stuck != nullptr) stuck->on_stuck();
-      lock.lock();
       return true;
     }
     Time until = std::min(next_timer, Clock::now() + look_period);
@@ -422,7 +422,7 @@ std::size_t Reactor::waiting() const {
       watching_thread_sleeps_.store(true);
       if (turn_.load() == turn) until = next_timer;
     }
-    wait_until(watch_, lock, until);
+    wait_until(watch_, mutex_, until);
     watching_thread_sleeps_.store(false, std::memory_order_relaxed);
   }
   is_watched_ = false;
@@ -442,26 +442,25 @@ bool Reactor::take_over(std::uint64_t turn) {
 // Timers
 
 [[gnu::hot]] void Reactor::schedule(Timer& timer, std::weak_ptr<void> owner, Time when) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const bool is_first = timers_.schedule(timer, std::move(owner), is_stopping_ ? never : when);
   if (is_first) watch_.notify_one();
 }
 
 void Reactor::cancel(Timer& timer) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   timers_.cancel(timer);
 }
 
 // Returns when the next one is due.
-[[gnu::hot]] Time Reactor::run_timers(std::unique_lock<std::mutex>& lock) {
+[[gnu::hot]] Time Reactor::run_timers() {
   Time next = timers_.next_due();
   while (next != never && next <= Clock::now()) {
     {
       TimerHeap::Due due = timers_.take_first();
-      lock.unlock();
+      const MutexUnlock unlock(mutex_);
       due.run();
     }
-    lock.lock();
     next = timers_.next_due();
   }
   return next;

@@ -2,20 +2,19 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <list>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <thread>
 #include <unordered_map>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/visibility.hpp"
 #include "runtime/cpp/src/channel/flusher.hpp"
 #include "runtime/cpp/src/channel/late_work.hpp"
@@ -175,20 +174,20 @@ class RR_INSIDE Reactor final : public Watcher {
 
   void post(Posted posted);
   void run_thread();
-  void poll_until_lost(std::unique_lock<std::mutex>& lock);
+  void poll_until_lost() RR_REQUIRES(mutex_);
   void poll(Polling& polling);
-  bool watch(std::unique_lock<std::mutex>& lock);
-  bool take_over(std::uint64_t turn);
-  bool hand_over(Polling& polling, bool is_held);
-  void note_loss(Polling& polling);
+  bool watch() RR_REQUIRES(mutex_);
+  bool take_over(std::uint64_t turn) RR_REQUIRES(mutex_);
+  bool hand_over(Polling& polling, bool is_held) RR_REQUIRES(mutex_);
+  void note_loss(Polling& polling) RR_REQUIRES(mutex_);
   std::vector<std::shared_ptr<Pollable>> take_retired();
-  void hold(Polling& polling);
-  void release(Polling& polling);
+  void hold(Polling& polling) RR_REQUIRES(mutex_);
+  void release(Polling& polling) RR_REQUIRES(mutex_);
   [[nodiscard]] Handling look_up(const ThreadShare& share);
-  [[nodiscard]] Handling admit(const ThreadShare& share) const;
-  void move_waiting();
-  void note_free();
-  [[nodiscard]] unsigned free_threads() const;
+  [[nodiscard]] Handling admit(const ThreadShare& share) const RR_REQUIRES(mutex_);
+  void move_waiting() RR_REQUIRES(mutex_);
+  void note_free() RR_REQUIRES(mutex_);
+  [[nodiscard]] unsigned free_threads() const RR_REQUIRES(mutex_);
   void enter(Polling& polling, Pollable* pollable);
   bool leave(Polling& polling);
   [[nodiscard]] bool is_inside(const Polling& polling) const;
@@ -199,14 +198,14 @@ class RR_INSIDE Reactor final : public Watcher {
   static void yield_processor(Time& at);
   bool next_posted(Posted& next, Handling& admission);
   void run(const std::function<void()>& work) const;
-  bool add_thread();
-  bool secure_thread();
-  void call_back_stays();
-  void report_missing_thread(std::unique_lock<std::mutex>& lock);
-  void reap();
+  bool add_thread() RR_REQUIRES(mutex_);
+  bool secure_thread() RR_REQUIRES(mutex_);
+  void call_back_stays() RR_REQUIRES(mutex_);
+  void report_missing_thread() RR_REQUIRES(mutex_);
+  void reap() RR_REQUIRES(mutex_);
   void wake_watching_thread();
   void wake_polling_thread();
-  Time run_timers(std::unique_lock<std::mutex>& lock);
+  Time run_timers() RR_REQUIRES(mutex_);
 
   const Terms terms_;
   const unsigned max_threads_;
@@ -230,34 +229,37 @@ class RR_INSIDE Reactor final : public Watcher {
   std::size_t event_count_ = 0;
   Pollable* handling_ = nullptr;
 
-  mutable std::mutex mutex_;
-  std::condition_variable idle_;
-  std::condition_variable watch_;
+  mutable Mutex mutex_;
+  Condition idle_;
+  Condition watch_;
   std::atomic<bool> is_stopping_{false};  // written under mutex_
-  bool has_ended_ = false;                // no thread is left that could name what is retired
-  bool is_polled_ = false;
-  bool is_watched_ = false;
-  Polling* poller_ = nullptr;           // of the thread whose turn it is
-  unsigned held_ = 0;                   // threads that do not poll any more and are in a handler
-  std::atomic<bool> is_tight_{false};   // hardly any thread is left; written under mutex_
-  Time no_thread_until_ = Time::min();  // none could be made a moment ago
-  bool must_report_ = false;            // and nobody has been told
-  std::unordered_map<std::string, std::weak_ptr<AddressThreads>> addresses_;
-  std::size_t swept_addresses_ = 0;  // that were left of them
-  unsigned idle_threads_ = 0;
-  unsigned wanted_threads_ = 0;  // idle ones that have been woken
-  unsigned live_threads_ = 0;
-  unsigned stays_ = 0;
+  bool has_ended_ RR_GUARDED_BY(mutex_) =
+      false;  // no thread is left that could name what is retired
+  bool is_polled_ RR_GUARDED_BY(mutex_) = false;
+  bool is_watched_ RR_GUARDED_BY(mutex_) = false;
+  Polling* poller_ RR_GUARDED_BY(mutex_) = nullptr;  // of the thread whose turn it is
+  unsigned held_ RR_GUARDED_BY(mutex_) =
+      0;                               // threads that do not poll any more and are in a handler
+  std::atomic<bool> is_tight_{false};  // hardly any thread is left; written under mutex_
+  Time no_thread_until_ RR_GUARDED_BY(mutex_) = Time::min();  // none could be made a moment ago
+  bool must_report_ RR_GUARDED_BY(mutex_) = false;            // and nobody has been told
+  std::unordered_map<std::string, std::weak_ptr<AddressThreads>> addresses_ RR_GUARDED_BY(mutex_);
+  std::size_t swept_addresses_ RR_GUARDED_BY(mutex_) = 0;  // that were left of them
+  unsigned idle_threads_ RR_GUARDED_BY(mutex_) = 0;
+  unsigned wanted_threads_ RR_GUARDED_BY(mutex_) = 0;  // idle ones that have been woken
+  unsigned live_threads_ RR_GUARDED_BY(mutex_) = 0;
+  unsigned stays_ RR_GUARDED_BY(mutex_) = 0;
   std::atomic<bool> is_stay_over_{false};  // written under mutex_
-  std::list<std::thread> threads_;
-  std::vector<std::thread::id> ended_;
-  TimerHeap timers_;
-  std::deque<Posted> posted_;
-  std::deque<Posted> waiting_;  // for threads of their shares
-  std::vector<std::shared_ptr<Pollable>> retired_;
-  std::vector<const Pollable*> inside_;  // whose handlers threads are in that do not poll any more
-  std::size_t connections_ = 0;
-  std::condition_variable no_connection_;
+  std::list<std::thread> threads_ RR_GUARDED_BY(mutex_);
+  std::vector<std::thread::id> ended_ RR_GUARDED_BY(mutex_);
+  TimerHeap timers_ RR_GUARDED_BY(mutex_);
+  std::deque<Posted> posted_ RR_GUARDED_BY(mutex_);
+  std::deque<Posted> waiting_ RR_GUARDED_BY(mutex_);  // for threads of their shares
+  std::vector<std::shared_ptr<Pollable>> retired_ RR_GUARDED_BY(mutex_);
+  std::vector<const Pollable*> inside_
+      RR_GUARDED_BY(mutex_);  // whose handlers threads are in that do not poll any more
+  std::size_t connections_ RR_GUARDED_BY(mutex_) = 0;
+  Condition no_connection_;
   LateWork late_;  // what is posted from is_stopping_ on
 };
 

@@ -57,14 +57,13 @@ void Reactor::call_back_stays() {
 }
 
 // The lock is given up meanwhile.
-void Reactor::report_missing_thread(std::unique_lock<std::mutex>& lock) {
+void Reactor::report_missing_thread() {
   if (!std::exchange(must_report_, false) || !terms_.report) return;
-  lock.unlock();
+  const MutexUnlock unlock(mutex_);
   terms_.report("no thread can be made for a handler that takes long: it holds up others");
-  lock.lock();
 }
 
-// Under the lock, as all of these: threads that could take up another duty.
+// Threads that could take up another duty.
 unsigned Reactor::free_threads() const {
   const unsigned idle = idle_threads_ > wanted_threads_ ? idle_threads_ - wanted_threads_ : 0;
   return idle + (max_threads_ > live_threads_ ? max_threads_ - live_threads_ : 0);
@@ -89,20 +88,20 @@ void Reactor::reap() {
 void Reactor::run_thread() {
   current_reactor = this;
   platform::ask_for_short_slices();
-  std::unique_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   while (!is_stopping_) {
     if (!is_polled_) {
-      poll_until_lost(lock);
+      poll_until_lost();
     } else if (!is_watched_) {
       is_watched_ = true;
-      if (watch(lock)) poll_until_lost(lock);
+      if (watch()) poll_until_lost();
     } else {
       ++idle_threads_;
       note_free();
       move_waiting();
       const Time until = Clock::now() + idle_time;
       while (wanted_threads_ == 0 && !is_stopping_ && Clock::now() < until) {
-        wait_until(idle_, lock, until);
+        wait_until(idle_, mutex_, until);
       }
       --idle_threads_;
       if (wanted_threads_ != 0) {
@@ -119,19 +118,20 @@ void Reactor::run_thread() {
 }
 
 // Takes the turn to poll, which nobody else has.
-void Reactor::poll_until_lost(std::unique_lock<std::mutex>& lock) {
+void Reactor::poll_until_lost() {
   is_polled_ = true;
   Polling polling{.reactor = this, .turn = turn_.load(std::memory_order_relaxed)};
   poller_ = &polling;
-  lock.unlock();
-  poll(polling);
-  lock.lock();
+  {
+    const MutexUnlock unlock(mutex_);
+    poll(polling);
+  }
   release(polling);
 }
 
 // Shares of threads
 
-// Under the lock, as these: the thread of `polling` has lost its turn in a handler.
+// The thread of `polling` has lost its turn in a handler.
 void Reactor::note_loss(Polling& polling) {
   polling.inside = handling_;
   if (polling.inside != nullptr) inside_.push_back(polling.inside);
@@ -177,7 +177,7 @@ Handling Reactor::admit(const ThreadShare& share) const {
 // A thread that does not poll holds up nobody: it is held already, or stays.
 Handling Reactor::look_up(const ThreadShare& share) {
   if (!is_polling()) return Handling::in_place;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return is_stopping_ ? Handling::in_place : admit(share);
 }
 
@@ -196,13 +196,13 @@ void Reactor::move_waiting() {
 }
 
 void Reactor::reconsider() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   move_waiting();
 }
 
 std::shared_ptr<ThreadShare> Reactor::open_share(const std::string& key) {
   constexpr std::size_t first_sweep = 64;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (addresses_.size() >= std::max(first_sweep, swept_addresses_ * 2)) {
     std::erase_if(addresses_, [](const auto& item) { return item.second.expired(); });
     swept_addresses_ = addresses_.size();

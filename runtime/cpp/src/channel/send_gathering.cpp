@@ -42,7 +42,7 @@ SendQueue::Sent SendQueue::stream(Writer& message) {
   const std::size_t size = message.size();
   const Time now = Clock::now();
   const Time last_here = std::exchange(last_streamed_here, now);
-  const std::lock_guard lock(gathering_);
+  const MutexLock lock(gathering_);
   const Time last = std::exchange(last_streamed_, now);
   is_first = gathered_size_ == 0;
   if (size > stream_chunk - gathered_size_) return false;
@@ -56,7 +56,7 @@ SendQueue::Sent SendQueue::stream(Writer& message) {
 // Only the first looks whether it may wait.
 SendQueue::Corked SendQueue::cork(Writer& message, unsigned expected) {
   if (message.size() >= Writer::attach_threshold || is_closed()) return Corked::no;
-  const std::lock_guard lock(gathering_);
+  const MutexLock lock(gathering_);
   if (message.size() > stream_chunk - gathered_size_) return Corked::no;
   if (!is_corked_) {
     if (expected == 0 || has_unsent_ || Clock::now() < crowded_until_) return Corked::no;
@@ -84,11 +84,11 @@ void SendQueue::uncork(const std::atomic<unsigned>& expected) {
     if (now - before > long_turn) crowded_until_ = now + crowded_for;
     before = now;
   }
-  const std::lock_guard lock(gathering_);
+  const MutexLock lock(gathering_);
   is_corked_ = false;
 }
 
-// Under gathering_, when there is room.
+// When there is room.
 [[gnu::hot]] void SendQueue::gather(Writer& message) {
   if (gathered_size_ == 0) gathered_ = allocate(stream_chunk);
   for (const Piece& piece : message.pieces()) {
@@ -99,14 +99,13 @@ void SendQueue::uncork(const std::atomic<unsigned>& expected) {
   if (tap_.is_open()) tap_.sent(message.pieces());
 }
 
-// Under mutex_: what was gathered is next.
+// What was gathered is next.
 [[gnu::hot]] void SendQueue::take_gathered() {
   if (!has_gathered()) return;
-  const std::lock_guard lock(gathering_);
+  const MutexLock lock(gathering_);
   move_gathered();
 }
 
-// Under mutex_ and gathering_.
 void SendQueue::move_gathered() {
   Allocation memory = std::exchange(gathered_, {});
   const std::size_t size = std::exchange(gathered_size_, 0);
@@ -115,10 +114,10 @@ void SendQueue::move_gathered() {
   note_waiting();
 }
 
-// Under mutex_. What was gathered goes first, and nothing comes in between: the tap is told of
+// What was gathered goes first, and nothing comes in between: the tap is told of
 // messages in the order in which they leave.
 std::uint64_t SendQueue::take_gathered_and_tell(Writer& message) {
-  const std::lock_guard lock(gathering_);
+  const MutexLock lock(gathering_);
   move_gathered();
   return tap_.sent(message.pieces());
 }

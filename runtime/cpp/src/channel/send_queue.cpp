@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include "runtime/cpp/src/channel/carrier.hpp"
@@ -19,29 +20,33 @@ SendQueue::SendQueue(const Terms& terms, const ConnectionTap& tap)
       last_sent_(coarse_now()) {}
 
 void SendQueue::set_account(std::shared_ptr<Account> account) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   charge_ = Charge(std::move(account));
 }
 
 void SendQueue::set_carrier(Carrier* carrier) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   carrier_ = carrier;
 }
 
 Carrier* SendQueue::carrier() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return carrier_;
 }
 
 SendQueue::Sent SendQueue::send(Writer& message, const How& how) {
   bool has_rest = false;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const bool had_rest = has_unsent_.load(std::memory_order_relaxed);
-  if (!send_under_lock(message, how, has_rest)) return Sent::broken;
+  try {
+    if (!send_under_lock(message, how, has_rest)) return Sent::broken;
+  } catch (const std::bad_alloc&) {
+    return Sent::broken;  // a part may have left
+  }
   return has_rest && !had_rest ? Sent::first : Sent::taken;
 }
 
-// Under mutex_. False when the connection is broken or far too much waits.
+// False when the connection is broken or far too much waits.
 [[gnu::hot]] bool SendQueue::send_under_lock(Writer& message, const How& how, bool& has_rest) {
   if (is_closed()) return false;
   const bool is_unsent = has_unsent_.load(std::memory_order_relaxed);
@@ -78,7 +83,7 @@ SendQueue::Sent SendQueue::send(Writer& message, const How& how) {
   return outbox_.size() <= terms_.limit;
 }
 
-// Under mutex_, with an account: whether so many bytes more may wait. Throws `refusal` when a
+// With an account: whether so many bytes more may wait. Throws `refusal` when a
 // large message may not; what is small may, so that the other side learns of it, up to a point.
 bool SendQueue::admit(std::size_t size, ErrorCode refusal) {
   constexpr std::size_t small = 4 * 1024;
@@ -94,7 +99,7 @@ bool SendQueue::admit(std::size_t size, ErrorCode refusal) {
   return true;
 }
 
-// Under mutex_: the account is charged for what the socket did not take, and nothing else.
+// The account is charged for what the socket did not take, and nothing else.
 void SendQueue::settle() {
   if (!charge_.has_account()) return;
   const std::size_t waiting = has_unsent() ? unsent() : 0;
@@ -108,7 +113,7 @@ void SendQueue::settle() {
   }
 }
 
-// Under mutex_: what is left of a message behind its first `sent` bytes.
+// What is left of a message behind its first `sent` bytes.
 void SendQueue::queue(Writer& message, std::size_t sent, const How& how,
                       std::optional<std::uint64_t> mark) {
   if (how.newest != nullptr && tap_.is_open() && !mark) {
@@ -122,10 +127,10 @@ void SendQueue::queue(Writer& message, std::size_t sent, const How& how,
   if (how.priority != Priority::usual) outbox_.fix_order();
 }
 
-// Under mutex_. A message that waits where another one of its stream did is told as such; one that
+// A message that waits where another one of its stream did is told as such; one that
 // is older than that is not sent.
 void SendQueue::queue_newest_and_tell(Writer& message, const Newest& newest) {
-  const std::lock_guard lock(gathering_);
+  const MutexLock lock(gathering_);
   move_gathered();
   const Outbox::Queued queued = outbox_.add_newest(message, newest.stream, newest.time);
   if (queued.mark == nullptr) return;
@@ -133,8 +138,8 @@ void SendQueue::queue_newest_and_tell(Writer& message, const Newest& newest) {
   *queued.mark = tap_.sent(message.pieces());
 }
 
-bool SendQueue::hold_back(Writer& message, Priority priority) {
-  const std::lock_guard lock(mutex_);
+bool SendQueue::hold_back(Writer& message, Priority priority) try {
+  const MutexLock lock(mutex_);
   if (charge_.has_account() && has_unsent() &&
       !admit(message.size(), ErrorCode::out_of_system_resource)) {
     return false;
@@ -153,11 +158,13 @@ bool SendQueue::hold_back(Writer& message, Priority priority) {
   answer_bytes_ += message.size();
   note_waiting();
   return true;
+} catch (const std::bad_alloc&) {
+  return false;
 }
 
 SendQueue::Flushed SendQueue::flush() {
   Flushed result;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   take_gathered();
   if ((outbox_.empty() && carrier_unsent() == 0) || is_closed()) return result;
   const std::size_t before = unsent();
@@ -177,22 +184,21 @@ SendQueue::Flushed SendQueue::flush() {
 }
 
 bool SendQueue::check_answers() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (has_unsent() && !is_closed() && waiting_answers() > most_answers()) answers_wait_ = true;
   return do_answers_wait();
 }
 
-// Under mutex_: bytes of answers that may wait before requests do.
+// Bytes of answers that may wait before requests do.
 std::size_t SendQueue::most_answers() const {
   return is_over_.load(std::memory_order_relaxed) ? std::min(stream_chunk, terms_.answer_limit)
                                                   : terms_.answer_limit;
 }
 
-// Under mutex_: bytes of answers that wait, at most. Events and packets do not count: a client that
+// Bytes of answers that wait, at most. Events and packets do not count: a client that
 // takes them slowly may still ask, and be it to stop something.
 std::size_t SendQueue::waiting_answers() const { return std::min(answer_bytes_, unsent()); }
 
-// Under mutex_.
 [[gnu::hot]] void SendQueue::note_waiting() {
   const std::size_t waiting = unsent();
   if (waiting == 0) answer_bytes_ = 0;
@@ -206,15 +212,15 @@ std::size_t SendQueue::carrier_unsent() const {
 }
 
 bool SendQueue::is_empty() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return outbox_.empty();
 }
 
 void SendQueue::clear() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   outbox_.clear();
   charge_.clear();
-  const std::lock_guard gathering(gathering_);
+  const MutexLock gathering(gathering_);
   gathered_ = {};
   gathered_size_ = 0;
 }

@@ -5,11 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 
 #include "rr/buffer.hpp"
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/writer.hpp"
 #include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
@@ -122,33 +122,33 @@ class SendQueue {
 
  private:
   [[nodiscard]] bool is_closed() const { return is_closed_.load(std::memory_order_relaxed); }
-  bool send_under_lock(Writer& message, const How& how, bool& has_rest);
-  void queue(Writer& message, std::size_t sent, const How& how, std::optional<std::uint64_t> mark);
-  void queue_newest_and_tell(Writer& message, const Newest& newest);
-  [[nodiscard]] bool admit(std::size_t size, ErrorCode refusal);
-  void settle();
-  void note_waiting();
-  [[nodiscard]] std::size_t unsent() const;
-  [[nodiscard]] std::size_t carrier_unsent() const;
-  [[nodiscard]] std::size_t most_answers() const;
-  [[nodiscard]] std::size_t waiting_answers() const;
+  bool send_under_lock(Writer& message, const How& how, bool& has_rest) RR_REQUIRES(mutex_);
+  void queue(Writer& message, std::size_t sent, const How& how, std::optional<std::uint64_t> mark)
+      RR_REQUIRES(mutex_);
+  void queue_newest_and_tell(Writer& message, const Newest& newest) RR_REQUIRES(mutex_);
+  [[nodiscard]] bool admit(std::size_t size, ErrorCode refusal) RR_REQUIRES(mutex_);
+  void settle() RR_REQUIRES(mutex_);
+  void note_waiting() RR_REQUIRES(mutex_);
+  [[nodiscard]] std::size_t unsent() const RR_REQUIRES(mutex_);
+  [[nodiscard]] std::size_t carrier_unsent() const RR_REQUIRES(mutex_);
+  [[nodiscard]] std::size_t most_answers() const RR_REQUIRES(mutex_);
+  [[nodiscard]] std::size_t waiting_answers() const RR_REQUIRES(mutex_);
   bool gather_if_streaming(Writer& message, bool& is_first);
-  void gather(Writer& message);
-  void take_gathered();
-  void move_gathered();
-  std::uint64_t take_gathered_and_tell(Writer& message);
+  void gather(Writer& message) RR_REQUIRES(gathering_);
+  void take_gathered() RR_REQUIRES(mutex_);
+  void move_gathered() RR_REQUIRES(mutex_, gathering_);
+  std::uint64_t take_gathered_and_tell(Writer& message) RR_REQUIRES(mutex_);
 
   const Terms terms_;
   const std::size_t many_answers_;
   const ConnectionTap& tap_;
   std::atomic<bool> is_closed_{false};
 
-  mutable std::mutex mutex_;
-  // Under mutex_.
-  Carrier* carrier_ = nullptr;
-  Outbox outbox_;
-  Charge charge_;                 // for what the socket did not take
-  std::size_t answer_bytes_ = 0;  // of answers, since nothing has waited
+  mutable Mutex mutex_ RR_ACQUIRED_BEFORE(gathering_);
+  Carrier* carrier_ RR_GUARDED_BY(mutex_) = nullptr;
+  Outbox outbox_ RR_GUARDED_BY(mutex_);
+  Charge charge_ RR_GUARDED_BY(mutex_);                 // for what the socket did not take
+  std::size_t answer_bytes_ RR_GUARDED_BY(mutex_) = 0;  // of answers, since nothing has waited
   // Written under mutex_, read by anybody.
   std::atomic<bool> is_over_{false};  // the account refused what waits
   std::atomic<bool> answers_wait_{false};
@@ -156,14 +156,15 @@ class SendQueue {
   std::atomic<std::size_t> outbox_bytes_{0};
   std::atomic<Time> last_sent_;
 
-  std::mutex gathering_;
-  // Under gathering_.
-  Allocation gathered_;  // whole messages, which follow the outbox
-  std::size_t gathered_size_ = 0;
-  Time last_streamed_{};
-  bool is_corked_ = false;  // a caller waits for others, and sends what they ask
-  unsigned missing_ = 0;    // callers, until half of those expected have come
-  Time crowded_until_{};    // nobody corks before; the same, or by the one who has corked
+  Mutex gathering_;
+  Allocation gathered_ RR_GUARDED_BY(gathering_);  // whole messages, which follow the outbox
+  std::size_t gathered_size_ RR_GUARDED_BY(gathering_) = 0;
+  Time last_streamed_ RR_GUARDED_BY(gathering_){};
+  bool is_corked_ RR_GUARDED_BY(gathering_) =
+      false;  // a caller waits for others, and sends what they ask
+  unsigned missing_ RR_GUARDED_BY(gathering_) =
+      0;                  // callers, until half of those expected have come
+  Time crowded_until_{};  // nobody corks before; the same, or by the one who has corked
   std::atomic<std::size_t> gathered_bytes_{0};  // the same as gathered_size_
 };
 

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstring>
+#include <new>
 
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/strand_turn.hpp"
 #include "runtime/cpp/src/channel/stream_sizes.hpp"
 
@@ -11,7 +13,7 @@ namespace rr::channel {
 
 /// A thread that wants the strand back, on its stack.
 struct Strand::Returning {
-  std::condition_variable wake;
+  Condition wake;
   Returning* next = nullptr;
 };
 
@@ -62,16 +64,29 @@ std::deque<Frame>& Strand::queue() {
   return *queue_;
 }
 
+[[gnu::hot]] bool Strand::put(Frame frame, bool is_first) {
+  const std::size_t size = frame.bytes.size();
+  try {
+    Frame kept = keep(std::move(frame));
+    if (is_first) {
+      queue().push_front(std::move(kept));
+    } else {
+      queue().push_back(std::move(kept));
+    }
+  } catch (const std::bad_alloc&) {
+    has_lost_ = true;
+    return false;
+  }
+  queued_bytes_ += size;
+  return true;
+}
+
 [[gnu::hot]] void Strand::push(Frame frame) {
-  queued_bytes_ += frame.bytes.size();
-  queue().push_back(keep(std::move(frame)));
-  charge(queue_->back());
+  if (put(std::move(frame), false)) charge(queue_->back());
 }
 
 void Strand::push_first(Frame frame) {
-  queue().push_front(keep(std::move(frame)));
-  queued_bytes_ += queue_->front().bytes.size();
-  charge(queue_->front());
+  if (put(std::move(frame), true)) charge(queue_->front());
 }
 
 Frame Strand::pop() {
@@ -123,14 +138,14 @@ bool Strand::step_out(StrandTurn& turn) {
   return must_post;
 }
 
-bool Strand::step_in(StrandTurn& turn, std::unique_lock<std::mutex>& lock, Time deadline) {
+bool Strand::step_in(StrandTurn& turn, Mutex& mutex, Time deadline) {
   Returning self;
   Returning** link = &returning_;
   while (*link != nullptr) link = &(*link)->next;
   *link = &self;
   // Posted work may come too late, as when the node is shut down: then this thread is faster.
   const auto is_elsewhere = [this] { return state_ == State::held || state_ == State::suspended; };
-  while (is_elsewhere() && Clock::now() < deadline) wait_until(self.wake, lock, deadline);
+  while (is_elsewhere() && Clock::now() < deadline) wait_until(self.wake, mutex, deadline);
   for (link = &returning_; *link != &self;) link = &(*link)->next;
   *link = self.next;
   if (is_elsewhere()) return false;

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <utility>
 
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
@@ -65,12 +64,14 @@ class Strand {
   /// of what was queued.
   bool finish();
 
-  // The queue.
+  // The queue. What cannot be kept for want of memory is lost: has_lost() is true from then on, and
+  // the connection must end.
   void push(Frame frame);
   /// The next one is this, again.
   void push_first(Frame frame);
   /// What the thread of the turn has not handled is next again.
   void push_rest(StrandTurn& turn);
+  [[nodiscard]] bool has_lost() const { return has_lost_; }
   [[nodiscard]] bool has_queued() const { return queue_ && !queue_->empty(); }
   Frame pop();
   [[nodiscard]] std::unique_ptr<std::deque<Frame>> take_queue();
@@ -85,8 +86,8 @@ class Strand {
   /// somebody has to be made to go on.
   bool step_out(StrandTurn& turn);
   /// Waits until the calling thread hands on messages again. False at the deadline: it is still
-  /// outside.
-  bool step_in(StrandTurn& turn, std::unique_lock<std::mutex>& lock, Time deadline);
+  /// outside. `mutex`: the connection's.
+  bool step_in(StrandTurn& turn, Mutex& mutex, Time deadline) RR_REQUIRES(mutex);
   [[nodiscard]] bool is_anybody_returning() const { return returning_ != nullptr; }
   /// A thread handles a message beside the strand.
   void go_beside() { ++outside_; }
@@ -114,6 +115,7 @@ class Strand {
 
   void become(State state);
   std::deque<Frame>& queue();
+  bool put(Frame frame, bool is_first);
   void charge(Frame& frame);
 
   const std::size_t limit_;
@@ -122,6 +124,7 @@ class Strand {
   Suspension suspension_ = Suspension::no;
   bool is_full_ = false;
   bool owes_end_ = false;
+  bool has_lost_ = false;
   unsigned outside_ = 0;  // threads in the receiver, now or soon, without the strand
   Returning* returning_ = nullptr;
   std::unique_ptr<std::deque<Frame>> queue_;

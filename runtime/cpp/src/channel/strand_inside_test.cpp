@@ -4,7 +4,6 @@
 #include <array>
 #include <cstring>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -29,7 +28,7 @@ class StrandTest : public ::testing::Test {
 
   std::string next() { return text_of(strand_.pop()); }
 
-  std::mutex lock_;
+  Mutex lock_;
   std::shared_ptr<Account> account_;
   Strand strand_{100, account_};
   ScratchLease scratch_;
@@ -122,8 +121,8 @@ TEST_F(StrandTest, GoesOnWithoutAThreadThatStepsOut) {
   EXPECT_EQ(strand_.state(), State::orphaned);
   EXPECT_EQ(text_of(strand_.pop()), "rest");
 
-  std::unique_lock lock(lock_);
-  EXPECT_TRUE(strand_.step_in(turn, lock, never));  // faster than the thread that was posted
+  const MutexLock lock(lock_);
+  EXPECT_TRUE(strand_.step_in(turn, lock_, never));  // faster than the thread that was posted
   EXPECT_TRUE(turn.is_held());
   EXPECT_EQ(strand_.outside(), 0U);
   EXPECT_EQ(strand_.state(), State::held);
@@ -136,8 +135,8 @@ TEST_F(StrandTest, IsFreeWhenAThreadStepsOutAndNothingWaits) {
   EXPECT_FALSE(strand_.step_out(turn));
   EXPECT_EQ(strand_.state(), State::free);
   EXPECT_TRUE(strand_.enter());  // by another thread
-  std::unique_lock lock(lock_);
-  EXPECT_FALSE(strand_.step_in(turn, lock, Time::min()));
+  const MutexLock lock(lock_);
+  EXPECT_FALSE(strand_.step_in(turn, lock_, Time::min()));
   EXPECT_FALSE(turn.is_held());
   EXPECT_EQ(strand_.outside(), 1U);
 }
@@ -148,17 +147,17 @@ TEST_F(StrandTest, AThreadThatStepsInComesFirst) {
   scratch_->waiting.clear();
   StrandTurn turn(strand_, *scratch_, longest_turn);
   strand_.step_out(turn);
-  std::unique_lock lock(lock_);
+  MutexLock lock(lock_);
   ASSERT_TRUE(strand_.enter());
   EXPECT_FALSE(strand_.is_anybody_returning());
   std::thread other([this] {
     for (bool is_returning = false; !is_returning; std::this_thread::yield()) {
-      const std::lock_guard guard(lock_);
+      const MutexLock guard(lock_);
       is_returning = strand_.is_anybody_returning();
       if (is_returning) strand_.orphan();
     }
   });
-  EXPECT_TRUE(strand_.step_in(turn, lock, never));
+  EXPECT_TRUE(strand_.step_in(turn, lock_, never));
   EXPECT_EQ(strand_.state(), State::held);
   lock.unlock();
   other.join();

@@ -9,12 +9,12 @@
 namespace rr::channel {
 
 [[gnu::hot]] void StreamConnection::claim(Waiter& waiter) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (is_closing_ || lease_.is_taken() || !may_callers_read()) return;
   begin_lead(waiter);
 }
 
-// Under mutex_, with the lease free.
+// With the lease free.
 void StreamConnection::begin_lead(Waiter& waiter) {
   lease_.lead(waiter);
   if (watch_.is_full()) watch_.go_idle(sending_.has_unsent());
@@ -35,7 +35,7 @@ void StreamConnection::begin_lead(Waiter& waiter) {
 [[gnu::hot]] void StreamConnection::resign(Waiter& waiter) {
   bool is_end = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!waiter.is_reader()) return;
     lease_.end_lead(waiter);
     is_end = is_closing_;
@@ -43,7 +43,7 @@ void StreamConnection::begin_lead(Waiter& waiter) {
   }
   if (is_end) {
     finish_close();
-  } else if (lease_.must_search()) {
+  } else if (lease().must_search()) {
     find_reader();
   }
 }
@@ -51,7 +51,7 @@ void StreamConnection::begin_lead(Waiter& waiter) {
 void StreamConnection::find_reader() {
   const platform::SleepWord* next = nullptr;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!lease_.begin_search() || is_closing_) return;
     if (may_callers_read()) next = lease_.pass_on();
     if (next == nullptr) end_call();
@@ -67,20 +67,20 @@ bool StreamConnection::follow(Waiter& waiter, Time deadline) {
   if (begin_following(waiter)) {
     while (((state = waiter.state.load(std::memory_order_acquire)) & woken) == 0) {
       if (platform::sleep_on(waiter.state, state, deadline)) continue;
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (lease_.unfollow(waiter)) return false;
       deadline = never;  // it is being woken
     }
   } else {
     state = waiter.state.load(std::memory_order_acquire);
   }
-  if ((state & Waiter::answered) != 0 && lease_.pass_answered()) find_reader();
+  if ((state & Waiter::answered) != 0 && lease().pass_answered()) find_reader();
   return (state & Waiter::reader) != 0;
 }
 
 // False when the waiter is done, or the leader now: nobody has read between the claim and now.
 bool StreamConnection::begin_following(Waiter& waiter) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (waiter.is_done()) return false;
   if (!lease_.is_taken() && !is_closing_ && may_callers_read()) {
     begin_lead(waiter);
@@ -120,7 +120,7 @@ bool StreamConnection::begin_following(Waiter& waiter) {
 
 bool StreamConnection::may_lead_on() {
   if (role_ == Role::client) return true;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return may_callers_read();
 }
 
@@ -128,7 +128,7 @@ bool StreamConnection::may_lead_on() {
 void StreamConnection::leave_to_reactor(Scratch& scratch) {
   bool must_post = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     hand_on(scratch, false, must_post);
   }
   if (must_post) drain_soon();
@@ -142,7 +142,7 @@ void StreamConnection::wait_until_handled(const Waiter& waiter, Time deadline) {
   constexpr Milliseconds look_period{5};
   while (!waiter.is_done() && !is_closed()) {
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (!is_overdrawn()) return;
     }
     const Time now = Clock::now();
@@ -160,7 +160,7 @@ bool StreamConnection::may_block_until(Time deadline) {
 
 void StreamConnection::finish(Waiter& waiter) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!lease_.finish(waiter)) return;
   }
   platform::wake(&waiter.state);
@@ -172,7 +172,7 @@ void StreamConnection::finish(Waiter& waiter) {
     ReadLease::finish_leader(waiter);
     return;
   }
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   lease_.finish_after_receive(waiter);
 }
 

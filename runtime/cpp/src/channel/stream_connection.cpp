@@ -84,7 +84,7 @@ void StreamConnection::tell_handshake(std::span<const std::byte> request,
 void StreamConnection::start(std::shared_ptr<Receiver> receiver) {
   was_heard_ = role_ == Role::client;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_closing_) return;
     receiver_ = std::move(receiver);
     // A message on its way to a client is one at most, and may be what a caller waits for.
@@ -148,7 +148,7 @@ void StreamConnection::look_after() {
   const Time last_sent = sending_.last_sent();
   bool is_full = false;  // then it is not the other side that is slow
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_full = strand_.is_full();
   }
   if (!is_full && last_sent - last_received_.load() > terms_.receive_timeout) {
@@ -176,14 +176,14 @@ void StreamConnection::close_after(Milliseconds delay) {
 void StreamConnection::close(const Error& why) {
   bool has_lease = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     begin_close(why);
     has_lease = lease_.take();
   }
   if (has_lease) finish_close();
 }
 
-// Under mutex_. Whoever has the read lease, or gets it now, keeps it for ever and finishes.
+// Whoever has the read lease, or gets it now, keeps it for ever and finishes.
 void StreamConnection::begin_close(const Error& why) {
   if (is_closing_) return;
   is_closing_ = true;
@@ -207,7 +207,7 @@ void StreamConnection::finish_close() {
   std::unique_ptr<std::deque<Frame>> dropped;
   std::shared_ptr<ThreadShare> callbacks;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_departed()) dropped = strand_.take_queue();
     callbacks = callback_threads_;
     self = std::move(self_);

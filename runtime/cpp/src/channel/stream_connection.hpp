@@ -4,9 +4,9 @@
 #include <atomic>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 
+#include "rr/mutex.hpp"
 #include "rr/options.hpp"
 #include "runtime/cpp/src/channel/capabilities.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
@@ -147,7 +147,7 @@ class StreamConnection final : public Connection,
   void refuse_stream(const Scratch& scratch, std::size_t size);
   bool take_read_lease(bool until_end = false);
   void read_as_reactor(bool until_end);
-  [[nodiscard]] bool is_drained_first() const;
+  [[nodiscard]] bool is_drained_first() const RR_REQUIRES(mutex_);
   bool give_way_to_others(std::size_t bytes) const;
   void note_received();
   [[nodiscard]] bool is_beside_others() const;
@@ -163,7 +163,7 @@ class StreamConnection final : public Connection,
   void note_peer();
 
   // Handing on messages (stream_dispatch.cpp)
-  bool hand_on(Scratch& scratch, bool may_dispatch, bool& must_post);
+  bool hand_on(Scratch& scratch, bool may_dispatch, bool& must_post) RR_REQUIRES(mutex_);
   void run_deferred(DeferredCallbacks& deferred, Handling admission);
   void handle_in_turn(StrandTurn& turn, Handling admission, bool& is_again);
   bool dispatch(StrandTurn& turn);
@@ -174,9 +174,9 @@ class StreamConnection final : public Connection,
   void note_pace(const StrandTurn& turn);
   [[nodiscard]] bool must_yield(StrandTurn& turn) const;
   bool is_suspended(StrandTurn& turn, Frame frame);
-  bool must_read_on();
+  bool must_read_on() RR_REQUIRES(mutex_);
   [[nodiscard]] std::chrono::microseconds longest_turn_here() const;
-  [[nodiscard]] bool may_go_outside() const;
+  [[nodiscard]] bool may_go_outside() const RR_REQUIRES(mutex_);
   bool begin_beside();
   void handle_beside(Frame frame);
   void end_beside();
@@ -185,14 +185,14 @@ class StreamConnection final : public Connection,
   void complete(Message& message) const;
 
   // When a server does not read on, nor hands on (stream_pausing.cpp)
-  [[nodiscard]] bool is_paused() const;
-  [[nodiscard]] bool may_callers_read() const;
-  [[nodiscard]] bool is_overdrawn() const;
+  [[nodiscard]] bool is_paused() const RR_REQUIRES(mutex_);
+  [[nodiscard]] bool may_callers_read() const RR_REQUIRES(mutex_);
+  [[nodiscard]] bool is_overdrawn() const RR_REQUIRES(mutex_);
   [[nodiscard]] bool is_departed() const;
   std::span<std::byte> room(Scratch& scratch);
   Received wait_for_memory();
   void note_assembly();
-  void schedule_look(Time when);
+  void schedule_look(Time when) RR_REQUIRES(mutex_);
   void look_at_message();
   void read_late(Time asked);
   // True when requests have to wait until the other side has taken answers; go_on() comes then.
@@ -203,7 +203,7 @@ class StreamConnection final : public Connection,
   void go_on();
 
   // Callers (stream_callers.cpp)
-  void begin_lead(Waiter& waiter);
+  void begin_lead(Waiter& waiter) RR_REQUIRES(mutex_);
   bool lead(Waiter& waiter, Time deadline, Time now);
   bool may_lead_on();
   bool may_block_until(Time deadline);
@@ -214,24 +214,31 @@ class StreamConnection final : public Connection,
   void find_reader();
 
   // When the reactor watches, and threads of it that are pinned here (stream_watching.cpp)
-  void watch_input();
-  void end_call();
-  void schedule_watch_timer();
+  void watch_input() RR_REQUIRES(mutex_);
+  void end_call() RR_REQUIRES(mutex_);
+  void schedule_watch_timer() RR_REQUIRES(mutex_);
   void look_at_watch();
   void limit_receive_time();
   void acknowledge_late();
   void read_pinned(Scratch& scratch);
   bool begin_pinned(std::uint32_t& uses);
   bool go_on_pinned(Received received, std::uint32_t& uses);
-  std::uint32_t pin();
+  std::uint32_t pin() RR_REQUIRES(mutex_);
 
   // Life (stream_connection.cpp)
   void look_after();
-  void begin_close(const Error& why);
+  void begin_close(const Error& why) RR_REQUIRES(mutex_);
+  void end_if_lost() RR_REQUIRES(mutex_);
+  static Error no_memory(std::string_view why = "no memory");
   void finish_close();
   [[nodiscard]] Limits limits() const;
   [[nodiscard]] std::uint32_t largest_message() const;
   [[nodiscard]] Milliseconds heartbeat_period() const;
+
+  // For the functions of the lease that say that they need no lock.
+  [[nodiscard]] ReadLease& lease() RR_NO_THREAD_SAFETY_ANALYSIS { return lease_; }
+  // Whose turn a thread has: this is about its address alone.
+  [[nodiscard]] const Strand& strand() const RR_NO_THREAD_SAFETY_ANALYSIS { return strand_; }
 
   // A receive returns after this time to look at the deadline, or to give the thread back to the
   // reactor; set once per socket, which is cheaper than waiting with poll() each time.
@@ -252,14 +259,15 @@ class StreamConnection final : public Connection,
   SendQueue sending_;
   PeerLayers layers_;
 
-  // Guards what follows, never while user code runs or the network is waited for.
-  std::mutex mutex_;
-  ReadLease lease_;
-  Strand strand_;
-  std::shared_ptr<StreamConnection> self_;         // while the reactor may name this
-  std::shared_ptr<ThreadShare> callback_threads_;  // of a client, from its first callback on
-  bool is_refused_ = false;                        // not read on, for want of memory
-  Time look_due_ = never;                          // of look_timer_
+  // Never held while user code runs or the network is waited for.
+  Mutex mutex_;
+  ReadLease lease_ RR_GUARDED_BY(mutex_);
+  Strand strand_ RR_GUARDED_BY(mutex_);
+  std::shared_ptr<StreamConnection> self_ RR_GUARDED_BY(mutex_);  // while the reactor may name this
+  std::shared_ptr<ThreadShare> callback_threads_
+      RR_GUARDED_BY(mutex_);                       // of a client, from its first callback on
+  bool is_refused_ RR_GUARDED_BY(mutex_) = false;  // not read on, for want of memory
+  Time look_due_ RR_GUARDED_BY(mutex_) = never;    // of look_timer_
   std::unique_ptr<const Error> why_closed_;
   std::atomic<bool> is_closing_{false};  // written under mutex_
 
@@ -281,7 +289,7 @@ class StreamConnection final : public Connection,
   MemberTimer<StreamConnection, &StreamConnection::look_after> life_timer_{*this};
   MemberTimer<StreamConnection, &StreamConnection::look_at_watch> watch_timer_{*this};
   MemberTimer<StreamConnection, &StreamConnection::look_at_message> look_timer_{*this};
-  SocketWatch watch_;  // under mutex_
+  SocketWatch watch_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::channel

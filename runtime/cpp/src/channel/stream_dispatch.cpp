@@ -45,7 +45,7 @@ void StreamConnection::handle_in_turn(StrandTurn& turn, Handling admission, bool
   threads_->ran(is_slow);
 }
 
-// Under mutex_. Messages are handled by this thread if it may and nobody else does; then true.
+// Messages are handled by this thread if it may and nobody else does; then true.
 // Otherwise they join the queue, and somebody is made to handle it.
 [[gnu::hot]] bool StreamConnection::hand_on(Scratch& scratch, bool may_dispatch, bool& must_post) {
   if (scratch.waiting.empty()) return false;
@@ -55,7 +55,13 @@ void StreamConnection::handle_in_turn(StrandTurn& turn, Handling admission, bool
   must_post = !strand_.is_taken();
   if (must_post) strand_.orphan();
   strand_.check_limit();
+  end_if_lost();
   return false;
+}
+
+// Under mutex_: a message that could not be kept is the last.
+void StreamConnection::end_if_lost() {
+  if (strand_.has_lost()) begin_close(no_memory());
 }
 
 // A thread that polls does not handle the messages of one connection for long while others wait.
@@ -94,14 +100,15 @@ bool StreamConnection::must_yield(StrandTurn& turn) const {
 // With the strand: what the thread has not handled of a receive is next again.
 void StreamConnection::queue_rest(StrandTurn& turn) {
   holds_back_answers_ = false;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   strand_.push_rest(turn);
+  end_if_lost();
 }
 
 // With the strand, which is given back: the queue. True when reading had to stop because of it.
 // Whoever has stepped out and wants to step in again comes first.
 [[gnu::hot]] bool StreamConnection::drain(StrandTurn& turn) {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   bool is_looked_at = false;
   while (true) {
     if (strand_.is_anybody_returning()) {
@@ -161,14 +168,14 @@ void StreamConnection::drain_posted() {
   {
     bool must_read = false;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (!strand_.adopt()) return;  // somebody was faster
       must_read = must_read_on();
     }
     if (must_read) read_soon(false);
     const ScratchLease scratch;
     scratch->waiting.clear();
-    StrandTurn turn(strand_, *scratch, longest_turn_here());
+    StrandTurn turn(strand(), *scratch, longest_turn_here());
     was_stalled = drain(turn);
     if (threads_) note_pace(turn);
   }
@@ -185,7 +192,11 @@ void StreamConnection::drain_posted() {
   }
   complete(message);
   if (turn != nullptr) turn->count(message.entry_count);
-  receiver_->handle(message, scratch.first, frame.owner);
+  try {
+    receiver_->handle(message, scratch.first, frame.owner);
+  } catch (const std::exception& error) {  // not of the program's code, which is looked after
+    close(no_memory(error.what()));
+  }
   // What could not be sent is not to be kept until this thread writes again.
   Writer& writer = thread_writer();
   if (writer.size() >= Writer::attach_threshold) writer.reset(writer.version());
@@ -212,22 +223,23 @@ std::chrono::microseconds StreamConnection::longest_turn_here() const {
 
 // Waiting inside a handler
 
-// Under mutex_. Of a service these are the members that wait, without the one that runs.
+// Of a service these are the members that wait, without the one that runs.
 bool StreamConnection::may_go_outside() const {
   if (threads_ == nullptr) return strand_.outside() < most_outside;
   return strand_.outside() + 1 < reactor_->session_threads();
 }
 
 bool StreamConnection::step_out() {
-  StrandTurn* const turn = StrandTurn::current(strand_);
+  StrandTurn* const turn = StrandTurn::current(strand());
   if (turn == nullptr || !turn->is_held()) return false;
   bool must_post = false;
   bool must_flush = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!may_go_outside()) return false;
     must_flush = std::exchange(holds_back_answers_, false);
     must_post = strand_.step_out(*turn);
+    end_if_lost();
   }
   if (must_flush) flush();
   if (must_post) drain_soon();
@@ -238,8 +250,8 @@ bool StreamConnection::step_in(Time deadline) {
   Reactor::about_to_wait();
   bool must_read = false;
   {
-    std::unique_lock lock(mutex_);
-    if (!strand_.step_in(*StrandTurn::current(strand_), lock, deadline)) return false;
+    const MutexLock lock(mutex_);
+    if (!strand_.step_in(*StrandTurn::current(strand()), mutex_, deadline)) return false;
     must_read = must_read_on();
   }
   if (must_read) read_soon(false);
@@ -247,20 +259,20 @@ bool StreamConnection::step_in(Time deadline) {
 }
 
 void StreamConnection::await_strand() {
-  const StrandTurn* const turn = StrandTurn::current(strand_);
+  const StrandTurn* const turn = StrandTurn::current(strand());
   if (turn != nullptr && !turn->is_held()) step_in(never);
 }
 
-// Under mutex_: a thread has the strand of a client, which did not read while nobody had it.
+// A thread has the strand of a client, which did not read while nobody had it.
 bool StreamConnection::must_read_on() {
   return role_ == Role::client && !lease_.is_taken() && lease_.is_asked_again();
 }
 
 bool StreamConnection::suspend() {
-  StrandTurn* const turn = StrandTurn::current(strand_);
+  StrandTurn* const turn = StrandTurn::current(strand());
   if (turn == nullptr || !turn->is_held() || turn->is_put_off()) return false;
   turn->set_put_off(true);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   strand_.begin_suspending();
   return true;
 }
@@ -269,13 +281,15 @@ bool StreamConnection::suspend() {
 bool StreamConnection::is_suspended(StrandTurn& turn, Frame frame) {
   turn.set_put_off(false);
   holds_back_answers_ = false;
-  const std::lock_guard lock(mutex_);
-  return strand_.suspend(turn, std::move(frame));
+  const MutexLock lock(mutex_);
+  const bool is_suspended = strand_.suspend(turn, std::move(frame));
+  end_if_lost();
+  return is_suspended;
 }
 
 void StreamConnection::resume() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!strand_.resume()) return;
   }
   drain_soon();
@@ -284,7 +298,7 @@ void StreamConnection::resume() {
 // Beside the strand
 
 bool StreamConnection::begin_beside() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!may_go_outside()) return false;
   strand_.go_beside();
   return true;
@@ -293,7 +307,7 @@ bool StreamConnection::begin_beside() {
 // The last one owes the end of the connection.
 void StreamConnection::end_beside() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     strand_.come_from_beside();
     if (!strand_.is_end_due() || strand_.is_taken()) return;
     strand_.orphan();
@@ -304,7 +318,7 @@ void StreamConnection::end_beside() {
 // The threads that the functions of callbacks take: several services together leave some to others.
 // Those of an address do not count as its clients.
 std::shared_ptr<ThreadShare> StreamConnection::callback_share() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!callback_threads_) {
     callback_threads_ = reactor_->open_share("to " + remote_key(remote_address_));
   }

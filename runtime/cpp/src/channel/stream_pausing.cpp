@@ -2,7 +2,6 @@
 // When a server does not read a connection on, nor hands on what it has read: for want of memory,
 // or while the other side does not take its answers. And how long a message may take to come.
 #include <algorithm>
-#include <mutex>
 #include <utility>
 
 #include "runtime/cpp/src/channel/stream_connection.hpp"
@@ -18,18 +17,17 @@ constexpr std::size_t stranger_receive = 8 * 1024;
 
 }  // namespace
 
-// Under mutex_.
 [[gnu::hot]] bool StreamConnection::is_paused() const {
   return strand_.is_full() || is_refused_ || sending_.do_answers_wait();
 }
 
-// Under mutex_. A client's callers read on, whatever waits. A service that waits for its client may
+// A client's callers read on, whatever waits. A service that waits for its client may
 // have to read on even where that one does not take its answers.
 bool StreamConnection::may_callers_read() const {
   return role_ == Role::client || !(strand_.is_full() || is_refused_);
 }
 
-// Under mutex_: no more may wait to be handled.
+// No more may wait to be handled.
 bool StreamConnection::is_overdrawn() const {
   return strand_.is_full() && account_ != nullptr && strand_.has_queued() &&
          !Charge(account_).can_add(bytes_beside_frame);
@@ -60,7 +58,7 @@ StreamConnection::Received StreamConnection::wait_for_memory() {
     return fail_reading({ErrorCode::out_of_system_resource,
                          "its message does not fit into what the node may hold for its clients"});
   }
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   is_refused_ = true;
   schedule_look(now + memory_pause);
   return Received::nothing;
@@ -76,11 +74,11 @@ StreamConnection::Received StreamConnection::wait_for_memory() {
     return;
   }
   message_deadline_.begin(size, options_->message_timeout);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   schedule_look(message_deadline_.due());
 }
 
-// Under mutex_. One timer looks for all; it is not taken back.
+// One timer looks for all; it is not taken back.
 void StreamConnection::schedule_look(Time when) {
   if (when >= look_due_ || is_closing_) return;
   look_due_ = when;
@@ -92,7 +90,7 @@ void StreamConnection::look_at_message() {
   const Time now = Clock::now();
   bool must_read = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     look_due_ = never;
     if (is_closing_) return;
     must_read = std::exchange(is_refused_, false);
@@ -114,7 +112,7 @@ void StreamConnection::read_late(Time asked) {
   if (now < message_deadline_.due()) return;
   if (now - asked > late) {
     message_deadline_.restart();
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     schedule_look(message_deadline_.due());
     return;
   }
@@ -132,7 +130,7 @@ bool StreamConnection::look_at_answers() {
 void StreamConnection::go_on() {
   bool must_drain = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     message_deadline_.restart();
     must_drain = !strand_.is_taken() && strand_.has_queued();
     if (must_drain) strand_.orphan();

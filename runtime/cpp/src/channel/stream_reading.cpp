@@ -74,7 +74,7 @@ void StreamConnection::read_soon(bool until_end) {
 // While a server is paused it is not even waited for: what was not read, or handled, is of nobody.
 bool StreamConnection::take_read_lease(bool until_end) {
   answers_wait();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (until_end) is_end_in_sight_.store(true, std::memory_order_relaxed);
   const bool has_left = role_ == Role::server && is_end_in_sight_.load(std::memory_order_relaxed);
   if (lease_.is_taken() || (is_paused() && !has_left) || is_drained_first()) {
@@ -88,7 +88,7 @@ bool StreamConnection::take_read_lease(bool until_end) {
   return true;
 }
 
-// Under mutex_. What a client reads while its queue waits for a thread would have to be copied into
+// What a client reads while its queue waits for a thread would have to be copied into
 // it. A service reads on: its handlers may wait for answers to callbacks, and its queue for them.
 bool StreamConnection::is_drained_first() const {
   return role_ == Role::client && strand_.is_orphaned() && !is_end_in_sight_;
@@ -108,7 +108,7 @@ void StreamConnection::read_as_reactor(bool until_end) {
     const bool is_end_near = until_end || is_end_in_sight_.load(std::memory_order_relaxed);
     const bool has_more = received == Received::some && (is_full || is_end_near);
     const Time now_received = last_received_.load(std::memory_order_relaxed);
-    const bool may_pin = pace_.is_busy(last_received, now_received, lease_.uses());
+    const bool may_pin = pace_.is_busy(last_received, now_received, lease().uses());
     const bool is_again = leave_read_lease(*scratch, true);
     if (!is_again && !has_more) {
       pace_.note_read(Clock::now() - begin);
@@ -135,8 +135,13 @@ bool StreamConnection::give_way_to_others(std::size_t bytes) const {
 
 StreamConnection::Received StreamConnection::receive(Scratch& scratch, bool may_block,
                                                      bool& is_full) {
-  const Received received = receive_once(scratch, may_block, is_full);
-  lease_.wake_answered();
+  Received received = Received::end;
+  try {
+    received = receive_once(scratch, may_block, is_full);
+  } catch (const std::exception& error) {
+    fail_reading(no_memory(error.what()));
+  }
+  lease().wake_answered();
   return received;
 }
 
@@ -166,6 +171,12 @@ StreamConnection::Received StreamConnection::receive(Scratch& scratch, bool may_
   return take_bytes(scratch, received);
 }
 
+// Why a connection ends that cannot keep what the other side has sent.
+Error StreamConnection::no_memory(std::string_view why) {
+  return {ErrorCode::out_of_system_resource,
+          "a message of the other side could not be handled: " + std::string(why)};
+}
+
 // With the read lease.
 [[gnu::hot]] void StreamConnection::note_received() {
   const Time now = coarse_now();
@@ -180,7 +191,7 @@ bool StreamConnection::is_beside_others() const {
 
 // With the read lease.
 StreamConnection::Received StreamConnection::fail_reading(const Error& why) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   begin_close(why);
   return Received::end;
 }
@@ -302,7 +313,7 @@ bool StreamConnection::take_packet(Scratch& scratch, const Frame& frame) {
   const Handling admission = reactor_->admission(threads_);
   const platform::SleepWord* next = nullptr;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     has_strand = hand_on(scratch, may_dispatch && admission != Handling::later, must_post);
     if (is_closing_) {
       is_end = true;
@@ -321,7 +332,7 @@ bool StreamConnection::take_packet(Scratch& scratch, const Frame& frame) {
   if (!scratch.deferred.empty()) run_deferred(scratch.deferred, admission);
   if (sending_.has_gathered()) flush();  // calls of completions
   if (has_strand) {
-    StrandTurn turn(strand_, scratch, longest_turn_here());
+    StrandTurn turn(strand(), scratch, longest_turn_here());
     handle_in_turn(turn, admission, is_again);
   }
   return is_again && !is_end;

@@ -64,13 +64,13 @@ void StreamConnection::send_newest(Writer& message, const Newest& newest, Time n
 // One receive often brings the answers of several callers, which then ask again one after the
 // other. The first of them waits for the rest, and sends what all of them ask.
 [[gnu::hot]] void StreamConnection::send_call(Writer& message, Time now, Priority priority) {
-  if (lease_.arrive() && priority == Priority::usual && !has_strings()) {
+  if (lease().arrive() && priority == Priority::usual && !has_strings()) {
     check_size(message);
-    const unsigned expected = lease_.expected_callers().load(std::memory_order_relaxed);
+    const unsigned expected = lease().expected_callers().load(std::memory_order_relaxed);
     const SendQueue::Corked corked = sending_.cork(message, expected);
     if (corked == SendQueue::Corked::joined) return;
     if (corked == SendQueue::Corked::first) {
-      sending_.uncork(lease_.expected_callers());
+      sending_.uncork(lease().expected_callers());
       flush();
       return;
     }
@@ -116,7 +116,7 @@ void StreamConnection::fail_later() {
 
 [[gnu::hot]] void StreamConnection::reply(Writer& message, Priority priority) {
   try {
-    const StrandTurn* const turn = StrandTurn::current(strand_);
+    const StrandTurn* const turn = StrandTurn::current(strand());
     const bool has_strand = turn == nullptr || turn->is_held();
     if (has_strand && holds_back_answers_ && message.size() < Writer::attach_threshold &&
         !has_strings()) {
@@ -157,7 +157,7 @@ void StreamConnection::flush() {
 
 // The reactor flushes when there is room; it does not look while the socket is idle.
 void StreamConnection::watch_for_room() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   watch_.update(sending_.has_unsent());
 }
 
@@ -185,7 +185,11 @@ void StreamConnection::watch_for_room() {
     // What closes it may run what is left over, so not here, under the caller's lock.
     fail_later();
   } else if (sent == SendQueue::Sent::first) {
-    reactor_->flusher().add(shared_from_this());  // sends it, or waits for room
+    // It sends, or waits for room. Without its thread one of the node's does, not this one: what a
+    // broken connection leaves over would run here, under the caller's lock.
+    if (!reactor_->flusher().add(shared_from_this())) {
+      reactor_->post([self = shared_from_this()] { self->flush_streamed(); });
+    }
   }
 }
 

@@ -12,12 +12,12 @@ constexpr unsigned receives_of_late_acknowledgements = 64;
 
 }  // namespace
 
-// Under mutex_, when nobody reads.
+// When nobody reads.
 void StreamConnection::watch_input() {
   if (!is_closing_) watch_.go_full(sending_.has_unsent());
 }
 
-// Under mutex_: a caller has ended reading, and nobody goes on.
+// A caller has ended reading, and nobody goes on.
 [[gnu::hot]] void StreamConnection::end_call() {
   const bool has_more = lease_.is_asked_again();
   const Time last_received = last_received_.load(std::memory_order_relaxed);
@@ -26,13 +26,12 @@ void StreamConnection::watch_input() {
   }
 }
 
-// Under mutex_.
 [[gnu::hot]] void StreamConnection::schedule_watch_timer() {
   reactor_->schedule(watch_timer_, weak_from_this(), Clock::now() + watch_.period());
 }
 
 void StreamConnection::expect() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!lease_.is_taken()) watch_input();
 }
 
@@ -42,7 +41,7 @@ void StreamConnection::nudge() { send_test(); }
 void StreamConnection::look_at_watch() {
   SocketWatch::Look look = SocketWatch::Look::done;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_closing_) return;
     look = watch_.look(lease_.uses(), lease_.is_taken(), sending_.has_unsent());
     if (look == SocketWatch::Look::later) schedule_watch_timer();
@@ -89,7 +88,7 @@ void StreamConnection::acknowledge_late() {
 }
 
 bool StreamConnection::begin_pinned(std::uint32_t& uses) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (is_closing_ || lease_.is_taken() || is_paused() || !watch_.is_full()) return false;
   uses = pin();
   return true;
@@ -97,7 +96,7 @@ bool StreamConnection::begin_pinned(std::uint32_t& uses) {
 
 [[gnu::hot]] bool StreamConnection::go_on_pinned(Received received, std::uint32_t& uses) {
   answers_wait();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const bool is_lone = lease_.uses() == uses;
   if (received == Received::some && is_lone && !is_closing_ && !lease_.is_taken() && !is_paused() &&
       watch_.state() == SocketWatch::State::idle && !reactor_->is_stay_over()) {
@@ -109,7 +108,7 @@ bool StreamConnection::begin_pinned(std::uint32_t& uses) {
   return false;
 }
 
-// Under mutex_. Returns what the uses of the lease will be as long as no caller reads.
+// Returns what the uses of the lease will be as long as no caller reads.
 [[gnu::hot]] std::uint32_t StreamConnection::pin() {
   lease_.take();
   lease_.count_use();

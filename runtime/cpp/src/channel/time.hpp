@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <condition_variable>
-#include <mutex>
 
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/platform/clock.hpp"
 
 /// The runtime's clocks.
@@ -33,17 +32,16 @@ inline Time after(Time now, Milliseconds span) {
 }
 
 /// Waits until notified or `deadline`; spurious returns are possible.
-inline void wait_until(std::condition_variable& condition, std::unique_lock<std::mutex>& lock,
-                       Time deadline) {
+inline void wait_until(Condition& condition, Mutex& mutex, Time deadline) RR_REQUIRES(mutex) {
   if (deadline == never) {
-    condition.wait(lock);
+    condition.wait(mutex);
     return;
   }
 #if defined(__SANITIZE_THREAD__)
   // The thread sanitizer of g++ 12 does not see the wait on a steady clock give up the mutex.
-  condition.wait_until(lock, std::chrono::system_clock::now() + (deadline - Clock::now()));
+  condition.wait_until(mutex, std::chrono::system_clock::now() + (deadline - Clock::now()));
 #else
-  condition.wait_until(lock, deadline);
+  condition.wait_until(mutex, deadline);
 #endif
 }
 

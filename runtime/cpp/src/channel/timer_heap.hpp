@@ -45,14 +45,16 @@ class TimerHeap {
   class Due {
    public:
     Due(Timer& timer, std::shared_ptr<void> owner) : timer_(timer), owner_(std::move(owner)) {}
-    /// Without the lock of the heap. Nothing happens when its owner has gone.
+    /// Without the lock of the heap; keeps the owner no longer. Nothing happens when that has gone.
     void run() {
-      if (owner_) timer_.on_timer();
+      if (!owner_) return;
+      timer_.on_timer();
+      owner_.reset();
     }
 
    private:
     Timer& timer_;
-    const std::shared_ptr<void> owner_;
+    std::shared_ptr<void> owner_;
   };
   /// Of the first one, when next_due() has come.
   [[nodiscard]] Due take_first();

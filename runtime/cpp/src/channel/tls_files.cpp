@@ -103,19 +103,19 @@ TlsFiles::TlsFiles(const TlsOptions& options, const NodeId& own) : options_(opti
 }
 
 void TlsFiles::look_again(bool thoroughly) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const std::vector<std::string> authorities = authority_files_of(options_);
   bool is_new = read_again(certificate_files_, certificate_files_of(options_), thoroughly,
-                           [&] { read_certificate(); });
-  is_new |=
-      read_again(authority_files_, authorities, thoroughly, [&] { read_authorities(authorities); });
-  is_new |=
-      read_again(revocation_files_, options_.revocation_files, thoroughly, [&] { read_lists(); });
+                           [&]() RR_REQUIRES(mutex_) { read_certificate(); });
+  is_new |= read_again(authority_files_, authorities, thoroughly,
+                       [&]() RR_REQUIRES(mutex_) { read_authorities(authorities); });
+  is_new |= read_again(revocation_files_, options_.revocation_files, thoroughly,
+                       [&]() RR_REQUIRES(mutex_) { read_lists(); });
   if (is_new) make_trust();
   look_at_ends();
 }
 
-// Under the lock. True when something was read.
+// True when something was read.
 bool TlsFiles::read_again(WatchedFiles& files, const std::vector<std::string>& names,
                           bool thoroughly, const std::function<void()>& read) {
   const bool is_first_look = files.have_changed(names, false);
@@ -133,7 +133,6 @@ bool TlsFiles::read_again(WatchedFiles& files, const std::vector<std::string>& n
   }
 }
 
-// Under the lock, as the next ones.
 void TlsFiles::read_certificate() {
   std::shared_ptr<SSL_CTX> context = make_context();
   Lifetime life;
@@ -209,18 +208,18 @@ void TlsFiles::make_trust() {
 }
 
 std::shared_ptr<const Trust> TlsFiles::trust() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!trust_) make_trust();
   return trust_;
 }
 
 bool TlsFiles::is_in_use() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return trust_ != nullptr;
 }
 
 StorePtr TlsFiles::web_store() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   StorePtr web = make_store();
   if (options_.trust_system_authorities.value_or(authority_files_of(options_).empty())) {
     X509_STORE_set_default_paths(web.get());
@@ -256,7 +255,7 @@ void TlsFiles::look_at_end(Lifetime& lifetime, const std::string& what, const st
 }
 
 Reports TlsFiles::take_reports() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return std::exchange(reports_, {});
 }
 

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/node_id.hpp"
 #include "rr/options.hpp"
 #include "runtime/cpp/src/channel/certificate.hpp"
@@ -83,31 +83,32 @@ class TlsFiles {
   };
 
   bool read_again(WatchedFiles& files, const std::vector<std::string>& names, bool thoroughly,
-                  const std::function<void()>& read);
-  void read_certificate();
-  void read_authorities(const std::vector<std::string>& names);
-  void read_lists();
-  void make_trust();
-  [[nodiscard]] StorePtr make_store() const;
+                  const std::function<void()>& read) RR_REQUIRES(mutex_);
+  void read_certificate() RR_REQUIRES(mutex_);
+  void read_authorities(const std::vector<std::string>& names) RR_REQUIRES(mutex_);
+  void read_lists() RR_REQUIRES(mutex_);
+  void make_trust() RR_REQUIRES(mutex_);
+  [[nodiscard]] StorePtr make_store() const RR_REQUIRES(mutex_);
   static void set_life(Lifetime& known, const Lifetime& read);
-  void look_at_ends();
-  void look_at_end(Lifetime& lifetime, const std::string& what, const std::string& then);
+  void look_at_ends() RR_REQUIRES(mutex_);
+  void look_at_end(Lifetime& lifetime, const std::string& what, const std::string& then)
+      RR_REQUIRES(mutex_);
 
   const TlsOptions options_;
   const NodeId own_;
 
-  mutable std::mutex mutex_;  // guards what follows
-  WatchedFiles certificate_files_;
-  WatchedFiles authority_files_;
-  WatchedFiles revocation_files_;
-  std::shared_ptr<SSL_CTX> context_;  // null until it is used, without files
-  std::vector<CertificatePtr> authorities_;
-  std::vector<RevocationsPtr> lists_;
-  Lifetime certificate_life_;
-  Lifetime list_life_;
-  std::uint64_t generation_ = 0;
-  std::shared_ptr<const Trust> trust_;
-  Reports reports_;
+  mutable Mutex mutex_;
+  WatchedFiles certificate_files_ RR_GUARDED_BY(mutex_);
+  WatchedFiles authority_files_ RR_GUARDED_BY(mutex_);
+  WatchedFiles revocation_files_ RR_GUARDED_BY(mutex_);
+  std::shared_ptr<SSL_CTX> context_ RR_GUARDED_BY(mutex_);  // null until it is used, without files
+  std::vector<CertificatePtr> authorities_ RR_GUARDED_BY(mutex_);
+  std::vector<RevocationsPtr> lists_ RR_GUARDED_BY(mutex_);
+  Lifetime certificate_life_ RR_GUARDED_BY(mutex_);
+  Lifetime list_life_ RR_GUARDED_BY(mutex_);
+  std::uint64_t generation_ RR_GUARDED_BY(mutex_) = 0;
+  std::shared_ptr<const Trust> trust_ RR_GUARDED_BY(mutex_);
+  Reports reports_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::channel

@@ -18,17 +18,17 @@ namespace client {
 
 void CallbackSlot::set(std::unique_ptr<CallbackFunction> function) {
   std::shared_ptr<CallbackFunction> shared = std::move(function);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   shared.swap(function_);
 }
 
 void CallbackSlot::clear() {
   std::shared_ptr<CallbackFunction> old;
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   old.swap(function_);
   const auto self = std::this_thread::get_id();
   if (std::find(running_.begin(), running_.end(), self) == running_.end()) {
-    while (!running_.empty()) ended_.wait(lock);
+    while (!running_.empty()) ended_.wait(mutex_);
   }
   lock.unlock();
 }
@@ -41,14 +41,14 @@ std::shared_ptr<const void> CallbackSlot::call(const Arguments& arguments) {
     ~Run() {
       function.reset();
       {
-        const std::lock_guard lock(slot.mutex_);
+        const MutexLock lock(slot.mutex_);
         auto& running = slot.running_;
         running.erase(std::find(running.begin(), running.end(), std::this_thread::get_id()));
       }
       slot.ended_.notify_all();
     }
   };
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   if (!function_) throw Error(ErrorCode::invalid_operation, "Callback function not set");
   running_.push_back(std::this_thread::get_id());
   const Run run{*this, function_};
@@ -57,7 +57,7 @@ std::shared_ptr<const void> CallbackSlot::call(const Arguments& arguments) {
 }
 
 std::shared_ptr<CallbackSlot> Callbacks::find(std::string_view path, std::string_view member) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const auto& slot : slots_) {
     if (slot->member->name == member && slot->path == path) return slot;
   }
@@ -75,7 +75,7 @@ void Callbacks::set(const Stub& stub, const Member& member,
                     std::unique_ptr<CallbackFunction> function) {
   std::shared_ptr<CallbackSlot> slot;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (has_ended_) return;
     slot = find_locked(stub, member);
     if (!slot) slot = slots_.emplace_back(std::make_shared<CallbackSlot>(stub, member));
@@ -86,7 +86,7 @@ void Callbacks::set(const Stub& stub, const Member& member,
 void Callbacks::clear(const Stub& stub, const Member& member) {
   std::shared_ptr<CallbackSlot> slot;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     slot = find_locked(stub, member);
   }
   if (slot) slot->clear();
@@ -95,7 +95,7 @@ void Callbacks::clear(const Stub& stub, const Member& member) {
 void Callbacks::forget(const Stub& stub) {
   std::vector<std::shared_ptr<CallbackSlot>> removed;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     std::erase_if(slots_, [&](const auto& slot) {
       if (slot->stub != &stub) return false;
       removed.push_back(slot);
@@ -107,7 +107,7 @@ void Callbacks::forget(const Stub& stub) {
 
 void Callbacks::end() {
   std::vector<std::shared_ptr<CallbackSlot>> removed;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   has_ended_ = true;
   removed.swap(slots_);
 }

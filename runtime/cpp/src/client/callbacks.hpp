@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <condition_variable>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -11,6 +9,7 @@
 
 #include "rr/callbacks.hpp"
 #include "rr/definition.hpp"
+#include "rr/mutex.hpp"
 #include "rr/stub.hpp"
 
 namespace rr::client {
@@ -33,10 +32,10 @@ class CallbackSlot {
   std::shared_ptr<const void> call(const Arguments& arguments);
 
  private:
-  std::mutex mutex_;
-  std::condition_variable ended_;
-  std::shared_ptr<CallbackFunction> function_;
-  std::vector<std::thread::id> running_;
+  Mutex mutex_;
+  Condition ended_;
+  std::shared_ptr<CallbackFunction> function_ RR_GUARDED_BY(mutex_);
+  std::vector<std::thread::id> running_ RR_GUARDED_BY(mutex_);
 };
 
 /// The functions that a client has given to the callbacks of its stubs. No user code runs, and
@@ -53,11 +52,12 @@ class Callbacks {
   std::shared_ptr<CallbackSlot> find(std::string_view path, std::string_view member);
 
  private:
-  std::shared_ptr<CallbackSlot> find_locked(const Stub& stub, const Member& member);
+  std::shared_ptr<CallbackSlot> find_locked(const Stub& stub, const Member& member)
+      RR_REQUIRES(mutex_);
 
-  std::mutex mutex_;
-  bool has_ended_ = false;
-  std::vector<std::shared_ptr<CallbackSlot>> slots_;
+  Mutex mutex_;
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
+  std::vector<std::shared_ptr<CallbackSlot>> slots_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::client

@@ -123,7 +123,7 @@ void Pipes::start_connect(Wish wish, std::chrono::milliseconds timeout,
 }
 
 void Pipes::begin(const Wish& wish) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   Early& early = early_[Key(wish.path, wish.member->name)];
   early.member = wish.member;
   early.holding = wish.holding;
@@ -132,7 +132,7 @@ void Pipes::begin(const Wish& wish) {
 
 void Pipes::finish(const Wish& wish) {
   std::deque<Early::Packet> unclaimed;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto early = early_.find(Key(wish.path, wish.member->name));
   if (--early->second.connecting != 0) return;
   unclaimed.swap(early->second.packets);
@@ -154,7 +154,7 @@ Pipes::End Pipes::open(const Wish& wish, Decoder& decoder, const Entry& entry) {
   bool has_room = true;
   End predecessor;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     predecessor = add(end);
     Early& early = early_[Key(wish.path, wish.member->name)];
     std::erase_if(early.packets, [&](Early::Packet& packet) {
@@ -175,7 +175,7 @@ Pipes::End Pipes::open(const Wish& wish, Decoder& decoder, const Entry& entry) {
   return end;
 }
 
-// Under the lock. Returns the end whose index the new one has been given; null: none.
+// Returns the end whose index the new one has been given; null: none.
 Pipes::End Pipes::add(const End& end) {
   if (ends_.add(end)) return nullptr;
   const PipeEnd::State::Identity& what = end->identity;
@@ -190,7 +190,6 @@ bool Pipes::is_overtaken(const End& end, std::uint64_t notice) {
   return static_cast<const Used&>(*end).notices_before >= notice;
 }
 
-// Under the lock.
 bool Pipes::keep_early(const Entry& entry, const endpoint::PipePacket& packet, Decoder& decoder) {
   const auto found = early_.find(Key(entry.service_path, entry.member));
   if (found == early_.end()) return false;
@@ -214,7 +213,7 @@ bool Pipes::keep_early(const Entry& entry, const endpoint::PipePacket& packet, D
   endpoint::PipeArrival arrival(message, entry, owner, *session_.types(), {});
   arrival.take(
       [&](const endpoint::PipePacket& packet, Decoder& decoder) -> endpoint::PipeArrival::Taken {
-        const std::lock_guard lock(mutex_);
+        const MutexLock lock(mutex_);
         if (auto end = ends_.find(entry.service_path, entry.member, packet.index)) {
           return {std::move(end), true};
         }
@@ -238,7 +237,7 @@ void Pipes::take_acknowledgements(const Message& message, const Entry& entry) {
   endpoint::for_each_acknowledgement(message, entry, [&](std::int32_t index, std::uint32_t number) {
     End end;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       end = ends_.find(entry.service_path, entry.member, index);
     }
     if (end) end->take_acknowledgement(number);
@@ -251,7 +250,7 @@ void Pipes::take_closed(const Message& message, const Entry& entry, std::uint64_
   endpoint::read_value(decoder, entry, "index", type_of<std::int32_t>, &index);
   End end;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     end = ends_.find(entry.service_path, entry.member, index);
     if (!end || is_overtaken(end, notice)) return;
     ends_.remove(*end);
@@ -262,10 +261,11 @@ void Pipes::take_closed(const Message& message, const Entry& entry, std::uint64_
 void Pipes::release(std::string_view path, std::uint64_t notice) {
   std::vector<End> ended;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     ended = ends_.take_below(path);
-    std::erase_if(ended,
-                  [&](const End& end) { return is_overtaken(end, notice) && ends_.add(end); });
+    std::erase_if(ended, [&](const End& end) RR_REQUIRES(mutex_) {
+      return is_overtaken(end, notice) && ends_.add(end);
+    });
   }
   for (const End& end : ended) end->finish();
 }
@@ -273,7 +273,7 @@ void Pipes::release(std::string_view path, std::uint64_t notice) {
 void Pipes::end() {
   std::vector<End> ended;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     ended = ends_.take_all();
   }
   for (const End& end : ended) end->finish();
@@ -288,7 +288,7 @@ channel::Connection& Pipes::connection() const { return session_.connection(); }
 
 void Pipes::close(PipeEnd::State& end, bool may_wait) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!ends_.remove(end)) return;
   }
   const auto keep = session_.shared_from_this();

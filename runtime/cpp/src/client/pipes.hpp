@@ -7,11 +7,11 @@
 #include <deque>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "rr/mutex.hpp"
 #include "rr/pipes.hpp"
 #include "rr/reader.hpp"
 #include "runtime/cpp/src/channel/account.hpp"
@@ -83,14 +83,15 @@ class Pipes final : public endpoint::PipeSide {
   void begin(const Wish& wish);
   void finish(const Wish& wish);
   End open(const Wish& wish, Decoder& decoder, const Entry& entry);
-  End add(const End& end);
+  End add(const End& end) RR_REQUIRES(mutex_);
   static bool is_overtaken(const End& end, std::uint64_t notice);
-  bool keep_early(const Entry& entry, const endpoint::PipePacket& packet, Decoder& decoder);
+  bool keep_early(const Entry& entry, const endpoint::PipePacket& packet, Decoder& decoder)
+      RR_REQUIRES(mutex_);
 
   Session& session_;
-  std::mutex mutex_;
-  endpoint::PipeTable ends_;
-  std::map<Key, Early> early_;
+  Mutex mutex_;
+  endpoint::PipeTable ends_ RR_GUARDED_BY(mutex_);
+  std::map<Key, Early> early_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::client

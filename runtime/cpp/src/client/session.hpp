@@ -8,7 +8,6 @@
 #include <list>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,6 +17,7 @@
 
 #include "rr/client.hpp"
 #include "rr/definition.hpp"
+#include "rr/mutex.hpp"
 #include "rr/reader.hpp"
 #include "rr/registry.hpp"
 #include "rr/stub.hpp"
@@ -100,8 +100,8 @@ class Session final : public channel::Receiver,
   [[noreturn]] void refuse_ended() const;
 
   [[nodiscard]] const std::map<std::string, VarValue>& attributes() const { return attributes_; }
-  [[nodiscard]] const NodeId& remote_node() const { return remote_node_; }
-  [[nodiscard]] const std::string& remote_name() const { return remote_name_; }
+  [[nodiscard]] const NodeId& remote_node() const { return known_remote().node; }
+  [[nodiscard]] const std::string& remote_name() const { return known_remote().name; }
   [[nodiscard]] const std::string& object_type() const { return object_type_; }
   [[nodiscard]] std::map<std::string, std::string> definitions() const;
   [[nodiscard]] const std::string& service() const { return service_; }
@@ -207,7 +207,7 @@ class Session final : public channel::Receiver,
     std::string remote_name;  // where names travel
   };
   [[nodiscard]] Writer& write(const Outgoing& request) const;
-  Numbers draw_numbers(bool has_name);
+  Numbers draw_numbers(bool has_name) RR_REQUIRES(mutex_);
   Numbers draw(endpoint::Pending& call, const Outgoing& request, endpoint::Asked asked);
   Numbers draw(const Outgoing& request, bool has_number);
   void number(const Outgoing& request, Writer& writer, const Numbers& numbers) const;
@@ -265,10 +265,19 @@ class Session final : public channel::Receiver,
   void send_answer(Writer& writer, const Message& message, const Entry& entry, bool is_reply,
                    bool is_urgent = false);
   void give_up(const Error& why);
+  struct Remote {
+    std::uint32_t endpoint = 0;
+    NodeId node;
+    std::string name;
+  };
+  // Once connected, when it does not change any more.
+  [[nodiscard]] const Remote& known_remote() const RR_NO_THREAD_SAFETY_ANALYSIS { return remote_; }
 
   const std::shared_ptr<endpoint::Core> core_;
   std::string service_;  // fixed before anything is sent
-  ConnectOptions options_;
+  std::function<void(const Error&)> on_closed_ RR_GUARDED_BY(mutex_);
+  std::function<void(const std::string&)> on_path_released_ RR_GUARDED_BY(mutex_);
+  const ConnectOptions options_;  // without these two
   std::shared_ptr<channel::Connection> connection_;
   SessionLimits limits_;  // fixed before it is connected
 
@@ -276,35 +285,34 @@ class Session final : public channel::Receiver,
   bool is_found_ = false;             // the URL came from discovery
   bool may_send_credentials_ = true;  // or somebody else could read them, or be meant
   std::uint32_t endpoint_ = 0;
-  std::uint32_t remote_endpoint_ = 0;  // this and the next two under mutex_ until connected
-  NodeId remote_node_;
-  std::string remote_name_;
-  bool has_remote_ = false;
+  Remote remote_ RR_GUARDED_BY(mutex_);
+  bool has_remote_ RR_GUARDED_BY(mutex_) = false;
   std::string object_type_;
   std::vector<std::string> object_implements_;
   std::map<std::string, VarValue> attributes_;
 
-  mutable std::mutex mutex_;
-  std::list<std::shared_ptr<const TypeRegistry>> known_types_;  // all that types_ has named
+  mutable Mutex mutex_;
+  std::list<std::shared_ptr<const TypeRegistry>> known_types_
+      RR_GUARDED_BY(mutex_);  // all that types_ has named
   std::atomic<const std::shared_ptr<const TypeRegistry>*> types_;
-  endpoint::PendingTable pending_;
+  endpoint::PendingTable pending_ RR_GUARDED_BY(mutex_);
   std::atomic<std::uint16_t> next_message_id_{0};
-  bool is_connected_ = false;             // the service knows this client
-  bool is_ending_ = false;                // one side has said that the session ends
-  std::atomic<bool> is_given_up_{false};  // what waits to be handled is dropped
-  std::optional<Error> why_closed_;
-  std::string user_;         // who is logged in
-  client::StubCache stubs_;  // with a lock of its own
-  std::vector<std::shared_ptr<client::EventSubscription>> handlers_;
+  bool is_connected_ RR_GUARDED_BY(mutex_) = false;  // the service knows this client
+  bool is_ending_ RR_GUARDED_BY(mutex_) = false;     // one side has said that the session ends
+  std::atomic<bool> is_given_up_{false};             // what waits to be handled is dropped
+  std::optional<Error> why_closed_ RR_GUARDED_BY(mutex_);
+  std::string user_ RR_GUARDED_BY(mutex_);  // who is logged in
+  client::StubCache stubs_;                 // with a lock of its own
+  std::vector<std::shared_ptr<client::EventSubscription>> handlers_ RR_GUARDED_BY(mutex_);
   client::Callbacks callbacks_;  // with a lock of its own
-  client::DefinitionTexts texts_;
-  client::DefinitionDifferences differences_;
+  client::DefinitionTexts texts_ RR_GUARDED_BY(mutex_);
+  client::DefinitionDifferences differences_ RR_GUARDED_BY(mutex_);
   std::atomic<bool> has_differences_{false};
   std::atomic<bool> has_told_foreign_{false};  // answers to something else are logged once
   client::Notices notices_;
   client::Pipes pipes_{*this};
-  std::uint16_t seen_message_id_ = 0;  // at quiet_since_
-  channel::Time quiet_since_;
+  std::uint16_t seen_message_id_ RR_GUARDED_BY(mutex_) = 0;  // at quiet_since_
+  channel::Time quiet_since_ RR_GUARDED_BY(mutex_);
 
   endpoint::WireTable wires_;
 };

@@ -124,19 +124,18 @@ namespace {
 }  // namespace
 
 void Session::refuse_ended() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   refuse_closed(why_closed_.value());
 }
 
-// Under the lock.
 Session::Numbers Session::draw_numbers(bool has_name) {
   if (why_closed_) refuse_closed(*why_closed_);
   Numbers numbers{.message = next_message_id_++,
                   .is_connected = is_connected_,
-                  .remote_endpoint = remote_endpoint_,
-                  .remote_node = remote_node_,
+                  .remote_endpoint = remote_.endpoint,
+                  .remote_node = remote_.node,
                   .remote_name = {}};
-  if (has_name) numbers.remote_name = remote_name_;
+  if (has_name) numbers.remote_name = remote_.name;
   return numbers;
 }
 
@@ -150,14 +149,14 @@ bool is_special(EntryType type) { return static_cast<std::uint16_t>(type) < 500;
 // A request that waits for its answer is open from now on.
 [[gnu::hot]] Session::Numbers Session::draw(endpoint::Pending& call, const Outgoing& request,
                                             endpoint::Asked asked) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   Numbers numbers = draw_numbers(is_special(request.type));
   numbers.request = pending_.add(call, std::move(asked));
   return numbers;
 }
 
 [[gnu::hot]] Session::Numbers Session::draw(const Outgoing& request, bool has_number) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   Numbers numbers = draw_numbers(is_special(request.type));
   if (has_number) numbers.request = pending_.skip();
   return numbers;
@@ -191,9 +190,9 @@ void Session::send_newest(Writer& writer, const EntryHeader& header, std::uint32
                           const channel::Newest& newest) {
   writer.entry(header, element_count, 0);
   writer.message({.sender_node = core_->options().id,
-                  .receiver_node = remote_node_,
+                  .receiver_node = known_remote().node,
                   .sender_endpoint = endpoint_,
-                  .receiver_endpoint = remote_endpoint_,
+                  .receiver_endpoint = known_remote().endpoint,
                   .metadata = header.metadata,
                   .message_id = next_message_id_++,
                   .routing = false},
@@ -227,7 +226,7 @@ void Session::reply_packet(Writer& writer, const EntryHeader& header, std::uint3
 }
 
 bool Session::take(endpoint::Pending& call) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return pending_.take(call);
 }
 
@@ -242,7 +241,7 @@ void Session::fail_all(const Error& why, channel::DeferredCallbacks& deferred) {
   while (true) {
     endpoint::Pending* call = nullptr;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       call = pending_.take_any();
     }
     if (call == nullptr) return;
@@ -271,7 +270,7 @@ void Session::end_abandoned(const Message& message, const Entry& entry, const Me
                                        channel::DeferredCallbacks& deferred) {
   endpoint::PendingTable::Answered answered;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     answered = pending_.take_answered(entry);
   }
   if (answered.is_foreign && !has_told_foreign_.exchange(true)) {

@@ -106,10 +106,12 @@ std::shared_ptr<channel::Account> make_account(std::size_t limit) {
 Session::Session(std::shared_ptr<endpoint::Core> core, const Url& url, ConnectOptions options)
     : core_(std::move(core)),
       service_(url.service),
+      on_closed_(std::move(options.on_closed)),
+      on_path_released_(std::move(options.on_path_released)),
       options_(std::move(options)),
       limits_(limits_of(core_->options())),
       endpoint_(core_->new_endpoint()),
-      remote_node_(url.node_id),
+      remote_{.endpoint = 0, .node = url.node_id, .name = {}},
       known_types_{options_.definition_reader ? options_.definition_reader->types()
                                               : core_->types()},
       types_(&known_types_.back()),
@@ -139,13 +141,13 @@ std::shared_ptr<Stub> Session::root(const ObjectType* wanted) {
 void Session::learn() {
   if (options_.definition_reader) return;  // whose types grow by themselves
   auto types = core_->types();
-  const auto is_known = [&] { return known_types_.back() == types; };
+  const auto is_known = [&]() RR_REQUIRES(mutex_) { return known_types_.back() == types; };
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_known()) return;
   }
   compare_definitions(*types);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (is_known()) return;
   known_types_.push_back(std::move(types));
   types_.store(&known_types_.back(), std::memory_order_release);
@@ -163,7 +165,7 @@ void Session::establish(const Url& url, const std::function<void()>& check) {
   way.connect(url, deadline, [this](std::shared_ptr<channel::Connection> connection) {
     connection->set_endpoints(endpoint_, 0);
     connection->set_account(make_account(limits_.held));
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     connection_ = std::move(connection);
     return shared_from_this();
   });
@@ -180,8 +182,8 @@ void Session::establish(const Url& url, const std::function<void()>& check) {
   } catch (const Error&) {
     std::function<void(const Error&)> on_closed;
     {
-      const std::lock_guard lock(mutex_);
-      on_closed.swap(options_.on_closed);  // it never was open
+      const MutexLock lock(mutex_);
+      on_closed.swap(on_closed_);  // it never was open
     }
     drop();
     connection_->close(Error(ErrorCode::connection_error, "the session has ended"));
@@ -230,7 +232,7 @@ void Session::connect_combined(const Patience& patience) {
       },
       patience);
   for (const std::string& text : definitions) keep_definition(text);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   user_ = options_.username;
 }
 
@@ -302,19 +304,19 @@ void Session::authenticate(const std::string& username,
   const auto nothing = [](Decoder&, const Message&, const Entry&) {};
   ask(texts.request(EntryType::client_session_op_req, service_, "AuthenticateUser"), nothing,
       patience);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   user_ = username;
 }
 
 void Session::log_out() {
   Texts texts;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     texts.add("username", user_);
   }
   call(texts.request(EntryType::client_session_op_req, service_, "LogoutUser"), Incoming{},
        Milliseconds(0));
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   user_.clear();
 }
 
@@ -346,11 +348,11 @@ std::map<std::string, VarValue> Session::ask_attributes() {
 // the session may look at it from then on.
 void Session::take_remote(const Message& message, bool is_success) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (std::exchange(has_remote_, true)) return;
-    remote_node_ = message.sender_node;
-    remote_name_ = message.sender_name;
-    remote_endpoint_ = message.sender_endpoint;
+    remote_.node = message.sender_node;
+    remote_.name = message.sender_name;
+    remote_.endpoint = message.sender_endpoint;
     is_connected_ = is_success;
   }
   if (!is_success) return;
@@ -359,18 +361,18 @@ void Session::take_remote(const Message& message, bool is_success) {
 }
 
 bool Session::is_open() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return !why_closed_;
 }
 
 std::map<std::string, std::string> Session::definitions() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return texts_.all();
 }
 
 void Session::close() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (why_closed_) is_given_up_ = true;
     if (why_closed_ || is_ending_) return;
     is_ending_ = true;
@@ -388,7 +390,7 @@ void Session::close() {
 
 void Session::drop() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (why_closed_) is_given_up_ = true;
     if (why_closed_ || is_ending_) return;
     is_ending_ = true;
@@ -409,7 +411,7 @@ void Session::drop() {
 
 void Session::give_up(const Error& why) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!why_closed_) why_closed_ = why;
     is_ending_ = true;
     is_given_up_ = true;
@@ -419,7 +421,7 @@ void Session::give_up(const Error& why) {
 
 void Session::lost(const Error& why, channel::DeferredCallbacks& deferred) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!why_closed_) why_closed_ = why;
   }
   fail_all(Error(ErrorCode::connection_error, why.message()), deferred);
@@ -434,10 +436,10 @@ void Session::closed() {
   std::function<void(const std::string&)> on_path_released;
   std::vector<std::shared_ptr<client::EventSubscription>> handlers;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     why = why_closed_;
-    on_closed.swap(options_.on_closed);
-    on_path_released.swap(options_.on_path_released);
+    on_closed.swap(on_closed_);
+    on_path_released.swap(on_path_released_);
     stubs_.clear();
     handlers.swap(handlers_);
   }
@@ -451,7 +453,7 @@ void Session::closed() {
 
 void Session::attend(channel::Time now) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (why_closed_ || !is_connected_) return;
     const std::uint16_t next = next_message_id_;
     if (std::exchange(seen_message_id_, next) != next) quiet_since_ = now;

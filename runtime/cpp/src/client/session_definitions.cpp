@@ -13,7 +13,7 @@ namespace rr {
 
 void Session::pull_definition(const std::string& name, const Patience& patience) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (texts_.contains(name)) return;
   }
   const std::string version(endpoint::own_version);
@@ -35,12 +35,12 @@ void Session::pull_imports(const Patience& patience) {
   while (true) {
     std::optional<std::string> missing;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       missing = texts_.missing_import();
     }
     if (!missing) return;
     pull_definition(*missing, patience);
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!texts_.contains(*missing)) {
       throw Error(ErrorCode::service_definition_error,
                   "the service sent another definition for `" + *missing + "`");
@@ -50,12 +50,12 @@ void Session::pull_imports(const Patience& patience) {
 
 void Session::keep_definition(std::string_view text) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     texts_.count(text.size(), limits_.definitions);
   }
   if (core_->options().tap) core_->options().tap->definition(text);
   client::DefinitionOutline outline = client::outline(text);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   texts_.add(text, std::move(outline));
 }
 
@@ -66,7 +66,7 @@ void Session::compare_definitions(const TypeRegistry& known) {
   if (wanted == DefinitionCheck::off || options_.definition_reader) return;
   std::vector<client::MemberDifference> found;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     found = differences_.compare(texts_.all(), known);
     if (!differences_.all().empty()) has_differences_.store(true, std::memory_order_release);
   }
@@ -80,7 +80,7 @@ void Session::compare_definitions(const TypeRegistry& known) {
 }
 
 void Session::refuse_member(const ObjectType& type, const Member& member) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const client::MemberDifference* const difference = differences_.find(type.name, member.name);
   if (difference != nullptr) throw Error(difference->error());
 }

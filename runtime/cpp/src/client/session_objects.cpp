@@ -40,7 +40,7 @@ Error released_while_looked_up(const std::string& path) {
 std::vector<std::string> Session::implemented(const std::string& type) const {
   std::vector<std::string> found = {type};
   std::unordered_set<std::string> names = {type};
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (std::size_t i = 0; i < found.size(); ++i) {
     const std::string name = found[i];  // the vector grows
     const std::string service = service_of(name);
@@ -123,7 +123,7 @@ void Session::pull_type(const std::string& type, Milliseconds timeout) {
   const std::string service = service_of(type);
   if (service == type || service.empty()) return;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (texts_.contains(service) && !texts_.missing_import()) return;
   }
   const Patience patience = patience_for(timeout);
@@ -153,8 +153,8 @@ std::shared_ptr<Stub> Session::keep_found(const client::StubCache::Lookup& looku
 void Session::release_path(std::string_view path, std::uint64_t notice) {
   std::function<void(const std::string&)> notify;
   {
-    const std::lock_guard lock(mutex_);
-    notify = options_.on_path_released;
+    const MutexLock lock(mutex_);
+    notify = on_path_released_;
   }
   channel::DeferredCallbacks deferred;
   const auto is_meant = [notice](const WireEnd::State& end) {
@@ -181,7 +181,7 @@ bool Session::take_packet(const Message& message, const Entry& entry, const Memo
 
 void Session::add_handler(const std::shared_ptr<client::EventSubscription>& handler) {
   std::vector<std::shared_ptr<client::EventSubscription>> removed;  // goes when the lock has
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::erase_if(handlers_, [&](const auto& item) {
     if (!item->is_connected()) removed.push_back(item);
     return !item->is_connected();
@@ -192,7 +192,7 @@ void Session::add_handler(const std::shared_ptr<client::EventSubscription>& hand
 void Session::forget(const Stub& stub) {
   std::vector<std::shared_ptr<client::EventSubscription>> removed;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     std::erase_if(handlers_, [&](const auto& item) {
       if (item->stub == &stub) removed.push_back(item);
       return item->stub == &stub;
@@ -274,7 +274,7 @@ void Session::foresee(const Message& message) {
 void Session::handle_event(const Message& message, const Entry& entry, const MemoryRef& owner) {
   std::vector<std::shared_ptr<client::EventSubscription>> handlers;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (const auto& handler : handlers_) {
       if (handler->path == entry.service_path && handler->member->name == entry.member) {
         handlers.push_back(handler);
@@ -322,7 +322,7 @@ void Session::send_answer(Writer& writer, const Message& message, const Entry& e
     header.receiver_name = message.sender_name;
     header.routing = true;
   } else {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     header.message_id = next_message_id_++;
   }
   writer.message(header, 1);

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/stub.hpp"
 
 namespace rr::client {
@@ -30,7 +30,7 @@ class StubCache {
     friend class StubCache;
     StubCache& cache_;
     const std::string path_;
-    bool is_outdated_ = false;  // under the cache's lock
+    bool is_outdated_ RR_GUARDED_BY(cache_.mutex_) = false;  // under the cache's lock
   };
 
   StubCache() = default;
@@ -51,11 +51,12 @@ class StubCache {
   void clear();
 
  private:
-  std::shared_ptr<Stub> keep_locked(const std::string& path, const std::shared_ptr<Stub>& stub);
+  std::shared_ptr<Stub> keep_locked(const std::string& path, const std::shared_ptr<Stub>& stub)
+      RR_REQUIRES(mutex_);
 
-  std::mutex mutex_;
-  std::unordered_map<std::string, std::weak_ptr<Stub>> stubs_;
-  std::vector<Lookup*> lookups_;
+  Mutex mutex_;
+  std::unordered_map<std::string, std::weak_ptr<Stub>> stubs_ RR_GUARDED_BY(mutex_);
+  std::vector<Lookup*> lookups_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::client

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <mutex>
 #include <new>
 #include <thread>
 #include <utility>
 
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/platform/memory.hpp"
 
 namespace rr::codec {
@@ -39,7 +39,7 @@ class SpareBlocks {
  public:
   // One that fits and is not much larger; none if there is no such.
   LargeBlock take(std::size_t size) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto found = std::find_if(spares_.begin(), spares_.end(), [size](const Spare& spare) {
       return spare.block.size >= size && spare.block.size - size <= size / 4;
     });
@@ -54,7 +54,7 @@ class SpareBlocks {
   void keep(LargeBlock block) {
     Spares dropped{};
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       for (std::size_t i = most_blocks; i-- != 0;) {
         if (i + 1 != most_blocks && bytes_ + block.size <= most_spare_bytes) break;
         drop(i, dropped);
@@ -71,7 +71,7 @@ class SpareBlocks {
     Spares dropped{};
     bool is_any_left = false;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       for (std::size_t i = 0; i < most_blocks; ++i) {
         if (!std::exchange(spares_[i].is_young, false)) drop(i, dropped);
       }
@@ -84,7 +84,7 @@ class SpareBlocks {
   void drop_all() {
     Spares dropped{};
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (bytes_ == 0) return;
       for (std::size_t i = 0; i < most_blocks; ++i) drop(i, dropped);
     }
@@ -92,7 +92,7 @@ class SpareBlocks {
   }
 
   std::size_t bytes() {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return bytes_;
   }
 
@@ -104,7 +104,7 @@ class SpareBlocks {
   static constexpr std::size_t most_blocks = 8;
   using Spares = std::array<Spare, most_blocks>;
 
-  void drop(std::size_t i, Spares& dropped) {
+  void drop(std::size_t i, Spares& dropped) RR_REQUIRES(mutex_) {
     bytes_ -= spares_[i].block.size;
     dropped[i] = std::exchange(spares_[i], {});
   }
@@ -113,9 +113,9 @@ class SpareBlocks {
     for (const Spare& spare : spares) give_to_system(spare.block);
   }
 
-  std::mutex mutex_;
-  Spares spares_{};
-  std::size_t bytes_ = 0;
+  Mutex mutex_;
+  Spares spares_ RR_GUARDED_BY(mutex_){};
+  std::size_t bytes_ RR_GUARDED_BY(mutex_) = 0;
 };
 
 // Arrays may be freed while the program ends: it is not destroyed.

@@ -28,7 +28,7 @@ Announcer::Announcer(std::shared_ptr<channel::Reactor> reactor, NodeId id, std::
 
 void Announcer::start(AnnounceOptions options) {
   options.period = std::max(channel::saturated(options.period), shortest_period);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   options_ = std::move(options);
   if (!alarm_) {
     alarm_ = std::make_shared<Alarm>(reactor_, [announcer = weak_from_this()] {
@@ -40,14 +40,14 @@ void Announcer::start(AnnounceOptions options) {
 }
 
 void Announcer::stop() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   options_.reset();
   due_ = channel::never;
   if (alarm_) alarm_->cancel();
 }
 
 void Announcer::announce_soon() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!options_) return;
   const channel::Time now = channel::Clock::now();
   channel::Time when = now + shortly;
@@ -59,21 +59,21 @@ void Announcer::announce_soon() {
 
 void Announcer::services_changed() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     nonce_ = channel::random_letters();
   }
   announce_soon();
 }
 
 std::string Announcer::nonce() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return nonce_;
 }
 
 void Announcer::announce() {
   DiscoveryNetwork network;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!options_) return;
     network = options_->network;
     last_ = channel::Clock::now();

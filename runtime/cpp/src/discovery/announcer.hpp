@@ -3,12 +3,12 @@
 
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "rr/discovery.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/discovery/alarm.hpp"
 #include "runtime/cpp/src/discovery/interfaces.hpp"
@@ -40,12 +40,12 @@ class Announcer : public std::enable_shared_from_this<Announcer> {
   const NodeId id_;
   const std::string name_;
   const std::function<std::vector<std::string>()> listening_;
-  mutable std::mutex mutex_;
-  std::optional<AnnounceOptions> options_;  // nothing: nobody is told
-  std::string nonce_;
-  std::shared_ptr<Alarm> alarm_;
-  channel::Time due_ = channel::never;
-  channel::Time last_ = channel::Time::min();
+  mutable Mutex mutex_;
+  std::optional<AnnounceOptions> options_ RR_GUARDED_BY(mutex_);  // nothing: nobody is told
+  std::string nonce_ RR_GUARDED_BY(mutex_);
+  std::shared_ptr<Alarm> alarm_ RR_GUARDED_BY(mutex_);
+  channel::Time due_ RR_GUARDED_BY(mutex_) = channel::never;
+  channel::Time last_ RR_GUARDED_BY(mutex_) = channel::Time::min();
 };
 
 }  // namespace rr::discovery

@@ -99,7 +99,7 @@ std::shared_ptr<DatagramReceiver::Socket> DatagramReceiver::open(channel::Family
 
 void DatagramReceiver::start() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     std::error_code error;
     const auto v4 = open(channel::Family::v4, error);
     if (!v4) {
@@ -118,7 +118,7 @@ void DatagramReceiver::start() {
 void DatagramReceiver::stop() {
   std::vector<std::shared_ptr<Socket>> sockets;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     sockets.swap(sockets_);
     v6_.reset();
   }
@@ -127,7 +127,7 @@ void DatagramReceiver::stop() {
 
 void DatagramReceiver::join_groups() {
   std::set<unsigned> present;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!v6_) return;
   for (const LocalAddress& local : local_addresses()) {
     if (!local.is_v6()) continue;

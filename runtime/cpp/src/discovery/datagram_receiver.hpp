@@ -4,13 +4,13 @@
 #include <atomic>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "rr/discovery.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/channel/socket.hpp"
 
@@ -40,10 +40,10 @@ class DatagramReceiver : public std::enable_shared_from_this<DatagramReceiver> {
   const std::shared_ptr<channel::Reactor> reactor_;
   const DiscoveryNetwork network_;
   const Handler handler_;
-  std::mutex mutex_;
-  std::vector<std::shared_ptr<Socket>> sockets_;
-  std::shared_ptr<Socket> v6_;
-  std::set<unsigned> joined_;
+  Mutex mutex_;
+  std::vector<std::shared_ptr<Socket>> sockets_ RR_GUARDED_BY(mutex_);
+  std::shared_ptr<Socket> v6_ RR_GUARDED_BY(mutex_);
+  std::set<unsigned> joined_ RR_GUARDED_BY(mutex_);
 };
 
 /// The groups of IPv6 that a network uses, as texts.

@@ -59,7 +59,7 @@ void NodeDiscovery::check_open() const {
 
 // Under the lock, which the node's end takes, too: what runs things aside may be gone after that.
 void NodeDiscovery::run_aside(std::function<void()> work) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   check_open();
   host_.run_aside(std::move(work));
 }
@@ -71,16 +71,16 @@ std::shared_ptr<Alarm> NodeDiscovery::alarm(void (NodeDiscovery::*method)()) {
 }
 
 void NodeDiscovery::announce(AnnounceOptions options) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   check_open();
   host_.core->start();
   announcer_->start(std::move(options));
 }
 
 void NodeDiscovery::listen(ListenOptions options) {
-  const std::lock_guard one_at_a_time(changing_);
+  const MutexLock one_at_a_time(changing_);
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     check_open();
   }
   host_.core->start();
@@ -101,7 +101,7 @@ void NodeDiscovery::listen(ListenOptions options) {
                                                          std::move(table)});
   std::unique_ptr<Listening> before;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     before = std::exchange(listening_, std::move(listening));
   }
   if (before) {
@@ -111,13 +111,13 @@ void NodeDiscovery::listen(ListenOptions options) {
   try {
     receiver->start();
   } catch (...) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     listening_.reset();
     throw;
   }
   bool has_ended = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     has_ended = has_ended_;
     const Milliseconds period =
         std::min(tick_period, std::max(options.lifetime / 4, Milliseconds(10)));
@@ -132,10 +132,10 @@ void NodeDiscovery::listen(ListenOptions options) {
 }
 
 void NodeDiscovery::stop_listening() {
-  const std::lock_guard one_at_a_time(changing_);
+  const MutexLock one_at_a_time(changing_);
   std::unique_ptr<Listening> before;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     before = std::move(listening_);
   }
   if (!before) return;
@@ -144,13 +144,13 @@ void NodeDiscovery::stop_listening() {
 }
 
 bool NodeDiscovery::is_listening() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return listening_ != nullptr;
 }
 
 void NodeDiscovery::ensure_listening() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     check_open();
     if (listening_) return;
   }
@@ -158,7 +158,7 @@ void NodeDiscovery::ensure_listening() {
 }
 
 void NodeDiscovery::request() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   check_open();
   if (!listening_) {
     throw Error(ErrorCode::invalid_operation, "a node that does not listen cannot ask for others");
@@ -175,7 +175,7 @@ void NodeDiscovery::send_request() {
   DiscoveryNetwork network;
   NodeId asker;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!listening_ || listening_->requests_left == 0) return;
     network = listening_->options.network;
     asker = listening_->asker;
@@ -196,7 +196,7 @@ void NodeDiscovery::hear(std::string_view packet, const channel::Address& sender
   const auto asker = read_request(packet);
   if (!asker) return;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!listening_ || listening_->asker == *asker) return;
   }
   announcer_->announce_soon();
@@ -204,7 +204,7 @@ void NodeDiscovery::hear(std::string_view packet, const channel::Address& sender
 
 void NodeDiscovery::take(const Announcement& announcement, const std::string& sender) {
   if (announcement.node == host_.core->options().id) return;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!listening_) return;
   const NodeTable::News news = listening_->table.hear(announcement, sender, channel::Clock::now());
   if (news == NodeTable::News::refused) return;
@@ -218,14 +218,14 @@ void NodeDiscovery::tick() {
   std::shared_ptr<DatagramReceiver> receiver;
   std::vector<KnownNode> lost;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!listening_) return;
     receiver = listening_->receiver;
   }
   receiver->join_groups();
   scan_local_nodes();
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!listening_) return;
     const channel::Time now = channel::Clock::now();
     lost = listening_->table.forget_old(now);
@@ -238,7 +238,7 @@ void NodeDiscovery::tick() {
 
 void NodeDiscovery::scan_local_nodes() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!listening_ || !listening_->options.local) return;
   }
   for (const Announcement& node : find_local_nodes()) take(node, "local");
@@ -247,7 +247,7 @@ void NodeDiscovery::scan_local_nodes() {
 void NodeDiscovery::notify_lost(const std::vector<KnownNode>& lost) {
   for (const KnownNode& known : lost) {
     watch_->lost(known.node.id);
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     on_lost_.notify(*notifier_, known.node);
   }
 }
@@ -255,7 +255,7 @@ void NodeDiscovery::notify_lost(const std::vector<KnownNode>& lost) {
 void NodeDiscovery::end() {
   std::unique_ptr<Listening> before;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     has_ended_ = true;
     before = std::move(listening_);
     on_detected_.end(*notifier_);
@@ -271,7 +271,7 @@ void NodeDiscovery::end() {
 
 std::vector<DetectedNode> NodeDiscovery::detected_nodes() const {
   std::vector<DetectedNode> result;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!listening_) return result;
   for (KnownNode& known : listening_->table.all()) {
     host_.core->found_urls().add(known.node.urls);
@@ -340,7 +340,7 @@ Function<void(const DetectedNode&)> NodeDiscovery::remembering(
 }
 
 Subscription NodeDiscovery::on_detected(Function<void(const DetectedNode&)> function) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   check_open();
   const auto listener = on_detected_.add(remembering(std::move(function)));
   if (listening_) {
@@ -352,7 +352,7 @@ Subscription NodeDiscovery::on_detected(Function<void(const DetectedNode&)> func
 }
 
 Subscription NodeDiscovery::on_lost(Function<void(const DetectedNode&)> function) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   check_open();
   return Subscription(on_lost_.add(remembering(std::move(function))));
 }

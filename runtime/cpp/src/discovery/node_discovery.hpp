@@ -4,13 +4,13 @@
 #include <chrono>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "rr/discovery.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/discovery/alarm.hpp"
 #include "runtime/cpp/src/discovery/announcer.hpp"
 #include "runtime/cpp/src/discovery/datagram_receiver.hpp"
@@ -71,7 +71,7 @@ class NodeDiscovery : public std::enable_shared_from_this<NodeDiscovery> {
   void tick();
   void send_request();
   void scan_local_nodes();
-  void check_open() const;
+  void check_open() const RR_REQUIRES(mutex_);
   void notify_lost(const std::vector<KnownNode>& lost);
   void look_first(const FindOptions& options);
   [[nodiscard]] Function<void(const DetectedNode&)> remembering(
@@ -82,12 +82,12 @@ class NodeDiscovery : public std::enable_shared_from_this<NodeDiscovery> {
   const std::shared_ptr<Announcer> announcer_;
   const std::shared_ptr<ServiceWatch> watch_;
   const std::shared_ptr<subscription::Notifier> notifier_;
-  std::mutex changing_;  // while listening begins or ends; before the other
-  mutable std::mutex mutex_;
-  bool has_ended_ = false;
-  std::unique_ptr<Listening> listening_;
-  subscription::Listeners<const DetectedNode&> on_detected_;
-  subscription::Listeners<const DetectedNode&> on_lost_;
+  Mutex changing_ RR_ACQUIRED_BEFORE(mutex_);  // while listening begins or ends
+  mutable Mutex mutex_;
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
+  std::unique_ptr<Listening> listening_ RR_GUARDED_BY(mutex_);
+  subscription::Listeners<const DetectedNode&> on_detected_ RR_GUARDED_BY(mutex_);
+  subscription::Listeners<const DetectedNode&> on_lost_ RR_GUARDED_BY(mutex_);
   channel::Interruption end_;  // of those who wait
 };
 

@@ -3,11 +3,11 @@
 
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
 #include "rr/discovery.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/discovery/matching.hpp"
 #include "runtime/cpp/src/subscription/notifier.hpp"
 
@@ -31,16 +31,16 @@ class ServiceInfos final : public MatchingServices {
   void changed(const std::string& key, const FoundService& service) override;
   void went(const std::string& key, const FoundService& service, bool is_silent) override;
   void watch_ended() override { close(); }
-  void check_open() const;
+  void check_open() const RR_REQUIRES(told_mutex_);
 
   const std::shared_ptr<ServiceWatch> watch_;
   const std::shared_ptr<subscription::Notifier> notifier_;
-  mutable std::mutex told_mutex_;
-  bool is_closed_ = false;
-  std::map<std::string, FoundService> told_;  // those that were told of
-  subscription::Listeners<const FoundService&> on_detected_;
-  subscription::Listeners<const FoundService&> on_changed_;
-  subscription::Listeners<const FoundService&> on_lost_;
+  mutable Mutex told_mutex_;
+  bool is_closed_ RR_GUARDED_BY(told_mutex_) = false;
+  std::map<std::string, FoundService> told_ RR_GUARDED_BY(told_mutex_);  // those that were told of
+  subscription::Listeners<const FoundService&> on_detected_ RR_GUARDED_BY(told_mutex_);
+  subscription::Listeners<const FoundService&> on_changed_ RR_GUARDED_BY(told_mutex_);
+  subscription::Listeners<const FoundService&> on_lost_ RR_GUARDED_BY(told_mutex_);
 };
 
 }  // namespace rr::discovery

@@ -73,7 +73,7 @@ void ServiceWatch::set_alarm() {
 }
 
 void ServiceWatch::heard(const KnownNode& node) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (has_ended_) return;
   Row& row = rows_[node.node.id];
   row.known = node;
@@ -97,7 +97,7 @@ void ServiceWatch::heard(const KnownNode& node) {
 void ServiceWatch::lost(const NodeId& node) {
   std::shared_ptr<Question> question;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto found = rows_.find(node);
     if (found == rows_.end()) return;
     question = found->second.question;
@@ -114,7 +114,7 @@ void ServiceWatch::end() {
   std::vector<std::shared_ptr<channel::Interruption>> lookers;
   Followers followers;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     has_ended_ = true;
     for (auto& [id, row] : rows_) {
       if (row.question) questions.push_back(row.question);
@@ -131,7 +131,7 @@ void ServiceWatch::end() {
 
 void ServiceWatch::add(std::shared_ptr<ServiceFollower> follower) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (has_ended_) throw Error(ErrorCode::invalid_operation, "the node is shut down");
     followers_.push_back(follower);
     plan_all(channel::Clock::now());
@@ -141,7 +141,7 @@ void ServiceWatch::add(std::shared_ptr<ServiceFollower> follower) {
 
 void ServiceWatch::remove(const ServiceFollower& follower) {
   std::shared_ptr<ServiceFollower> gone;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = std::find_if(followers_.begin(), followers_.end(),
                                   [&](const auto& other) { return other.get() == &follower; });
   if (found == followers_.end()) return;
@@ -150,13 +150,13 @@ void ServiceWatch::remove(const ServiceFollower& follower) {
 }
 
 void ServiceWatch::repeat(const std::shared_ptr<ServiceFollower>& follower) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const auto& [id, row] : rows_) {
     if (row.is_fetched) tell({follower}, row.known.node, row.services);
   }
 }
 
-// Under the lock, so that the order is that of what has happened.
+// The lock keeps the order that of what has happened.
 void ServiceWatch::tell(const Followers& followers, const DetectedNode& node,
                         const std::vector<FoundService>& services) {
   if (followers.empty()) return;
@@ -174,7 +174,7 @@ std::size_t ServiceWatch::asked_of_sender(const std::string& sender) const {
 void ServiceWatch::begin_due() {
   std::vector<std::pair<KnownNode, std::shared_ptr<Question>>> begun;
   try {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const channel::Time now = channel::Clock::now();
     for (auto& [id, row] : rows_) {
       if (has_ended_ || asking_ >= most_questions) break;
@@ -217,7 +217,7 @@ void ServiceWatch::answered(const KnownNode& known, const std::shared_ptr<Questi
                             std::optional<std::vector<FoundService>> services) {
   std::vector<std::shared_ptr<channel::Interruption>> lookers;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     --asking_;
     const channel::Time now = channel::Clock::now();
     const auto found = rows_.find(known.node.id);
@@ -258,7 +258,7 @@ bool ServiceWatch::is_busy() const {
 std::vector<FoundService> ServiceWatch::look(channel::Time deadline) {
   std::shared_ptr<channel::Interruption> looker;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (has_ended_) throw Error(ErrorCode::invalid_operation, "the node is shut down");
     const channel::Time now = channel::Clock::now();
     for (auto& [id, row] : rows_) {
@@ -273,16 +273,16 @@ std::vector<FoundService> ServiceWatch::look(channel::Time deadline) {
       lookers_.push_back(looker);
     }
   }
-  const auto forget = [&] { std::erase(lookers_, looker); };
+  const auto forget = [&]() RR_REQUIRES(mutex_) { std::erase(lookers_, looker); };
   try {
     if (looker) wait_for_either(*looker, deadline);
   } catch (...) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     forget();
     throw;
   }
   std::vector<FoundService> result;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   forget();
   if (has_ended_) throw Error(ErrorCode::operation_cancelled, "the node is shut down");
   for (const auto& [id, row] : rows_) {

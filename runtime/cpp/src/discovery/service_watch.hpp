@@ -7,12 +7,12 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "rr/discovery.hpp"
+#include "rr/mutex.hpp"
 #include "rr/service_filter.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/discovery/alarm.hpp"
@@ -75,29 +75,29 @@ class ServiceWatch : public std::enable_shared_from_this<ServiceWatch> {
   };
   using Followers = std::vector<std::shared_ptr<ServiceFollower>>;
 
-  // Under the lock
-  void plan(Row& row, channel::Time now);
-  void plan_all(channel::Time now);
-  void set_alarm();
-  [[nodiscard]] bool is_busy() const;
-  [[nodiscard]] std::size_t asked_of_sender(const std::string& sender) const;
+  void plan(Row& row, channel::Time now) RR_REQUIRES(mutex_);
+  void plan_all(channel::Time now) RR_REQUIRES(mutex_);
+  void set_alarm() RR_REQUIRES(mutex_);
+  [[nodiscard]] bool is_busy() const RR_REQUIRES(mutex_);
+  [[nodiscard]] std::size_t asked_of_sender(const std::string& sender) const RR_REQUIRES(mutex_);
 
   void begin_due();
   void ask(const KnownNode& known, const std::shared_ptr<Question>& question);
   void answered(const KnownNode& known, const std::shared_ptr<Question>& question,
                 std::optional<std::vector<FoundService>> services);
   void tell(const Followers& followers, const DetectedNode& node,
-            const std::vector<FoundService>& services);
+            const std::vector<FoundService>& services) RR_REQUIRES(mutex_);
 
   const subscription::Host host_;
   const std::shared_ptr<subscription::Notifier> notifier_;
-  std::mutex mutex_;
-  bool has_ended_ = false;
-  std::map<NodeId, Row> rows_;
-  Followers followers_;
-  std::vector<std::shared_ptr<channel::Interruption>> lookers_;  // each wakes one
-  std::shared_ptr<Alarm> alarm_;
-  std::size_t asking_ = 0;
+  Mutex mutex_;
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
+  std::map<NodeId, Row> rows_ RR_GUARDED_BY(mutex_);
+  Followers followers_ RR_GUARDED_BY(mutex_);
+  std::vector<std::shared_ptr<channel::Interruption>> lookers_
+      RR_GUARDED_BY(mutex_);  // each wakes one
+  std::shared_ptr<Alarm> alarm_ RR_GUARDED_BY(mutex_);
+  std::size_t asking_ RR_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace rr::discovery

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <mutex>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/reader.hpp"
 #include "rr/varvalue.hpp"
 #include "rr/writer.hpp"
@@ -20,7 +20,7 @@ class DefinitionStore final : public client::DefinitionReader,
   // All are read again when there is another one: types of one reading know only each other. What
   // was found before is found before, too.
   void read(const std::map<std::string, std::string>& texts) override {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (texts.size() <= known_) return;
     std::vector<std::string> list;
     for (const auto& [name, text] : texts) list.push_back(text);
@@ -32,15 +32,15 @@ class DefinitionStore final : public client::DefinitionReader,
   [[nodiscard]] const Holding& holding() const override { return holding_of<Value>; }
   [[nodiscard]] std::string_view name_of_values() const override { return "rr::dynamic::Value"; }
   [[nodiscard]] Definitions newest() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return all_.empty() ? Definitions() : Definitions(all_.back());
   }
 
  private:
-  mutable std::mutex mutex_;
+  mutable Mutex mutex_;
   TypeRegistry types_;
-  std::vector<std::shared_ptr<Tables>> all_;
-  std::size_t known_ = 0;
+  std::vector<std::shared_ptr<Tables>> all_ RR_GUARDED_BY(mutex_);
+  std::size_t known_ RR_GUARDED_BY(mutex_) = 0;
 };
 
 namespace {

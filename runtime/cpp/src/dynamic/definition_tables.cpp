@@ -96,7 +96,7 @@ const TypeNode& Tables::type(std::string_view text) const {
   std::optional<TypeText> parsed = parse_type_text(text);
   if (!parsed) no_type(text);
   const std::string whole = parsed->text();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (const auto known = nodes_.find(whole); known != nodes_.end()) return *known->second;
   const Base base = find_base(parsed->base);
   if (base.node == nullptr) no_type(text);

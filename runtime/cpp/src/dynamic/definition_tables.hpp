@@ -4,7 +4,6 @@
 #include <deque>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "compiler/model/model.hpp"
 #include "rr/definition.hpp"
 #include "rr/dynamic_definitions.hpp"
+#include "rr/mutex.hpp"
 #include "rr/registry.hpp"
 #include "runtime/cpp/src/dynamic/tables.hpp"
 
@@ -103,9 +103,11 @@ class Tables : public std::enable_shared_from_this<Tables> {
     const RecordTable* record = nullptr;
     ElementType number = ElementType::void_;
   };
-  Base find_base(std::string_view name) const;
-  const TypeNode& make_array(const Base& base, ArrayBounds bounds, const std::string& text) const;
-  const TypeNode& make_container(const TypeNode& item, Kind kind, const std::string& text) const;
+  Base find_base(std::string_view name) const RR_REQUIRES(mutex_);
+  const TypeNode& make_array(const Base& base, ArrayBounds bounds, const std::string& text) const
+      RR_REQUIRES(mutex_);
+  const TypeNode& make_container(const TypeNode& item, Kind kind, const std::string& text) const
+      RR_REQUIRES(mutex_);
 
   std::map<std::string, RecordTable, std::less<>> records_;
   std::map<std::string, EnumTable, std::less<>> enums_;
@@ -114,8 +116,9 @@ class Tables : public std::enable_shared_from_this<Tables> {
   std::map<std::string, Fields, std::less<>> constants_;  // by their scope
   TypeRegistry registry_;
   // Made when they are asked for; nodes never go.
-  mutable std::mutex mutex_;
-  mutable std::map<std::string, std::unique_ptr<const TypeNode>, std::less<>> nodes_;
+  mutable Mutex mutex_;
+  mutable std::map<std::string, std::unique_ptr<const TypeNode>, std::less<>> nodes_
+      RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::dynamic

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Memories of objects that services offer.
 #include <cstring>
-#include <mutex>
 #include <numeric>
 #include <span>
 #include <utility>
 
 #include "rr/error.hpp"
 #include "rr/memories.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/dynamic/members.hpp"
 #include "runtime/cpp/src/dynamic/memory_items.hpp"
 #include "runtime/cpp/src/dynamic/skeleton.hpp"
@@ -102,16 +102,16 @@ class ItemMemory final : public KeptMemory {
     items_.assign(bytes, bytes + storage.count() * item_size());
   }
   void rr_read(Numbers position, Numbers count, void* items) override {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     copy_memory_part(dims_, position, count, item_size(), items_.data(), items);
   }
   void rr_write(Numbers position, Numbers count, const void* items) override {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     copy_into_memory(dims_, position, count, item_size(), items, items_.data());
   }
   [[nodiscard]] std::vector<std::uint64_t> rr_dims() const override { return dims_; }
   [[nodiscard]] Value content() const override {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return array_of(node_of(member_), dims_, items_.data());
   }
 
@@ -120,8 +120,8 @@ class ItemMemory final : public KeptMemory {
 
   const MemberTable& member_;
   std::vector<std::uint64_t> dims_;
-  mutable std::mutex mutex_;
-  std::vector<std::byte> items_;
+  mutable Mutex mutex_;
+  std::vector<std::byte> items_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace

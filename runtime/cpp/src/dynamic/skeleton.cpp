@@ -127,12 +127,12 @@ DynamicSkeleton::DynamicSkeleton(std::shared_ptr<const Tables> tables, const Obj
       object_functions_(std::make_shared<const ObjectFunctions>()) {}
 
 std::shared_ptr<const MemberFunctions> DynamicSkeleton::functions(const MemberTable& member) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return functions_[place_of(member)];
 }
 
 std::shared_ptr<const ObjectFunctions> DynamicSkeleton::functions() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return object_functions_;
 }
 

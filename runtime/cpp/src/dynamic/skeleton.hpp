@@ -4,12 +4,12 @@
 #include <chrono>
 #include <cstddef>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "rr/dynamic_service.hpp"
+#include "rr/mutex.hpp"
 #include "rr/skeleton.hpp"
 #include "rr/stored.hpp"
 #include "runtime/cpp/src/dynamic/definition_tables.hpp"
@@ -73,7 +73,7 @@ class DynamicSkeleton final : public Skeleton {
   void change(const MemberTable& member, const Change& change) {
     const auto changed = std::make_shared<MemberFunctions>();
     std::shared_ptr<const MemberFunctions> place = changed;  // what goes, goes when the lock has
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     auto& functions = functions_[place_of(member)];
     *changed = *functions;
     change(*changed);
@@ -84,7 +84,7 @@ class DynamicSkeleton final : public Skeleton {
   void change(const Change& change) {
     const auto changed = std::make_shared<ObjectFunctions>();
     std::shared_ptr<const ObjectFunctions> place = changed;
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     *changed = *object_functions_;
     change(*changed);
     object_functions_.swap(place);
@@ -116,9 +116,10 @@ class DynamicSkeleton final : public Skeleton {
 
   const std::shared_ptr<const Tables> tables_;
   const ObjectTable& table_;
-  mutable std::mutex mutex_;
-  std::vector<std::shared_ptr<const MemberFunctions>> functions_;  ///< as the members
-  std::shared_ptr<const ObjectFunctions> object_functions_;
+  mutable Mutex mutex_;
+  std::vector<std::shared_ptr<const MemberFunctions>> functions_
+      RR_GUARDED_BY(mutex_);  ///< as the members
+  std::shared_ptr<const ObjectFunctions> object_functions_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::dynamic

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/printable.hpp"
 #include "rr/tap.hpp"
 #include "rr/url.hpp"
@@ -77,7 +78,7 @@ class Core::Rounds final : public channel::Timer, public std::enable_shared_from
 
   void add(std::weak_ptr<Attended> endpoint) {
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       attended_.push_back(std::move(endpoint));
       if (attended_.size() != 1) return;
     }
@@ -88,7 +89,7 @@ class Core::Rounds final : public channel::Timer, public std::enable_shared_from
   void on_timer() override {
     std::vector<std::shared_ptr<Attended>> alive;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       std::erase_if(attended_, [&](const std::weak_ptr<Attended>& endpoint) {
         alive.push_back(endpoint.lock());
         return alive.back() == nullptr;
@@ -101,7 +102,7 @@ class Core::Rounds final : public channel::Timer, public std::enable_shared_from
       schedule();
       return;
     }
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!attended_.empty()) schedule();
   }
 
@@ -109,8 +110,8 @@ class Core::Rounds final : public channel::Timer, public std::enable_shared_from
 
   const std::shared_ptr<channel::Reactor> reactor_;
   const channel::Milliseconds period_;
-  std::mutex mutex_;
-  std::vector<std::weak_ptr<Attended>> attended_;
+  Mutex mutex_;
+  std::vector<std::weak_ptr<Attended>> attended_ RR_GUARDED_BY(mutex_);
 };
 
 Core::Core(NodeOptions options)
@@ -161,7 +162,7 @@ rr::Timer Core::start_timer(std::chrono::nanoseconds delay, std::chrono::nanosec
 
 void Core::add_definition(const Definition& definition) {
   tell_tap(definition);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (types_->find_definition(definition.name) == &definition) return;
   auto types = std::make_shared<TypeRegistry>(*types_);
   types->add(definition);
@@ -171,7 +172,7 @@ void Core::add_definition(const Definition& definition) {
 void Core::keep_definition(std::shared_ptr<const Definition> definition) {
   const Definition& kept = *definition;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     kept_definitions_.insert(std::move(definition));
   }
   add_definition(kept);
@@ -184,13 +185,13 @@ void Core::tell_tap(const Definition& definition) const {
 }
 
 std::shared_ptr<const TypeRegistry> Core::types() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return types_;
 }
 
 std::uint32_t Core::new_endpoint() {
   std::random_device random;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   while (true) {
     const std::uint32_t number = random();
     if (number != 0 && endpoints_.insert(number).second) return number;
@@ -198,12 +199,12 @@ std::uint32_t Core::new_endpoint() {
 }
 
 void Core::release_endpoint(std::uint32_t number) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   endpoints_.erase(number);
 }
 
 channel::Channel& Core::channel(const std::string& scheme) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = channels_.find(scheme);
   if (found == channels_.end()) {
     const std::string component = channel::missing_component(scheme);
@@ -216,7 +217,7 @@ channel::Channel& Core::channel(const std::string& scheme) {
 }
 
 void Core::add_channel(const std::string& scheme, std::shared_ptr<channel::Channel> channel) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   channels_[scheme] = std::move(channel);
 }
 

@@ -6,7 +6,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string>
 #include <string_view>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "rr/definition.hpp"
+#include "rr/mutex.hpp"
 #include "rr/options.hpp"
 #include "rr/registry.hpp"
 #include "rr/timer.hpp"
@@ -95,11 +95,12 @@ class Core : public NodeContext, public std::enable_shared_from_this<Core> {
   const channel::Pools pools_;
   std::shared_ptr<const channel::Tls> tls_;
   std::shared_ptr<channel::WebSockets> web_sockets_;
-  mutable std::mutex mutex_;
-  std::set<std::shared_ptr<const Definition>> kept_definitions_;  // for types_
-  std::shared_ptr<const TypeRegistry> types_;
-  std::unordered_set<std::uint32_t> endpoints_;
-  std::map<std::string, std::shared_ptr<channel::Channel>> channels_;
+  mutable Mutex mutex_;
+  std::set<std::shared_ptr<const Definition>> kept_definitions_
+      RR_GUARDED_BY(mutex_);  // for types_
+  std::shared_ptr<const TypeRegistry> types_ RR_GUARDED_BY(mutex_);
+  std::unordered_set<std::uint32_t> endpoints_ RR_GUARDED_BY(mutex_);
+  std::map<std::string, std::shared_ptr<channel::Channel>> channels_ RR_GUARDED_BY(mutex_);
   std::shared_ptr<Rounds> rounds_;
 };
 

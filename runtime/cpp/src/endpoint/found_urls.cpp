@@ -23,7 +23,7 @@ void FoundUrls::add(const std::vector<std::string>& urls) {
     } catch (const Error&) {
       continue;  // nobody can connect there
     }
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto [item, is_new] = known_.insert(std::move(key));
     if (!is_new) continue;
     order_.push_back(&*item);
@@ -35,7 +35,7 @@ void FoundUrls::add(const std::vector<std::string>& urls) {
 
 bool FoundUrls::contains(const Url& url) const {
   const std::string key = key_of(url);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return known_.contains(key);
 }
 

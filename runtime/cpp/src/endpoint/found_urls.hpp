@@ -3,12 +3,12 @@
 
 #include <cstddef>
 #include <deque>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <unordered_set>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/url.hpp"
 
 namespace rr::endpoint {
@@ -25,9 +25,9 @@ class FoundUrls {
   static constexpr std::size_t capacity = 65'536;
 
  private:
-  mutable std::mutex mutex_;
-  std::unordered_set<std::string> known_;
-  std::deque<const std::string*> order_;  // oldest first
+  mutable Mutex mutex_;
+  std::unordered_set<std::string> known_ RR_GUARDED_BY(mutex_);
+  std::deque<const std::string*> order_ RR_GUARDED_BY(mutex_);  // oldest first
 };
 
 }  // namespace rr::endpoint

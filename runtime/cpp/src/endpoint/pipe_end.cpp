@@ -30,21 +30,22 @@ std::uint32_t PipeEnd::State::send_packet(const Write& write_value) {
   }
   const bool asks = asks_.load(std::memory_order_relaxed);
   Writer& writer = channel::thread_writer();
-  const std::lock_guard lock(sending_);
-  if (!side_) throw_closed();
-  writer.reset(side_->connection().version());
+  const MutexLock lock(sending_);
+  endpoint::PipeSide* const side = side_while_sending();
+  if (side == nullptr) throw_closed();
+  writer.reset(side->connection().version());
   endpoint::write_packet(writer, index_text_, next_number_, asks, [&] { write_value(writer); });
   if (writer.failed()) throw endpoint::latched(writer);
   const std::string_view metadata =
       identity.is_unreliable ? endpoint::unreliable_metadata : std::string_view();
   if (asks) asked_.fetch_add(1, std::memory_order_relaxed);
   try {
-    side_->stream(writer,
-                  {.type = EntryType::pipe_packet,
-                   .service_path = identity.path,
-                   .member = identity.member->name,
-                   .metadata = metadata},
-                  metadata);
+    side->stream(writer,
+                 {.type = EntryType::pipe_packet,
+                  .service_path = identity.path,
+                  .member = identity.member->name,
+                  .metadata = metadata},
+                 metadata);
   } catch (...) {
     if (asks) asked_.fetch_sub(1, std::memory_order_relaxed);
     throw;
@@ -70,7 +71,7 @@ void PipeEnd::State::take_acknowledgement(std::uint32_t number) {
   if (acknowledged_.load() < asked_.load()) acknowledged_.fetch_add(1);
   Function<void(std::uint32_t)> function;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     function = acknowledged_function_;
   }
   if (function) call([&] { function(number); });
@@ -83,7 +84,7 @@ std::size_t PipeEnd::State::unacknowledged() const {
 }
 
 void PipeEnd::State::on_acknowledged(Function<void(std::uint32_t)> function) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::swap(acknowledged_function_, function);  // what was there before ends behind the lock
 }
 

@@ -104,7 +104,7 @@ PipeEnd::State::State(std::shared_ptr<const endpoint::Core> core,
   bool has_room = true;
   bool is_awaited = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_closed_) return true;
     is_awaited = waiting_ != 0;
     Packet packet{std::move(value), size, packet_cost + size + memory};
@@ -130,7 +130,7 @@ PipeEnd::State::State(std::shared_ptr<const endpoint::Core> core,
   return has_room;
 }
 
-// Under mutex_. Numbers that have passed already come from a sender that counts wrong.
+// Numbers that have passed already come from a sender that counts wrong.
 bool PipeEnd::State::hold_back(std::uint32_t number, Packet packet) {
   if (static_cast<std::int32_t>(number - expected_) < 0) return true;
   if (held_.size() >= held_packets || held_bytes_ + packet.size > held_bytes) return false;
@@ -141,7 +141,6 @@ bool PipeEnd::State::hold_back(std::uint32_t number, Packet packet) {
   return true;
 }
 
-// Under mutex_.
 [[gnu::hot]] bool PipeEnd::State::push(Packet packet) {
   while (true) {
     const bool is_full =
@@ -157,7 +156,6 @@ bool PipeEnd::State::hold_back(std::uint32_t number, Packet packet) {
   return true;
 }
 
-// Under mutex_.
 [[gnu::hot]] PipeEnd::State::Packet PipeEnd::State::pop() {
   Packet packet = std::move(queue_.front());
   queue_.pop_front();
@@ -166,7 +164,7 @@ bool PipeEnd::State::hold_back(std::uint32_t number, Packet packet) {
   return packet;
 }
 
-// Under mutex_. False when the other side makes this one hold too much.
+// False when the other side makes this one hold too much.
 [[gnu::hot]] bool PipeEnd::State::draw(std::size_t cost) {
   if (cost_ + cost > charge_.bytes()) {
     const std::size_t more = cost_ + cost - charge_.bytes();
@@ -176,55 +174,70 @@ bool PipeEnd::State::hold_back(std::uint32_t number, Packet packet) {
   return true;
 }
 
-// Under mutex_. A little stays drawn, for the packet that comes next.
+// A little stays drawn, for the packet that comes next.
 [[gnu::hot]] void PipeEnd::State::give_back(std::size_t cost) {
   cost_ -= cost;
   if (charge_.bytes() > cost_ + 2 * quantum) charge_.reduce(charge_.bytes() - cost_ - quantum);
 }
 
 [[gnu::hot]] void PipeEnd::State::deliver() {
-  std::unique_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   if (std::exchange(is_delivering_, true)) return;
-  while (deliver_one(lock)) {
+  while (deliver_one()) {
   }
   is_delivering_ = false;
 }
 
-// Under the lock, which is given up meanwhile. False when there is nothing to be done.
-[[gnu::hot]] bool PipeEnd::State::deliver_one(std::unique_lock<std::mutex>& lock) {
+// The lock is given up meanwhile. False when there is nothing to be done. What the functions below
+// get is theirs, so that its last owner is never one with the lock.
+[[gnu::hot]] bool PipeEnd::State::deliver_one() {
   if (receiver_ && !receiver_->is_connected()) {
-    const auto ended = std::exchange(receiver_, nullptr);
-    lock.unlock();
+    auto ended = std::exchange(receiver_, nullptr);
+    const MutexUnlock unlock(mutex_);
+    ended.reset();
   } else if (!waitings_.empty() && (!queue_.empty() || is_closed_)) {
-    const std::shared_ptr<Waiting> waiting = std::move(waitings_.front());
+    std::shared_ptr<Waiting> waiting = std::move(waitings_.front());
     waitings_.pop_front();
     std::shared_ptr<void> value = queue_.empty() ? nullptr : pop().value;
-    lock.unlock();
-    waiting->leave();
-    call([&] {
-      Completion& completion = waiting->completion();
-      if (value) {
-        *static_cast<std::shared_ptr<void>*>(completion.result()) = std::move(value);
-        completion.succeed();
-      } else {
-        completion.fail(std::make_exception_ptr(closed_error()));
-      }
-    });
+    const MutexUnlock unlock(mutex_);
+    complete(std::move(waiting), std::move(value));
   } else if (receiver_ && !queue_.empty()) {
-    const auto receiver = receiver_;
+    auto receiver = receiver_;
     std::shared_ptr<void> value = pop().value;
-    lock.unlock();
-    call([&] { receiver->receive(std::move(value)); });
+    const MutexUnlock unlock(mutex_);
+    hand_to(std::move(receiver), std::move(value));
   } else if (is_closed_ && (receiver_ || closed_function_)) {
-    const auto ended = std::exchange(receiver_, nullptr);
-    const auto closed = std::exchange(closed_function_, nullptr);
-    lock.unlock();
-    if (closed) call(closed);
+    auto ended = std::exchange(receiver_, nullptr);
+    auto closed = std::exchange(closed_function_, nullptr);
+    const MutexUnlock unlock(mutex_);
+    tell_closed(std::move(ended), std::move(closed));
   } else {
     return false;
   }
-  lock.lock();
   return true;
+}
+
+void PipeEnd::State::complete(std::shared_ptr<Waiting> waiting, std::shared_ptr<void> value) const {
+  waiting->leave();
+  call([&] {
+    Completion& completion = waiting->completion();
+    if (value) {
+      *static_cast<std::shared_ptr<void>*>(completion.result()) = std::move(value);
+      completion.succeed();
+    } else {
+      completion.fail(std::make_exception_ptr(closed_error()));
+    }
+  });
+}
+
+[[gnu::hot]] void PipeEnd::State::hand_to(std::shared_ptr<Receiver> receiver,
+                                          std::shared_ptr<void> value) const {
+  call([&] { receiver->receive(std::move(value)); });
+}
+
+void PipeEnd::State::tell_closed(std::shared_ptr<Receiver> /*receiver*/,
+                                 Function<void()> function) const {
+  if (function) call(function);
 }
 
 void PipeEnd::State::deliver_soon() {
@@ -232,18 +245,18 @@ void PipeEnd::State::deliver_soon() {
 }
 
 std::shared_ptr<void> PipeEnd::State::take() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return queue_.empty() ? nullptr : pop().value;
 }
 
 std::shared_ptr<const void> PipeEnd::State::peek() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return queue_.empty() ? nullptr : queue_.front().value;
 }
 
 bool PipeEnd::State::wait(std::chrono::milliseconds limit) {
   const channel::Time deadline = channel::after(channel::Clock::now(), limit);
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   if (queue_.empty() && !is_closed_) {
     const auto side = side_;
     lock.unlock();
@@ -253,24 +266,24 @@ bool PipeEnd::State::wait(std::chrono::milliseconds limit) {
   }
   ++waiting_;
   while (queue_.empty() && !is_closed_ && channel::Clock::now() < deadline) {
-    channel::wait_until(arrived_, lock, deadline);
+    channel::wait_until(arrived_, mutex_, deadline);
   }
   --waiting_;
   return !queue_.empty();
 }
 
 std::size_t PipeEnd::State::available() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return queue_.size();
 }
 
 std::size_t PipeEnd::State::lost_count() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return lost_;
 }
 
 void PipeEnd::State::set_queue_limit(std::size_t packets, WhenFull when_full, std::size_t bytes) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   limit_ = packets;
   byte_limit_ = bytes;
   when_full_ = when_full;
@@ -282,7 +295,7 @@ Subscription PipeEnd::State::on_received(Function<void(std::shared_ptr<void>)> f
   std::shared_ptr<Receiver> before = receiver;
   std::shared_ptr<endpoint::PipeSide> side;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     receiver_.swap(before);
     has_more = !queue_.empty();
     side = side_;
@@ -304,7 +317,7 @@ void PipeEnd::State::start_receive(std::unique_ptr<Completion> completion) {
   bool has_ended = false;
   std::shared_ptr<endpoint::PipeSide> side;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     has_ended = waiting->ended_by != ErrorCode::none;
     if (!has_ended) waitings_.push_back(waiting);
     is_due = !has_ended && (!queue_.empty() || is_closed_);
@@ -318,7 +331,7 @@ void PipeEnd::State::start_receive(std::unique_ptr<Completion> completion) {
 void PipeEnd::State::end_receive(Waiting& waiting, ErrorCode code) {
   std::shared_ptr<Waiting> found;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (waiting.ended_by != ErrorCode::none) return;
     waiting.ended_by = code;
     const auto place =
@@ -345,7 +358,7 @@ void PipeEnd::State::fail_receive(const std::shared_ptr<Waiting>& waiting) {
 
 void PipeEnd::State::on_closed(Function<void()> function) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     std::swap(closed_function_, function);  // the old one goes without the lock
     if (!is_closed_) return;
   }
@@ -356,7 +369,8 @@ bool PipeEnd::State::finish() {
   std::shared_ptr<endpoint::PipeSide> side;
   std::map<std::uint32_t, Packet> held;
   {
-    const std::scoped_lock lock(sending_, mutex_);
+    const MutexLock sending(sending_);
+    const MutexLock lock(mutex_);
     if (is_closed_) return false;
     is_closed_ = true;
     side = std::move(side_);
@@ -370,7 +384,7 @@ bool PipeEnd::State::finish() {
 }
 
 [[gnu::hot]] std::shared_ptr<endpoint::PipeSide> PipeEnd::State::side() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return side_;
 }
 

@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -11,11 +10,11 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "rr/mutex.hpp"
 #include "rr/pipes.hpp"
 #include "rr/writer.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
@@ -118,12 +117,15 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
 
   template <class Write>
   std::uint32_t send_packet(const Write& write_value);
-  [[nodiscard]] bool hold_back(std::uint32_t number, Packet packet);
-  [[nodiscard]] bool push(Packet packet);
-  Packet pop();
-  [[nodiscard]] bool draw(std::size_t cost);
-  void give_back(std::size_t cost);
-  bool deliver_one(std::unique_lock<std::mutex>& lock);
+  [[nodiscard]] bool hold_back(std::uint32_t number, Packet packet) RR_REQUIRES(mutex_);
+  [[nodiscard]] bool push(Packet packet) RR_REQUIRES(mutex_);
+  Packet pop() RR_REQUIRES(mutex_);
+  [[nodiscard]] bool draw(std::size_t cost) RR_REQUIRES(mutex_);
+  void give_back(std::size_t cost) RR_REQUIRES(mutex_);
+  bool deliver_one() RR_REQUIRES(mutex_);
+  void complete(std::shared_ptr<Waiting> waiting, std::shared_ptr<void> value) const;
+  void hand_to(std::shared_ptr<Receiver> receiver, std::shared_ptr<void> value) const;
+  void tell_closed(std::shared_ptr<Receiver> receiver, Function<void()> function) const;
   void end_receive(Waiting& waiting, ErrorCode code);
   void fail_receive(const std::shared_ptr<Waiting>& waiting);
   /// Runs what is the program's; what it throws is logged.
@@ -132,37 +134,46 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
     endpoint::call_user_code(*core_, "a function of the pipe", identity.member->name, run);
   }
 
+  // It is written with both locks, so either is enough to read it.
+  [[nodiscard]] endpoint::PipeSide* side_while_sending() const
+      RR_REQUIRES(sending_) RR_NO_THREAD_SAFETY_ANALYSIS {
+    return side_.get();
+  }
+
   const std::shared_ptr<const endpoint::Core> core_;
   const std::string index_text_;
   const std::shared_ptr<channel::ThreadShare> threads_;  // of the session
   std::atomic<bool> is_closed_{false};                   // written under both locks
 
-  std::mutex sending_;                        // before mutex_
-  std::shared_ptr<endpoint::PipeSide> side_;  // null when closed; written under both locks
-  std::uint32_t next_number_ = 1;
+  Mutex sending_ RR_ACQUIRED_BEFORE(mutex_);
+  std::shared_ptr<endpoint::PipeSide> side_
+      RR_GUARDED_BY(mutex_);  // null when closed; see side_while_sending()
+  std::uint32_t next_number_ RR_GUARDED_BY(sending_) = 1;
   std::atomic<bool> asks_{false};
   std::atomic<std::uint64_t> asked_{0};
   std::atomic<std::uint64_t> acknowledged_{0};
 
-  mutable std::mutex mutex_;
-  mutable std::condition_variable arrived_;
-  std::size_t waiting_ = 0;  // threads in wait()
-  std::uint32_t expected_ = 1;
-  std::map<std::uint32_t, Packet> held_;
-  std::size_t held_bytes_ = 0;
-  std::deque<Packet> queue_;
-  std::size_t queue_bytes_ = 0;
-  channel::Charge charge_;  // for packets that are held back or in the queue, and a little more
-  std::size_t cost_ = 0;    // of those packets
-  std::size_t limit_;
-  std::size_t byte_limit_;
-  WhenFull when_full_ = WhenFull::close;
-  std::size_t lost_ = 0;
-  bool is_delivering_ = false;
-  std::shared_ptr<Receiver> receiver_;
-  std::deque<std::shared_ptr<Waiting>> waitings_;  // for packets, in their order
-  Function<void()> closed_function_;
-  Function<void(std::uint32_t)> acknowledged_function_;
+  mutable Mutex mutex_;
+  mutable Condition arrived_;
+  std::size_t waiting_ RR_GUARDED_BY(mutex_) = 0;  // threads in wait()
+  std::uint32_t expected_ RR_GUARDED_BY(mutex_) = 1;
+  std::map<std::uint32_t, Packet> held_ RR_GUARDED_BY(mutex_);
+  std::size_t held_bytes_ RR_GUARDED_BY(mutex_) = 0;
+  std::deque<Packet> queue_ RR_GUARDED_BY(mutex_);
+  std::size_t queue_bytes_ RR_GUARDED_BY(mutex_) = 0;
+  channel::Charge charge_
+      RR_GUARDED_BY(mutex_);  // for packets that are held back or in the queue, and a little more
+  std::size_t cost_ RR_GUARDED_BY(mutex_) = 0;  // of those packets
+  std::size_t limit_ RR_GUARDED_BY(mutex_);
+  std::size_t byte_limit_ RR_GUARDED_BY(mutex_);
+  WhenFull when_full_ RR_GUARDED_BY(mutex_) = WhenFull::close;
+  std::size_t lost_ RR_GUARDED_BY(mutex_) = 0;
+  bool is_delivering_ RR_GUARDED_BY(mutex_) = false;
+  std::shared_ptr<Receiver> receiver_ RR_GUARDED_BY(mutex_);
+  std::deque<std::shared_ptr<Waiting>> waitings_
+      RR_GUARDED_BY(mutex_);  // for packets, in their order
+  Function<void()> closed_function_ RR_GUARDED_BY(mutex_);
+  Function<void(std::uint32_t)> acknowledged_function_ RR_GUARDED_BY(mutex_);
 };
 
 /// A packet in the form of each message format.

@@ -20,19 +20,19 @@ namespace rr {
 
 // True when the function is to be dropped.
 bool Subscription::Handler::leave_disconnected() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   ended_.notify_all();
   return !std::exchange(is_dropped_, true);
 }
 
 void Subscription::Handler::disconnect() {
   {
-    std::unique_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     state_.fetch_or(disconnected);
     const auto self = std::this_thread::get_id();
     while ((state_.load() & running) != 0) {
       if (runner_.load(std::memory_order_relaxed) == self) return;  // it drops when it leaves
-      ended_.wait(lock);
+      ended_.wait(mutex_);
     }
     if (std::exchange(is_dropped_, true)) return;
   }

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <memory>
-#include <mutex>
 #include <thread>
 
+#include "rr/mutex.hpp"
 #include "rr/stub.hpp"
 
 namespace rr {
@@ -50,9 +49,9 @@ struct Subscription::Handler {
   // Whoever runs the function needs the lock only when it has been disconnected meanwhile.
   std::atomic<unsigned> state_{0};
   std::atomic<std::thread::id> runner_{};
-  std::mutex mutex_;
-  std::condition_variable ended_;
-  bool is_dropped_ = false;
+  Mutex mutex_;
+  Condition ended_;
+  bool is_dropped_ RR_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace rr

@@ -19,12 +19,17 @@ Timer::State::State(std::shared_ptr<channel::Reactor> reactor, Terms terms)
       due_(channel::Clock::now() +
            std::clamp<nanoseconds>(terms.delay, nanoseconds(0), channel::longest_span)) {}
 
-void Timer::State::start() { reactor_->schedule(*this, weak_from_this(), due_); }
+void Timer::State::start() {
+  const MutexLock lock(mutex_);
+  schedule();
+}
+
+void Timer::State::schedule() { reactor_->schedule(*this, weak_from_this(), due_); }
 
 void Timer::State::cancel() {
   std::function<void()> dropped;  // what it owns goes when the lock has
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     has_ended_ = true;
     if (calling_ == std::this_thread::get_id()) return;  // plan_next() lets go of the function
     if (calling_ == std::thread::id()) dropped.swap(work_);
@@ -32,12 +37,12 @@ void Timer::State::cancel() {
   reactor_->cancel(*this);
   if (dropped) return;
   channel::Reactor::about_to_wait();
-  std::unique_lock lock(mutex_);
-  ended_.wait(lock, [&] { return calling_ == std::thread::id(); });
+  const MutexLock lock(mutex_);
+  while (calling_ != std::thread::id()) ended_.wait(mutex_);
 }
 
 bool Timer::State::is_running() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return !has_ended_;
 }
 
@@ -46,14 +51,16 @@ void Timer::State::on_timer() {
 }
 
 void Timer::State::call() {
+  const std::function<void()>* work = nullptr;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (has_ended_) return;
     if (period_ == nanoseconds(0)) has_ended_ = true;
     calling_ = std::this_thread::get_id();
+    work = &work_;  // which nobody changes until plan_next()
   }
   try {
-    work_();
+    (*work)();
   } catch (...) {
     report_("a timer's function has thrown: " + endpoint::text_of_current_exception());
   }
@@ -63,14 +70,14 @@ void Timer::State::call() {
 void Timer::State::plan_next() {
   std::function<void()> dropped;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     calling_ = {};
     if (has_ended_) {
       dropped.swap(work_);
     } else {
       const auto late = std::max<nanoseconds>(channel::Clock::now() - due_, nanoseconds(0));
       due_ += (late / period_ + 1) * period_;
-      start();
+      schedule();
     }
   }
   ended_.notify_all();

@@ -2,13 +2,12 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string_view>
 #include <thread>
 
+#include "rr/mutex.hpp"
 #include "rr/timer.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 
@@ -35,16 +34,17 @@ class Timer::State final : public channel::Timer, public std::enable_shared_from
   void on_timer() override;
   void call();
   void plan_next();
+  void schedule() RR_REQUIRES(mutex_);
 
   const std::shared_ptr<channel::Reactor> reactor_;
   const std::chrono::nanoseconds period_;
   const std::function<void(std::string_view)> report_;
-  mutable std::mutex mutex_;
-  std::condition_variable ended_;
-  std::function<void()> work_;  // until it is called for the last time
-  channel::Time due_;
-  bool has_ended_ = false;
-  std::thread::id calling_;  // the thread that is in `work_`; none
+  mutable Mutex mutex_;
+  Condition ended_;
+  std::function<void()> work_ RR_GUARDED_BY(mutex_);  // until it is called for the last time
+  channel::Time due_ RR_GUARDED_BY(mutex_);
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
+  std::thread::id calling_ RR_GUARDED_BY(mutex_);  // the thread that is in `work_`; none
 };
 
 }  // namespace rr

@@ -50,7 +50,7 @@ void WireEnd::State::send(const void* value) {
   endpoint::write_wire_value(writer, *member_.type, value);
   endpoint::SenderTime time = 0;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     time = draw_time();
     if (member_.holding != nullptr) {
       if (!own_sent_) own_sent_ = member_.holding->make();
@@ -64,7 +64,7 @@ void WireEnd::State::send(const void* value) {
 }
 
 void WireEnd::State::keep_sent(std::shared_ptr<const void> value, endpoint::SenderTime time) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (time <= sent_time_) return;
   common_sent_.swap(value);
   is_own_sent_ = false;
@@ -72,7 +72,7 @@ void WireEnd::State::keep_sent(std::shared_ptr<const void> value, endpoint::Send
 }
 
 std::shared_ptr<const void> WireEnd::State::sent(TimeSpec& time) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (sent_time_ == 0) return nullptr;
   time = endpoint::as_time_spec(sent_time_);
   if (!is_own_sent_) return common_sent_;
@@ -82,7 +82,7 @@ std::shared_ptr<const void> WireEnd::State::sent(TimeSpec& time) const {
 }
 
 void WireEnd::State::open() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (phase_ == Phase::connecting) phase_ = Phase::open;
 }
 
@@ -110,7 +110,7 @@ void WireEnd::State::take(const Message& message, const Entry& entry, const Memo
   std::shared_ptr<const void> before;
   bool must_start = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_ending()) return;
     if (sequence_ != 0 && !endpoint::is_later(time, in_.time())) return;
     before = in_.put(value, time);
@@ -127,7 +127,7 @@ void WireEnd::State::refuse(const std::exception& why, channel::DeferredCallback
   const Error error(ErrorCode::data_type_mismatch,
                     "`" + path_ + "." + std::string(member_.name) +
                         "` has values of another type: " + why.what());
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   refusal_ = error;
   if (!on_refused_ || is_ending()) return;
   deferred.emplace_back([function = on_refused_, error] { (*function)(error); });
@@ -137,7 +137,7 @@ void WireEnd::State::on_refused(std::function<void(const Error&)> function) {
   auto shared = std::make_shared<const std::function<void(const Error&)>>(std::move(function));
   std::optional<Error> refusal;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_ending()) return;
     on_refused_ = shared;
     refusal = refusal_;
@@ -146,29 +146,29 @@ void WireEnd::State::on_refused(std::function<void(const Error&)> function) {
 }
 
 std::shared_ptr<const void> WireEnd::State::received(TimeSpec& time) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return in_.get(time);
 }
 
 bool WireEnd::State::wait_received(std::chrono::milliseconds limit) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (in_.is_fresh()) return true;
   }
   const channel::Time deadline = channel::after(channel::Clock::now(), limit);
   connection().expect();
   channel::Reactor::about_to_wait();
-  std::unique_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   ++waiting_;
   while (!in_.is_fresh() && !is_ending() && channel::Clock::now() < deadline) {
-    channel::wait_until(arrived_, lock, deadline);
+    channel::wait_until(arrived_, mutex_, deadline);
   }
   --waiting_;
   return in_.is_fresh();
 }
 
 void WireEnd::State::set_lifespan(std::chrono::milliseconds lifespan) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   in_.set_lifespan(lifespan);
 }
 

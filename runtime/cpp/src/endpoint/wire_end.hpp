@@ -3,17 +3,16 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/reader.hpp"
 #include "rr/registry.hpp"
 #include "rr/wires.hpp"
@@ -104,9 +103,9 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
  private:
   class Listener;
 
-  // Telling the program (wire_end_calls.cpp). The first two under the lock.
-  [[nodiscard]] bool must_start_telling();
-  [[nodiscard]] bool has_to_tell() const;
+  // Telling the program (wire_end_calls.cpp)
+  [[nodiscard]] bool must_start_telling() RR_REQUIRES(mutex_);
+  [[nodiscard]] bool has_to_tell() const RR_REQUIRES(mutex_);
   void start_telling();
   void tell_all();
   bool next_turn(std::shared_ptr<const void>& value, TimeSpec& time, bool& tells_side,
@@ -123,25 +122,26 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   const Member& member_;
   std::atomic<Phase> phase_{Phase::connecting};  // written under mutex_
 
-  mutable std::mutex mutex_;
-  mutable std::condition_variable arrived_;
-  endpoint::NewestValue in_;
-  channel::Charge charge_;                   // for that value, if it is a large one of a client
-  std::uint64_t sequence_ = 0;               // counts values that were taken
-  unsigned waiting_ = 0;                     // threads in wait_received()
-  std::shared_ptr<void> own_sent_;           // copied into by send()
-  std::shared_ptr<const void> common_sent_;  // what was sent to others too
-  endpoint::SenderTime sent_time_ = 0;       // 0: nothing yet
-  bool is_own_sent_ = false;
+  mutable Mutex mutex_;
+  mutable Condition arrived_;
+  endpoint::NewestValue in_ RR_GUARDED_BY(mutex_);
+  channel::Charge charge_
+      RR_GUARDED_BY(mutex_);  // for that value, if it is a large one of a client
+  std::uint64_t sequence_ RR_GUARDED_BY(mutex_) = 0;               // counts values that were taken
+  unsigned waiting_ RR_GUARDED_BY(mutex_) = 0;                     // threads in wait_received()
+  std::shared_ptr<void> own_sent_ RR_GUARDED_BY(mutex_);           // copied into by send()
+  std::shared_ptr<const void> common_sent_ RR_GUARDED_BY(mutex_);  // what was sent to others too
+  endpoint::SenderTime sent_time_ RR_GUARDED_BY(mutex_) = 0;       // 0: nothing yet
+  bool is_own_sent_ RR_GUARDED_BY(mutex_) = false;
 
-  std::vector<std::shared_ptr<Listener>> listeners_;
-  std::vector<Function<void()>> on_closed_;
-  std::shared_ptr<const std::function<void(const Error&)>> on_refused_;
-  std::optional<Error> refusal_;
-  std::uint64_t told_side_ = 0;                  // the value that tell() was called for
-  bool is_telling_ = false;                      // or will be, by posted work
-  bool is_over_ = false;                         // all has been told
-  std::vector<std::shared_ptr<Listener>> turn_;  // with the telling thread
+  std::vector<std::shared_ptr<Listener>> listeners_ RR_GUARDED_BY(mutex_);
+  std::vector<Function<void()>> on_closed_ RR_GUARDED_BY(mutex_);
+  std::shared_ptr<const std::function<void(const Error&)>> on_refused_ RR_GUARDED_BY(mutex_);
+  std::optional<Error> refusal_ RR_GUARDED_BY(mutex_);
+  std::uint64_t told_side_ RR_GUARDED_BY(mutex_) = 0;  // the value that tell() was called for
+  bool is_telling_ RR_GUARDED_BY(mutex_) = false;      // or will be, by posted work
+  bool is_over_ RR_GUARDED_BY(mutex_) = false;         // all has been told
+  std::vector<std::shared_ptr<Listener>> turn_;        // with the telling thread
 };
 
 }  // namespace rr

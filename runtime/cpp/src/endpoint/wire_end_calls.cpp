@@ -36,7 +36,7 @@ Subscription WireEnd::State::on_received(Function<void(const void*, const TimeSp
   std::shared_ptr<Listener> listener;
   bool must_start = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     // One that has come already is the first.
     listener = std::make_shared<Listener>(std::move(function), in_.is_fresh() ? 0 : sequence_);
     if (is_ending()) return Subscription(std::move(listener));
@@ -51,7 +51,7 @@ Subscription WireEnd::State::on_received(Function<void(const void*, const TimeSp
 
 void WireEnd::State::on_closed(Function<void()> function) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!is_over_) {
       on_closed_.push_back(std::move(function));
       return;
@@ -62,7 +62,7 @@ void WireEnd::State::on_closed(Function<void()> function) {
 }
 
 bool WireEnd::State::begin_close() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (is_ending()) return false;
   phase_ = Phase::closing;
   arrived_.notify_all();
@@ -75,7 +75,7 @@ bool WireEnd::State::begin_close() {
 void WireEnd::State::finish(channel::DeferredCallbacks& /*deferred*/) {
   bool must_start = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (phase_ == Phase::closed) return;
     phase_ = Phase::closed;
     must_start = !std::exchange(is_telling_, true);
@@ -94,7 +94,8 @@ void WireEnd::State::finish_now() {
 bool WireEnd::State::has_to_tell() const {
   return (told_side_ != sequence_ && has_listener()) ||
          std::any_of(listeners_.begin(), listeners_.end(),
-                     [&](const auto& listener) { return listener->seen != sequence_; });
+                     [&](const auto& listener)
+                         RR_REQUIRES(mutex_) { return listener->seen != sequence_; });
 }
 
 bool WireEnd::State::must_start_telling() { return !is_telling_ && (is_telling_ = has_to_tell()); }
@@ -127,7 +128,7 @@ bool WireEnd::State::next_turn(std::shared_ptr<const void>& value, TimeSpec& tim
                                std::vector<std::shared_ptr<Listener>>& gone) {
   std::shared_ptr<const void> before;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     std::erase_if(listeners_, [&](const auto& listener) {
       if (!listener->is_connected()) gone.push_back(listener);
       return !listener->is_connected();

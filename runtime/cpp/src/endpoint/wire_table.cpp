@@ -8,14 +8,14 @@
 namespace rr::endpoint {
 
 WireTable::End WireTable::find(std::string_view path, std::string_view member) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (ends_.empty()) return nullptr;
   const auto found = ends_.find(Key{path, member});
   return found == ends_.end() ? nullptr : found->second;
 }
 
 WireTable::Added WireTable::add(const End& end) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (is_ended_) return Added::ended;
   return ends_.try_emplace(Key{end->path(), end->member().name}, end).second ? Added::yes
                                                                              : Added::exists;
@@ -23,7 +23,7 @@ WireTable::Added WireTable::add(const End& end) {
 
 void WireTable::remove(const WireEnd::State& end) {
   End removed;  // freed outside of the lock
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = ends_.find(Key{end.path(), end.member().name});
   if (found == ends_.end() || found->second.get() != &end) return;
   removed = std::move(found->second);
@@ -32,7 +32,7 @@ void WireTable::remove(const WireEnd::State& end) {
 
 std::vector<WireTable::End> WireTable::all() const {
   std::vector<End> found;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   found.reserve(ends_.size());
   for (const auto& item : ends_) found.push_back(item.second);
   return found;
@@ -40,7 +40,7 @@ std::vector<WireTable::End> WireTable::all() const {
 
 std::vector<WireTable::End> WireTable::take_below(std::string_view path, const Choice& is_taken) {
   std::vector<End> taken;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::erase_if(ends_, [&](const auto& item) {
     if (!is_at_or_below(item.first.path, path)) return false;
     if (is_taken && !is_taken(*item.second)) return false;
@@ -52,7 +52,7 @@ std::vector<WireTable::End> WireTable::take_below(std::string_view path, const C
 
 std::vector<WireTable::End> WireTable::take_all() {
   std::vector<End> taken;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   is_ended_ = true;
   for (const auto& item : ends_) taken.push_back(item.second);
   ends_.clear();

@@ -3,11 +3,11 @@
 
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/endpoint/wire_end.hpp"
 
 namespace rr::endpoint {
@@ -43,9 +43,9 @@ class WireTable {
     }
   };
 
-  mutable std::mutex mutex_;
-  bool is_ended_ = false;
-  std::unordered_map<Key, End, Hash> ends_;
+  mutable Mutex mutex_;
+  bool is_ended_ RR_GUARDED_BY(mutex_) = false;
+  std::unordered_map<Key, End, Hash> ends_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::endpoint

@@ -11,7 +11,7 @@
 namespace rr {
 
 void NodeState::keep(const std::shared_ptr<Session>& session) {
-  const std::lock_guard lock(mutex);
+  const MutexLock lock(mutex);
   if (is_shut_down) throw Error(ErrorCode::invalid_operation, "the node is shut down");
   remember(sessions, session);
 }
@@ -26,7 +26,7 @@ void NodeState::join_done() {
 
 void NodeState::run_aside(std::function<void()> work) {
   auto is_done = std::make_shared<std::atomic<bool>>(false);
-  const std::lock_guard lock(mutex);
+  const MutexLock lock(mutex);
   if (is_shut_down) throw Error(ErrorCode::invalid_operation, "the node is shut down");
   join_done();
   std::thread thread([this, work = std::move(work), is_done]() mutable {
@@ -45,7 +45,7 @@ subscription::Host NodeState::host() {
 
 bool NodeState::is_own_thread() const {
   if (served_aside == this || core->reactor().is_own_thread()) return true;
-  const std::lock_guard lock(making);
+  const RecursiveMutexLock lock(making);
   return services && services->is_own_thread();
 }
 
@@ -54,7 +54,7 @@ thread_local const NodeState* NodeState::served_aside = nullptr;
 void NodeState::end_part(std::unique_ptr<NodePart> NodeState::*slot) {
   NodePart* part = nullptr;
   {
-    const std::lock_guard lock(making);
+    const RecursiveMutexLock lock(making);
     have_parts_ended = true;
     part = (this->*slot).get();
   }
@@ -65,7 +65,7 @@ void NodeState::begin_end() {
   std::vector<std::weak_ptr<channel::Connection>> old_accepted;
   std::vector<std::weak_ptr<Session>> old_sessions;
   {
-    const std::lock_guard lock(mutex);
+    const MutexLock lock(mutex);
     if (std::exchange(is_shut_down, true)) return;
     old_accepted.swap(accepted);
     old_sessions.swap(sessions);
@@ -85,10 +85,10 @@ void NodeState::begin_end() {
 }
 
 void NodeState::finish_end() {
-  const std::lock_guard one_at_a_time(ending);
+  const MutexLock one_at_a_time(ending);
   std::vector<Worker> old_workers;
   {
-    const std::lock_guard lock(mutex);
+    const MutexLock lock(mutex);
     old_workers.swap(workers);
   }
   for (Worker& worker : old_workers) worker.thread.join();

@@ -50,7 +50,7 @@ class NodeServices final : public NodePart {
   [[nodiscard]] channel::AcceptHandler accept_handler(NodeState& node) const {
     return [&node, directory = directory_](std::shared_ptr<channel::Connection> connection) {
       {
-        const std::lock_guard lock(node.mutex);
+        const MutexLock lock(node.mutex);
         if (node.is_shut_down) {
           throw Error(ErrorCode::connection_error, "the node is shut down");
         }

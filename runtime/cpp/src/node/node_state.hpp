@@ -4,17 +4,18 @@
 #include <atomic>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/node.hpp"
 #include "runtime/cpp/src/channel/channel.hpp"
 #include "runtime/cpp/src/client/session.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/node/recursive_mutex.hpp"
 #include "runtime/cpp/src/subscription/host.hpp"
 
 namespace rr {
@@ -23,20 +24,20 @@ namespace rr {
 class Places {
  public:
   void add(std::unique_ptr<channel::Listener> listener) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (has_ended_) throw Error(ErrorCode::invalid_operation, "the node is shut down");
     listeners_.push_back(std::move(listener));
   }
   void end() {
     std::vector<std::unique_ptr<channel::Listener>> old;
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     has_ended_ = true;
     old.swap(listeners_);  // they end when the lock has gone
   }
   /// As the listeners say.
   std::vector<std::string> urls() {
     std::vector<std::string> result;
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (const auto& listener : listeners_) {
       for (std::string& url : listener->urls()) result.push_back(std::move(url));
     }
@@ -47,7 +48,7 @@ class Places {
   template <class Announcer>
   std::string tell_nonce(const Announcer& announcer) {
     std::string failure;
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const std::string nonce = announcer.nonce();
     for (const auto& listener : listeners_) {
       try {
@@ -60,9 +61,9 @@ class Places {
   }
 
  private:
-  std::mutex mutex_;
-  bool has_ended_ = false;
-  std::vector<std::unique_ptr<channel::Listener>> listeners_;
+  Mutex mutex_;
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
+  std::vector<std::unique_ptr<channel::Listener>> listeners_ RR_GUARDED_BY(mutex_);
 };
 
 /// A part of a node that is created on first use: services, subscriptions, discovery. node.cpp does
@@ -82,7 +83,7 @@ struct NodeState {
   /// The part of a slot, which is made from the state unless it is there.
   template <class Part>
   Part& part(std::unique_ptr<NodePart> NodeState::*slot) {
-    const std::lock_guard lock(making);
+    const RecursiveMutexLock lock(making);
     std::unique_ptr<NodePart>& place = this->*slot;
     if (!place) {
       place = std::make_unique<Part>(*this);
@@ -90,11 +91,11 @@ struct NodeState {
     }
     return static_cast<Part&>(*place);
   }
-  mutable std::recursive_mutex making;  // a part may need another one
-  bool have_parts_ended = false;
-  std::unique_ptr<NodePart> services;
-  std::unique_ptr<NodePart> subscriptions;
-  std::unique_ptr<NodePart> discovery;
+  mutable RecursiveMutex making;  // a part may need another one
+  bool have_parts_ended RR_GUARDED_BY(making) = false;
+  std::unique_ptr<NodePart> services RR_GUARDED_BY(making);
+  std::unique_ptr<NodePart> subscriptions RR_GUARDED_BY(making);
+  std::unique_ptr<NodePart> discovery RR_GUARDED_BY(making);
 
   // Threads of run_aside(), and whether they have done their work.
   struct Worker {
@@ -102,15 +103,16 @@ struct NodeState {
     std::shared_ptr<std::atomic<bool>> is_done;
   };
 
-  std::mutex mutex;
-  bool is_shut_down = false;
+  Mutex mutex;
+  bool is_shut_down RR_GUARDED_BY(mutex) = false;
   const std::shared_ptr<Places> places = std::make_shared<Places>();
-  std::vector<std::weak_ptr<channel::Connection>> accepted;
-  std::vector<std::weak_ptr<Session>> sessions;
-  std::vector<Worker> workers;
+  std::vector<std::weak_ptr<channel::Connection>> accepted RR_GUARDED_BY(mutex);
+  std::vector<std::weak_ptr<Session>> sessions RR_GUARDED_BY(mutex);
+  std::vector<Worker> workers RR_GUARDED_BY(mutex);
   static thread_local const NodeState* served_aside;  // by this thread, if it is a worker
 
-  std::mutex ending;  // while a thread waits for the others to end; taken before `mutex`
+  // While a thread waits for the others to end.
+  Mutex ending RR_ACQUIRED_BEFORE(mutex);
 
   /// Drops what has gone whenever the list would grow.
   template <class T>
@@ -134,7 +136,7 @@ struct NodeState {
   void finish_end();
 
  private:
-  void join_done();
+  void join_done() RR_REQUIRES(mutex);
   void end_part(std::unique_ptr<NodePart> NodeState::*slot);
 };
 

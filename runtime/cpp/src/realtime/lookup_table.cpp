@@ -48,7 +48,7 @@ std::uint64_t LookupTable::load(std::span<const double> times, std::span<const d
     throw Error(ErrorCode::invalid_argument,
                 "the times of a lookup table rise, and all its numbers are finite");
   }
-  const std::lock_guard lock(loading_);
+  const MutexLock lock(loading_);
   Table& table = tables_[loaded_];
   std::ranges::copy(times, table.times.begin());
   std::ranges::copy(positions, table.positions.begin());

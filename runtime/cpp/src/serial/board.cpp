@@ -53,7 +53,7 @@ Time Board::now() const {
 void Board::ask(Kind kind, std::vector<std::uint8_t> body, std::chrono::milliseconds patience,
                 Done done, std::uint32_t client) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_connected_ && !stops_ && jobs_.size() < most_jobs) {
       jobs_.push_back({kind, std::move(body), patience, std::move(done), false, client});
       port_->wake();
@@ -71,7 +71,7 @@ Outcome Board::ask(Kind kind, std::vector<std::uint8_t> body, std::chrono::milli
 }
 
 void Board::set_wire(std::vector<std::uint8_t> body, Done done) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!is_connected_ || stops_) return;
   for (Job& job : jobs_) {
     if (!job.is_wire || job.body[0] != body[0] || job.body[1] != body[1]) continue;
@@ -112,7 +112,7 @@ void Board::lose(const std::string& why) {
 void Board::fail_jobs() {
   std::deque<Job> jobs;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     jobs.swap(jobs_);
   }
   for (const Job& job : jobs) job.done(no_board);
@@ -238,7 +238,7 @@ void Board::serve_one() {
   Job job;
   bool has_job = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!jobs_.empty()) {
       job = std::move(jobs_.front());
       jobs_.pop_front();

@@ -4,18 +4,17 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "rr/function.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/serial/host_link.hpp"
 #include "runtime/cpp/src/serial/port.hpp"
 
@@ -112,8 +111,8 @@ class Board {
   std::atomic<bool> is_connected_ = false;
   std::atomic<bool> stops_ = false;
 
-  std::mutex mutex_;
-  std::deque<Job> jobs_;
+  Mutex mutex_;
+  std::deque<Job> jobs_ RR_GUARDED_BY(mutex_);
   std::thread thread_;  // last: it uses all of the above
 };
 

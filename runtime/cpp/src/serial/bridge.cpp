@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <charconv>
-#include <condition_variable>
 #include <vector>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/serial.hpp"
 #include "runtime/cpp/src/serial/bridged_board.hpp"
 #include "runtime/cpp/src/serial/port.hpp"
@@ -13,10 +13,10 @@ namespace rr {
 struct BoardBridge::State {
   Node& node;
   Log log;
-  mutable std::mutex mutex{};
-  mutable std::condition_variable changed{};
-  std::size_t met = 0;
-  std::vector<std::unique_ptr<serial::BridgedBoard>> boards{};
+  mutable Mutex mutex{};
+  mutable Condition changed{};
+  std::size_t met RR_GUARDED_BY(mutex) = 0;
+  std::vector<std::unique_ptr<serial::BridgedBoard>> boards RR_GUARDED_BY(mutex){};
 };
 
 BoardPlace BoardPlace::parse(const std::string& text) {
@@ -60,19 +60,23 @@ BoardBridge::~BoardBridge() = default;
 void BoardBridge::add(const BoardPlace& place) {
   State* const state = state_.get();
   const auto is_met = std::make_shared<bool>(false);
-  state->boards.push_back(std::make_unique<serial::BridgedBoard>(
+  auto board = std::make_unique<serial::BridgedBoard>(
       state->node, place,
       serial::BridgedBoard::Functions{.log = state->log, .met = [state, is_met](const auto&) {
-                                        const std::lock_guard lock(state->mutex);
+                                        const MutexLock lock(state->mutex);
                                         if (!std::exchange(*is_met, true)) ++state->met;
                                         state->changed.notify_all();
-                                      }}));
+                                      }});
+  const MutexLock lock(state->mutex);
+  state->boards.push_back(std::move(board));
+  state->changed.notify_all();  // it may have been met by now
 }
 
 bool BoardBridge::wait(std::chrono::milliseconds limit) const {
-  std::unique_lock lock(state_->mutex);
-  return state_->changed.wait_for(lock, limit,
-                                  [&] { return state_->met == state_->boards.size(); });
+  const MutexLock lock(state_->mutex);
+  return state_->changed.wait_until(
+      state_->mutex, std::chrono::steady_clock::now() + limit,
+      [&]() RR_REQUIRES(state_->mutex) { return state_->met == state_->boards.size(); });
 }
 
 }  // namespace rr

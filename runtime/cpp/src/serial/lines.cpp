@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 
 namespace rr::serial {
 
@@ -23,27 +24,25 @@ Line::Line(const BoardPlace& place)
 }
 
 void Line::on_met(const std::string& name) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   name_ = name;
   changed_.notify_all();
 }
 
 void Line::on_failed(const Board::Failure& failure) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   failure_ = failure;
   ++failures_;
   changed_.notify_all();
 }
 
 std::string Line::wait(Deadline deadline) {
-  std::unique_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   const std::size_t before = failures_;
-  const auto has_failed = [&] { return failures_ != before; };
-  const auto is_hopeless = [&] {
-    return has_failed() && failure_.kind != Board::Failure::Kind::silent;
-  };
   // A board that does not answer may be one that starts.
-  (void)changed_.wait_until(lock, deadline, [&] { return name_ || is_hopeless(); });
+  (void)changed_.wait_until(mutex_, deadline, [&]() RR_REQUIRES(mutex_) {
+    return name_ || (failures_ != before && failure_.kind != Board::Failure::Kind::silent);
+  });
   if (name_) return *name_;
   throw Error(ErrorCode::connection_error,
               failures_ != 0 ? failure_.text : "the board at " + place_.path + " does not answer");
@@ -58,11 +57,16 @@ std::unique_ptr<MessageLink> Line::connect() {
 // Lines
 
 struct Lines::State {
-  std::mutex mutex;
-  std::condition_variable changed;
-  std::map<std::string, std::shared_ptr<Line>> lines;  // by path; null: it is being closed
-  bool has_ended = false;
+  Mutex mutex;
+  Condition changed;
+  std::map<std::string, std::shared_ptr<Line>> lines
+      RR_GUARDED_BY(mutex);  // by path; null: it is being closed
+  bool has_ended RR_GUARDED_BY(mutex) = false;
 
+  [[nodiscard]] bool is_closing(const std::string& path) const RR_REQUIRES(mutex) {
+    const auto found = lines.find(path);
+    return found != lines.end() && !found->second;
+  }
   void close_unused();
 };
 
@@ -71,7 +75,7 @@ Lines::Lines()
 
 Lines::~Lines() {
   {
-    const std::lock_guard lock(state_->mutex);
+    const MutexLock lock(state_->mutex);
     state_->has_ended = true;
   }
   state_->changed.notify_all();
@@ -79,9 +83,9 @@ Lines::~Lines() {
 }
 
 std::shared_ptr<Lines> Lines::of_process() {
-  static std::mutex mutex;
-  static std::weak_ptr<Lines> known;
-  const std::lock_guard lock(mutex);
+  static Mutex mutex;
+  static std::weak_ptr<Lines> known RR_GUARDED_BY(mutex);
+  const MutexLock lock(mutex);
   std::shared_ptr<Lines> lines = known.lock();
   if (!lines) known = lines = std::make_shared<Lines>();
   return lines;
@@ -90,17 +94,15 @@ std::shared_ptr<Lines> Lines::of_process() {
 std::unique_ptr<Lines::User> Lines::take(const BoardPlace& place, Deadline deadline) const {
   // As written: a link below /dev/serial names the same board whichever port it is plugged into.
   const std::string key = std::filesystem::path(place.path).lexically_normal().string();
-  std::unique_lock lock(state_->mutex);
-  auto& lines = state_->lines;
-  const auto is_closing = [&] {
-    const auto found = lines.find(key);
-    return found != lines.end() && !found->second;
-  };
-  if (!state_->changed.wait_until(lock, deadline, [&] { return !is_closing(); })) {
+  const MutexLock lock(state_->mutex);
+  const auto is_usable = [&]() RR_REQUIRES(state_->mutex) { return !state_->is_closing(key); };
+  if (!state_->changed.wait_until(state_->mutex, deadline, is_usable)) {
     throw Error(ErrorCode::connection_error, place.path + " is being closed");
   }
-  auto found = lines.find(key);
-  if (found == lines.end()) found = lines.emplace(key, std::make_shared<Line>(place)).first;
+  auto found = state_->lines.find(key);
+  if (found == state_->lines.end()) {
+    found = state_->lines.emplace(key, std::make_shared<Line>(place)).first;
+  }
   Line& line = *found->second;
   if (line.place().baud != place.baud) {
     throw Error(ErrorCode::invalid_argument,
@@ -113,17 +115,18 @@ std::unique_ptr<Lines::User> Lines::take(const BoardPlace& place, Deadline deadl
 }
 
 void Lines::State::close_unused() {
-  std::unique_lock lock(mutex);
+  MutexLock lock(mutex);
   while (true) {
     const auto now = std::chrono::steady_clock::now();
     Deadline next = Deadline::max();
-    const auto unused = std::find_if(lines.begin(), lines.end(), [&](const auto& entry) {
-      const Line& line = *entry.second;
-      if (line.users_ != 0) return false;
-      if (has_ended || line.kept_until_ <= now) return true;
-      next = std::min(next, line.kept_until_);
-      return false;
-    });
+    const auto unused =
+        std::find_if(lines.begin(), lines.end(), [&](const auto& entry) RR_REQUIRES(mutex) {
+          const Line& line = *entry.second;
+          if (line.users_ != 0) return false;
+          if (has_ended || line.kept_until_ <= now) return true;
+          next = std::min(next, line.kept_until_);
+          return false;
+        });
     if (unused != lines.end()) {
       const std::string path = unused->first;
       std::shared_ptr<Line> line = std::exchange(unused->second, nullptr);
@@ -135,9 +138,9 @@ void Lines::State::close_unused() {
     } else if (has_ended && lines.empty()) {
       return;
     } else if (next == Deadline::max()) {
-      changed.wait(lock);
+      changed.wait(mutex);
     } else {
-      changed.wait_until(lock, next);
+      changed.wait_until(mutex, next);
     }
   }
 }
@@ -148,7 +151,7 @@ Lines::User::User(std::shared_ptr<State> state, std::shared_ptr<Line> line)
     : state_(std::move(state)), line_(std::move(line)) {}
 
 Lines::User::~User() {
-  const std::lock_guard lock(state_->mutex);
+  const MutexLock lock(state_->mutex);
   line_->kept_until_ = std::max(line_->kept_until_, kept_until_);
   --line_->users_;
   // The line goes on the thread that closes it, never here.

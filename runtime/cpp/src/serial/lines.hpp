@@ -2,16 +2,15 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 
 #include "rr/channel.hpp"
 #include "rr/intra.hpp"
+#include "rr/mutex.hpp"
 #include "rr/node.hpp"
 #include "rr/serial.hpp"
 #include "runtime/cpp/src/serial/bridged_board.hpp"
@@ -43,11 +42,11 @@ class Line {
   const std::shared_ptr<IntraSpace> space_;
   Node node_;
 
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::optional<std::string> name_;  // empty: not met so far
-  Board::Failure failure_;           // the last one
-  std::size_t failures_ = 0;
+  Mutex mutex_;
+  Condition changed_;
+  std::optional<std::string> name_ RR_GUARDED_BY(mutex_);  // empty: not met so far
+  Board::Failure failure_ RR_GUARDED_BY(mutex_);           // the last one
+  std::size_t failures_ RR_GUARDED_BY(mutex_) = 0;
 
   // For Lines, under its lock.
   std::size_t users_ = 0;

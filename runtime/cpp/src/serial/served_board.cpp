@@ -48,7 +48,7 @@ std::shared_ptr<BoardObject> BoardService::root() { return object(0, root_type_)
 std::shared_ptr<BoardObject> BoardService::object(std::uint8_t number, const std::string& type) {
   const dynamic::ObjectTable* const table = tables_->find_object(type);
   if (table == nullptr) throw Error(ErrorCode::object_not_found, "no object type " + type);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::shared_ptr<BoardObject>& object = objects_[number];
   if (!object) object = std::make_shared<BoardObject>(shared_from_this(), *table, number);
   return object;
@@ -58,7 +58,7 @@ void BoardService::handle(const Unasked& one) {
   if (one.body.size() < 2) return;
   std::shared_ptr<BoardObject> object;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto found = objects_.find(one.body[0]);
     // An object that no client has ever asked for has nobody to tell.
     if (found == objects_.end()) return;
@@ -71,7 +71,7 @@ void BoardService::ask(Kind kind, std::vector<std::uint8_t> body, Board::Done do
                        std::uint32_t client) {
   std::shared_ptr<Board> board;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     board = board_;
   }
   if (board == nullptr) {
@@ -84,7 +84,7 @@ void BoardService::ask(Kind kind, std::vector<std::uint8_t> body, Board::Done do
 Outcome BoardService::ask(Kind kind, std::vector<std::uint8_t> body) {
   std::shared_ptr<Board> board;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     board = board_;
   }
   if (board == nullptr) return {.kind = Outcome::Kind::reset};
@@ -92,13 +92,13 @@ Outcome BoardService::ask(Kind kind, std::vector<std::uint8_t> body) {
 }
 
 void BoardService::set_wire(std::vector<std::uint8_t> body, Board::Done done) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (board_ != nullptr) board_->set_wire(std::move(body), std::move(done));
 }
 
 void BoardService::open(std::uint8_t object, std::uint8_t member, bool opens) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const bool is_change =
         opens ? open_.emplace(object, member).second : open_.erase({object, member}) != 0;
     if (!is_change) return;
@@ -109,7 +109,7 @@ void BoardService::open(std::uint8_t object, std::uint8_t member, bool opens) {
 void BoardService::open_again() {
   std::set<std::pair<std::uint8_t, std::uint8_t>> wanted;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     wanted = open_;
   }
   for (const auto& [object, member] : wanted) {
@@ -119,14 +119,14 @@ void BoardService::open_again() {
 
 void BoardService::detach() {
   std::map<std::uint8_t, std::shared_ptr<BoardObject>> objects;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   board_.reset();
   // They and this own each other.
   objects.swap(objects_);
 }
 
 std::uint32_t BoardService::client_of(std::uint8_t sequence) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return board_ == nullptr ? 0 : board_->client_of(sequence);
 }
 
@@ -136,7 +136,7 @@ void BoardService::report_lost(const std::string& what, std::string_view member,
   if (outcome.kind == Outcome::Kind::reply || outcome.kind == Outcome::Kind::reset) return;
   const std::string text = what + " was lost: " + error_of(member, outcome).message();
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (std::exchange(last_loss_, text) == text) return;
   }
   if (log_) log_(text);

@@ -6,13 +6,13 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "rr/mutex.hpp"
 #include "rr/node.hpp"
 #include "rr/pipes.hpp"
 #include "rr/serial.hpp"
@@ -64,17 +64,17 @@ class BoardService : public std::enable_shared_from_this<BoardService> {
   [[nodiscard]] Node& node() { return node_; }
 
  private:
-  std::mutex mutex_;
-  std::shared_ptr<Board> board_;  ///< null when it has gone
+  Mutex mutex_;
+  std::shared_ptr<Board> board_ RR_GUARDED_BY(mutex_);  ///< null when it has gone
   Node& node_;
   std::shared_ptr<dynamic::Tables> tables_;
   std::string name_;
   std::string root_type_;
   std::vector<std::string> exceptions_;  ///< qualified, in the order of the definition
-  std::map<std::uint8_t, std::shared_ptr<BoardObject>> objects_;
-  std::set<std::pair<std::uint8_t, std::uint8_t>> open_;
+  std::map<std::uint8_t, std::shared_ptr<BoardObject>> objects_ RR_GUARDED_BY(mutex_);
+  std::set<std::pair<std::uint8_t, std::uint8_t>> open_ RR_GUARDED_BY(mutex_);
   const Log log_;
-  std::string last_loss_;
+  std::string last_loss_ RR_GUARDED_BY(mutex_);
 };
 
 /// One object of a board.

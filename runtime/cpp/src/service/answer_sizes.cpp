@@ -13,14 +13,14 @@ constexpr std::size_t fading = 64;
 
 [[gnu::hot]] std::size_t AnswerSizes::expected(const Member& member) const {
   if (!has_any_.load(std::memory_order_relaxed)) return 0;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = sizes_.find(&member);
   return found != sizes_.end() ? found->second : 0;
 }
 
 [[gnu::hot]] void AnswerSizes::note(const Member& member, std::size_t bytes) {
   if (bytes < large && !has_any_.load(std::memory_order_relaxed)) return;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = sizes_.find(&member);
   if (found == sizes_.end()) {
     if (bytes < large) return;

@@ -3,10 +3,10 @@
 
 #include <atomic>
 #include <cstddef>
-#include <mutex>
 #include <unordered_map>
 
 #include "rr/definition.hpp"
+#include "rr/mutex.hpp"
 
 namespace rr::service {
 
@@ -25,8 +25,8 @@ class AnswerSizes {
 
  private:
   std::atomic<bool> has_any_{false};  // so that services with small answers do not lock
-  mutable std::mutex mutex_;
-  std::unordered_map<const Member*, std::size_t> sizes_;
+  mutable Mutex mutex_;
+  std::unordered_map<const Member*, std::size_t> sizes_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::service

@@ -3,12 +3,12 @@
 #include <array>
 #include <cstdio>
 #include <ctime>
-#include <mutex>
 #include <system_error>
 #include <utility>
 
 #include "rr/audit.hpp"
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/platform/clock.hpp"
 #include "runtime/cpp/src/platform/files.hpp"
 
@@ -123,7 +123,7 @@ class AuditLog::File {
   File& operator=(const File&) = delete;
 
   void write(std::string_view line) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (size_ != 0 && size_ + line.size() > options_.max_size) rotate();
     const auto bytes = std::as_bytes(std::span(line));
     const std::error_code error = platform::write_all(file_.get(), bytes);
@@ -132,7 +132,7 @@ class AuditLog::File {
   }
 
  private:
-  void open() {
+  void open() RR_REQUIRES(mutex_) {
     std::error_code error;
     platform::OpenLog log = platform::open_log(path_, error);
     if (error) throw Error(ErrorCode::invalid_configuration, failure(path_, "open", error));
@@ -145,7 +145,7 @@ class AuditLog::File {
   }
 
   // What cannot be renamed grows on.
-  void rotate() {
+  void rotate() RR_REQUIRES(mutex_) {
     for (unsigned i = options_.kept_files; i > 1; --i) {
       platform::rename_file(path_ + "." + std::to_string(i - 1), path_ + "." + std::to_string(i));
     }
@@ -157,9 +157,9 @@ class AuditLog::File {
 
   const std::string path_;
   const Options options_;
-  std::mutex mutex_;
-  platform::File file_;
-  std::size_t size_ = 0;
+  Mutex mutex_;
+  platform::File file_ RR_GUARDED_BY(mutex_);
+  std::size_t size_ RR_GUARDED_BY(mutex_) = 0;
 };
 
 AuditLog::AuditLog(std::string path, Options options)

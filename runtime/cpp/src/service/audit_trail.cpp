@@ -108,7 +108,7 @@ void AuditTrail::tell_request(const Question& question) {
 // A client that is refused all the time does not fill the disk.
 bool AuditTrail::may_tell_refusal(std::size_t& left_out) {
   const channel::Time now = channel::coarse_now();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (refusals_ == 0 || now - window_ > refusal_window) {
     window_ = now;
     refusals_ = 0;

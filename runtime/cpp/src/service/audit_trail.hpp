@@ -3,12 +3,12 @@
 
 #include <cstddef>
 #include <exception>
-#include <mutex>
 #include <string>
 #include <string_view>
 
 #include "rr/audit.hpp"
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/users.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 
@@ -49,10 +49,10 @@ class AuditTrail {
   ServerEndpoint& endpoint_;
   const AuditOptions* options_;  // null when nobody is told
   std::string address_;          // known while the connection lives
-  std::mutex mutex_;
-  channel::Time window_{};  // when the refusals began that are counted
-  std::size_t refusals_ = 0;
-  std::size_t left_out_ = 0;
+  Mutex mutex_;
+  channel::Time window_ RR_GUARDED_BY(mutex_){};  // when the refusals began that are counted
+  std::size_t refusals_ RR_GUARDED_BY(mutex_) = 0;
+  std::size_t left_out_ RR_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace rr::service

@@ -43,7 +43,7 @@ std::shared_ptr<endpoint::Caller> Callbacks::share() {
 }
 
 bool Callbacks::take(endpoint::Pending& call) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   asked_.erase(&call);
   return pending_.take(call);
 }
@@ -61,7 +61,7 @@ void Callbacks::send(const CallbackRequest& request, Writer& writer, endpoint::P
   const endpoint::Asked asked(type, request.path, request.member.name);
   std::uint32_t number = 0;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (has_ended_) throw Error(ErrorCode::connection_error, "the client has left");
     const std::size_t limit = endpoint_.callback_limit();
     if (pending_.size() >= limit) {
@@ -115,7 +115,7 @@ void Callbacks::take_answer(const Message& message, const Entry& entry, const Me
   endpoint::PendingTable::Answered answered;
   bool is_told = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     answered = pending_.take_answered(entry);
     if (answered.request != nullptr) asked_.erase(answered.request);
     if (answered.is_foreign) is_told = std::exchange(has_told_foreign_, true);
@@ -131,7 +131,7 @@ std::size_t Callbacks::end_if(const Choice& is_over, const Error& why,
                               channel::DeferredCallbacks& deferred) {
   std::vector<endpoint::Pending*> over;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (auto each = asked_.begin(); each != asked_.end();) {
       const bool ends = is_over(each->second.path, each->second.member->name);
       if (ends && pending_.take(*each->first)) over.push_back(each->first);
@@ -146,7 +146,7 @@ void Callbacks::end(std::string_view why, channel::DeferredCallbacks& deferred) 
   while (true) {
     endpoint::Pending* call = nullptr;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       has_ended_ = true;
       asked_.clear();
       call = pending_.take_any();

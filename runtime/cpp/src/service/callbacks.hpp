@@ -6,12 +6,12 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/reader.hpp"
 #include "rr/stub.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
@@ -60,16 +60,17 @@ class Callbacks final : public endpoint::Caller {
   void send(const CallbackRequest& request, Writer& writer, endpoint::Pending& call);
 
   ServerEndpoint& endpoint_;  // owns this
-  std::mutex mutex_;
-  bool has_ended_ = false;
-  bool has_told_foreign_ = false;  // answers to something else are logged once
-  endpoint::PendingTable pending_;
+  Mutex mutex_;
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
+  bool has_told_foreign_ RR_GUARDED_BY(mutex_) =
+      false;  // answers to something else are logged once
+  endpoint::PendingTable pending_ RR_GUARDED_BY(mutex_);
   // What was asked, of those that are pending.
   struct Asked {
     std::string path;
     const Member* member;
   };
-  std::map<endpoint::Pending*, Asked> asked_;
+  std::map<endpoint::Pending*, Asked> asked_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::service

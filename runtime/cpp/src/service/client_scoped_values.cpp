@@ -9,7 +9,7 @@ namespace rr {
 namespace service {
 
 bool ClientScopedValues::add(const std::shared_ptr<ClientValues>& values) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (has_ended_) return false;
   // What has gone is dropped whenever the list would grow.
   if (keepers_.size() == keepers_.capacity()) {
@@ -22,7 +22,7 @@ bool ClientScopedValues::add(const std::shared_ptr<ClientValues>& values) {
 void ClientScopedValues::end(const void* session) {
   std::vector<std::weak_ptr<ClientValues>> keepers;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     has_ended_ = true;
     keepers.swap(keepers_);
   }

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/stored.hpp"
 
 namespace rr::service {
@@ -18,9 +18,9 @@ class ClientScopedValues {
   void end(const void* session);
 
  private:
-  std::mutex mutex_;
-  bool has_ended_ = false;
-  std::vector<std::weak_ptr<ClientValues>> keepers_;
+  Mutex mutex_;
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
+  std::vector<std::weak_ptr<ClientValues>> keepers_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::service

@@ -35,7 +35,7 @@ std::shared_ptr<ServiceHost> Directory::add(std::string name, std::shared_ptr<Sk
   auto host = std::make_shared<ServiceHost>(core_, weak_from_this(), std::move(name),
                                             std::move(root), std::move(options));
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (const auto& other : services_) {
       if (other->name() == host->name()) {
         throw Error(ErrorCode::invalid_operation,
@@ -57,7 +57,7 @@ std::shared_ptr<ServiceHost> Directory::add(std::string name, std::shared_ptr<Sk
 void Directory::remove(const ServiceHost& host) {
   std::shared_ptr<ServiceHost> removed;  // goes when the lock has, with its objects
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto found = std::find_if(services_.begin(), services_.end(),
                                     [&](const auto& other) { return other.get() == &host; });
     if (found != services_.end()) {
@@ -74,7 +74,7 @@ void Directory::close() {
 }
 
 std::shared_ptr<ServiceHost> Directory::find(std::string_view name) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const auto& host : services_) {
     if (host->name() == name && host->is_started()) return host;
   }
@@ -82,7 +82,7 @@ std::shared_ptr<ServiceHost> Directory::find(std::string_view name) const {
 }
 
 std::vector<std::shared_ptr<ServiceHost>> Directory::all() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return {services_.rbegin(), services_.rend()};
 }
 

@@ -3,13 +3,13 @@
 
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "rr/discovery.hpp"
+#include "rr/mutex.hpp"
 #include "rr/service.hpp"
 #include "runtime/cpp/src/channel/channel.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
@@ -61,9 +61,9 @@ class Directory : public std::enable_shared_from_this<Directory> {
   const std::shared_ptr<endpoint::Core> core_;
   Logins logins_;
   Discovery discovery_;
-  mutable std::mutex mutex_;
-  std::vector<std::shared_ptr<ServiceHost>> services_;  // oldest first
-  std::shared_ptr<ServiceIndex> index_;
+  std::shared_ptr<ServiceIndex> index_;  // set by start(), before anybody else uses this
+  mutable Mutex mutex_;
+  std::vector<std::shared_ptr<ServiceHost>> services_ RR_GUARDED_BY(mutex_);  // oldest first
 };
 
 }  // namespace rr::service

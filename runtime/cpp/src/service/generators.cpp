@@ -37,7 +37,7 @@ std::int32_t Generators::add(const std::shared_ptr<ClientGenerator>& generator, 
   }
   thread_local std::minstd_rand random{std::random_device{}()};  // costs 100 us to make
   generator->last_used = channel::coarse_now();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (has_ended_) throw Error(ErrorCode::connection_error, "the client has left");
   if (generators_.size() >= limit) {
     throw Error(ErrorCode::out_of_system_resource,
@@ -52,7 +52,7 @@ std::int32_t Generators::add(const std::shared_ptr<ClientGenerator>& generator, 
 
 void Generators::remove(std::int32_t index) {
   std::shared_ptr<ClientGenerator> removed;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = generators_.find(index);
   if (found == generators_.end()) return;
   removed = std::move(found->second);
@@ -64,7 +64,7 @@ void Generators::remove(std::int32_t index) {
 Generators::Use::Use(Generators& generators, const ServedObject& object, std::int32_t index,
                      channel::Connection& connection)
     : generators_(generators), index_(index) {
-  std::unique_lock lock(generators_.mutex_);
+  MutexLock lock(generators_.mutex_);
   const auto found = generators_.generators_.find(index);
   if (found == generators_.generators_.end() || found->second->object.get() != &object) {
     throw invalid_generator();
@@ -80,14 +80,14 @@ Generators::Use::Use(Generators& generators, const ServedObject& object, std::in
     --generator_->next_step;  // with the turn, so nobody has come behind
     throw Error(ErrorCode::member_busy, "too many steps wait for their turn");
   }
-  while (generator_->current_step != step) generators_.stepped_.wait(lock);
+  while (generator_->current_step != step) generators_.stepped_.wait(generators_.mutex_);
   lock.unlock();
   connection.step_in(channel::never);
 }
 
 Generators::Use::~Use() {
   {
-    const std::lock_guard lock(generators_.mutex_);
+    const MutexLock lock(generators_.mutex_);
     ++generator_->current_step;
     generator_->last_used = channel::coarse_now();
   }
@@ -95,12 +95,12 @@ Generators::Use::~Use() {
 }
 
 ClientGenerator::State Generators::Use::state() const {
-  const std::lock_guard lock(generators_.mutex_);
+  const MutexLock lock(generators_.mutex_);
   return generator_->state;
 }
 
 void Generators::Use::set_state(ClientGenerator::State state) {
-  const std::lock_guard lock(generators_.mutex_);
+  const MutexLock lock(generators_.mutex_);
   generator_->state = state;
 }
 
@@ -111,7 +111,7 @@ void Generators::Use::end() {
 
 std::size_t Generators::end_if(const Choice& is_over) {
   std::vector<std::shared_ptr<ClientGenerator>> removed;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::erase_if(generators_, [&](auto& item) {
     if (!is_over(item.second->object->path, item.second->member->name)) return false;
     item.second->state = ClientGenerator::State::ended;
@@ -130,7 +130,7 @@ void Generators::release_path(std::string_view path) {
 void Generators::end(channel::DeferredCallbacks& deferred) {
   auto removed = std::make_shared<decltype(generators_)>();
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     has_ended_ = true;
     for (const auto& [index, generator] : generators_) {
       generator->state = ClientGenerator::State::ended;
@@ -142,7 +142,7 @@ void Generators::end(channel::DeferredCallbacks& deferred) {
 
 void Generators::drop_unused(channel::Time now, channel::Milliseconds timeout,
                              channel::DeferredCallbacks& deferred) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::erase_if(generators_, [&](auto& item) {
     const ClientGenerator& generator = *item.second;
     const bool is_open = generator.state == ClientGenerator::State::open;

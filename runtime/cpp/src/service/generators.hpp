@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string_view>
 #include <unordered_map>
 
 #include "rr/definition.hpp"
 #include "rr/holding.hpp"
+#include "rr/mutex.hpp"
 #include "rr/sequence.hpp"
 #include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
@@ -83,10 +82,11 @@ class Generators {
                    channel::DeferredCallbacks& deferred);
 
  private:
-  std::mutex mutex_;
-  std::condition_variable stepped_;
-  bool has_ended_ = false;
-  std::unordered_map<std::int32_t, std::shared_ptr<ClientGenerator>> generators_;
+  Mutex mutex_;
+  Condition stepped_;
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
+  std::unordered_map<std::int32_t, std::shared_ptr<ClientGenerator>> generators_
+      RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::service

@@ -21,13 +21,13 @@ Grants::Grants(std::shared_ptr<const Rights> rights, const User* user)
 
 RightSet Grants::of(std::string_view path, std::string_view member) const {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto found = known_.find(KeyView(path, member));
     if (found != known_.end()) return found->second;
   }
   const RightSet rights = decide(lines_, path, member);
   if (path.size() + member.size() <= known_name) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (known_.size() >= known_members) known_.clear();
     known_.emplace(Key(path, member), rights);
   }

@@ -3,12 +3,12 @@
 
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/rights.hpp"
 #include "rr/users.hpp"
 
@@ -35,8 +35,8 @@ class Grants {
 
   const std::shared_ptr<const Rights> rights_;
   std::vector<const Rights::Line*> lines_;
-  mutable std::mutex mutex_;
-  mutable std::map<Key, RightSet, Less> known_;
+  mutable Mutex mutex_;
+  mutable std::map<Key, RightSet, Less> known_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::service

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/endpoint/service_path.hpp"
 #include "runtime/cpp/src/service/object_tree.hpp"
 
@@ -36,12 +37,12 @@ void Locks::remove_if(Condition condition) {
 }
 
 void Locks::enter(std::uint32_t endpoint) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   sessions_.try_emplace(endpoint);
 }
 
 void Locks::log_in(std::uint32_t endpoint, const User& user) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto session = sessions_.find(endpoint);
   if (session == sessions_.end()) return;
   std::vector<std::string>& users = session->second;
@@ -49,9 +50,9 @@ void Locks::log_in(std::uint32_t endpoint, const User& user) {
 }
 
 void Locks::leave(std::uint32_t endpoint) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   sessions_.erase(endpoint);
-  remove_if([&](const Lock& held) {
+  remove_if([&](const Lock& held) RR_REQUIRES(mutex_) {
     if (held.is_of_service) return false;
     if (held.endpoint != 0) return held.endpoint == endpoint;
     return std::none_of(sessions_.begin(), sessions_.end(), [&](const auto& session) {
@@ -70,14 +71,14 @@ void Locks::need_unlocked(const ServedObject& object) const {
 }
 
 void Locks::lock(const ServedObject& object, const std::string& user) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   need_unlocked(object);
   locks_.push_back({object.path, object.owner, user, 0, true});
   are_held_.store(true, std::memory_order_release);
 }
 
 bool Locks::unlock(std::string_view path) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const std::size_t before = locks_.size();
   remove_if([&](const Lock& held) { return held.path == path; });
   return locks_.size() != before;
@@ -85,7 +86,7 @@ bool Locks::unlock(std::string_view path) {
 
 void Locks::request(const ServedObject& object, const User& user, std::uint32_t endpoint,
                     bool for_session) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   need_unlocked(object);
   if (!sessions_.contains(endpoint)) {
     throw Error(ErrorCode::connection_error, "the session has ended");
@@ -103,7 +104,7 @@ void Locks::request(const ServedObject& object, const User& user, std::uint32_t 
 }
 
 void Locks::release(const ServedObject& object, const User& user) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const Lock& held : locks_) {
     if (!held.holds_for(object)) continue;
     if (held.user != user.name && !user.has(override_lock_privilege)) {
@@ -119,7 +120,7 @@ void Locks::release(const ServedObject& object, const User& user) {
 
 std::size_t Locks::end_if(std::uint32_t endpoint, const User& user,
                           const std::function<bool(std::string_view)>& is_over) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const std::size_t before = locks_.size();
   remove_if([&](const Lock& held) {
     return !held.is_of_service && held.user == user.name &&
@@ -129,20 +130,20 @@ std::size_t Locks::end_if(std::uint32_t endpoint, const User& user,
 }
 
 void Locks::forget(const ServedObject& object) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   remove_if([&](const Lock& held) { return held.is_at(object); });
 }
 
 bool Locks::are_on(const ServedObject& object) const {
   if (!are_held()) return false;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return std::any_of(locks_.begin(), locks_.end(), [&](const Lock& held) {
     return held.owner == object.owner && is_at_or_below(held.path, object.path);
   });
 }
 
 void Locks::check(const ServedObject& object, const User* user, std::uint32_t endpoint) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const Lock& held : locks_) {
     if (!held.holds_for(object)) continue;
     const bool may_pass = user != nullptr && !held.user.empty() && user->name == held.user &&

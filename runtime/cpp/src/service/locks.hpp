@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/users.hpp"
 
 namespace rr::service {
@@ -71,15 +71,16 @@ class Locks {
     [[nodiscard]] bool is_at(const ServedObject& object) const;
     [[nodiscard]] std::string who(const std::string& prefix) const;
   };
-  void need_unlocked(const ServedObject& object) const;
+  void need_unlocked(const ServedObject& object) const RR_REQUIRES(mutex_);
   template <class Condition>
-  void remove_if(Condition condition);
+  void remove_if(Condition condition) RR_REQUIRES(mutex_);
 
   const std::size_t limit_;
-  mutable std::mutex mutex_;
+  mutable Mutex mutex_;
   std::atomic<bool> are_held_{false};
-  std::vector<Lock> locks_;
-  std::map<std::uint32_t, std::vector<std::string>> sessions_;  // who has logged in there
+  std::vector<Lock> locks_ RR_GUARDED_BY(mutex_);
+  std::map<std::uint32_t, std::vector<std::string>> sessions_
+      RR_GUARDED_BY(mutex_);  // who has logged in there
 };
 
 }  // namespace rr::service

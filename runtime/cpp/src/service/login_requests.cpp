@@ -66,7 +66,7 @@ bool ServerEndpoint::begin_login(const Message& message, const Entry& entry,
                           .on_finished = [connection = connection_] { connection->resume(); }};
   auto login = directory_->logins().add(std::move(request));
   {
-    const std::lock_guard lock(user_mutex_);
+    const MutexLock lock(user_mutex_);
     login_ = login;
   }
   login_host_ = std::move(host);
@@ -108,7 +108,7 @@ bool ServerEndpoint::read_login(const Message& message, const Entry& entry, cons
 void ServerEndpoint::forget_login() {
   has_outcome_ = false;
   login_host_.reset();
-  const std::lock_guard lock(user_mutex_);
+  const MutexLock lock(user_mutex_);
   login_.reset();
 }
 
@@ -116,7 +116,7 @@ void ServerEndpoint::forget_login() {
 void ServerEndpoint::log_in(std::string_view name) {
   std::shared_ptr<Logins::Attempt> login;
   {
-    const std::lock_guard lock(user_mutex_);
+    const MutexLock lock(user_mutex_);
     login = std::exchange(login_, nullptr);
   }
   // A message brings one login; what else it brings has not been checked.

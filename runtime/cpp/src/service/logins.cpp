@@ -2,10 +2,8 @@
 #include "runtime/cpp/src/service/logins.hpp"
 
 #include <algorithm>
-#include <condition_variable>
 #include <deque>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <system_error>
 #include <thread>
@@ -13,6 +11,7 @@
 #include <vector>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/remote_address.hpp"
 #include "runtime/cpp/src/platform/threads.hpp"
 
@@ -88,26 +87,30 @@ struct Logins::State : std::enable_shared_from_this<State> {
   const unsigned threads_limit;
   const Log log;
 
-  std::mutex mutex;
-  std::condition_variable wake;
-  std::condition_variable ended;
-  bool is_stopping = false;
-  unsigned live = 0;
-  unsigned idle = 0;
-  std::vector<std::thread::id> runners;
-  std::size_t waiting_count = 0;
-  std::uint64_t turns = 0;
-  std::map<std::string, Remote> remotes;
+  Mutex mutex;
+  Condition wake;
+  Condition ended;
+  bool is_stopping RR_GUARDED_BY(mutex) = false;
+  unsigned live RR_GUARDED_BY(mutex) = 0;
+  unsigned idle RR_GUARDED_BY(mutex) = 0;
+  std::vector<std::thread::id> runners RR_GUARDED_BY(mutex);
+  std::size_t waiting_count RR_GUARDED_BY(mutex) = 0;
+  std::uint64_t turns RR_GUARDED_BY(mutex) = 0;
+  std::map<std::string, Remote> remotes RR_GUARDED_BY(mutex);
   // The log: failures since `log_begin`, of which the first ones have been told.
-  Time log_begin = Time::min();
-  unsigned log_count = 0;
+  Time log_begin RR_GUARDED_BY(mutex) = Time::min();
+  unsigned log_count RR_GUARDED_BY(mutex) = 0;
 
-  bool put(const std::shared_ptr<Attempt>& attempt, std::shared_ptr<Attempt>& evicted);
-  bool make_room(std::size_t own, std::shared_ptr<Attempt>& evicted);
-  void make_thread();
-  Remote& remote_of(const std::string& key);
-  void forget_some(Time now);
-  std::shared_ptr<Attempt> next(Time now, Time& due);
+  bool put(const std::shared_ptr<Attempt>& attempt, std::shared_ptr<Attempt>& evicted)
+      RR_REQUIRES(mutex);
+  bool make_room(std::size_t own, std::shared_ptr<Attempt>& evicted) RR_REQUIRES(mutex);
+  void make_thread() RR_REQUIRES(mutex);
+  Remote& remote_of(const std::string& key) RR_REQUIRES(mutex);
+  void forget_some(Time now) RR_REQUIRES(mutex);
+  std::shared_ptr<Attempt> next(Time now, Time& due) RR_REQUIRES(mutex);
+  [[nodiscard]] bool is_runner() const RR_REQUIRES(mutex) {
+    return std::find(runners.begin(), runners.end(), std::this_thread::get_id()) != runners.end();
+  }
   void run();
   void check(Attempt& attempt);
   void note_failure(const Attempt& attempt);
@@ -143,7 +146,7 @@ std::shared_ptr<Logins::Attempt> Logins::add(Request request) {
   std::shared_ptr<Attempt> evicted;
   bool is_in = false;
   {
-    const std::lock_guard lock(state_->mutex);
+    const MutexLock lock(state_->mutex);
     is_in = state_->put(attempt, evicted);
   }
   state_->wake.notify_one();
@@ -154,7 +157,7 @@ std::shared_ptr<Logins::Attempt> Logins::add(Request request) {
 
 void Logins::cancel(const std::shared_ptr<Attempt>& attempt) {
   {
-    const std::lock_guard lock(state_->mutex);
+    const MutexLock lock(state_->mutex);
     const auto remote = state_->remotes.find(channel::remote_key(attempt->request.address));
     if (remote == state_->remotes.end()) return;
     if (std::erase(remote->second.waiting, attempt) == 0) return;
@@ -168,7 +171,7 @@ void Logins::cancel(const std::shared_ptr<Attempt>& attempt) {
 void Logins::refuse_all() {
   std::vector<std::shared_ptr<Attempt>> refused;
   {
-    const std::lock_guard lock(state_->mutex);
+    const MutexLock lock(state_->mutex);
     state_->is_stopping = true;
     for (auto& [key, remote] : state_->remotes) {
       refused.insert(refused.end(), remote.waiting.begin(), remote.waiting.end());
@@ -182,21 +185,17 @@ void Logins::refuse_all() {
 
 void Logins::stop() {
   refuse_all();
-  std::unique_lock lock(state_->mutex);
-  const auto& runners = state_->runners;
-  if (std::find(runners.begin(), runners.end(), std::this_thread::get_id()) != runners.end()) {
-    return;
-  }
-  state_->ended.wait(lock, [&] { return state_->live == 0; });
+  const MutexLock lock(state_->mutex);
+  if (state_->is_runner()) return;
+  while (state_->live != 0) state_->ended.wait(state_->mutex);
 }
 
 bool Logins::is_own_thread() const {
-  const std::lock_guard lock(state_->mutex);
-  const auto& runners = state_->runners;
-  return std::find(runners.begin(), runners.end(), std::this_thread::get_id()) != runners.end();
+  const MutexLock lock(state_->mutex);
+  return state_->is_runner();
 }
 
-// Under the lock, as the next ones. False when there is no room.
+// False when there is no room.
 bool Logins::State::put(const std::shared_ptr<Attempt>& attempt,
                         std::shared_ptr<Attempt>& evicted) {
   if (is_stopping) return false;
@@ -291,7 +290,7 @@ void Logins::State::run() {
   // Hashing is not to take the processor from the node's other threads, but to get on where other
   // programs want it as well.
   platform::lower_priority();
-  std::unique_lock lock(mutex);
+  MutexLock lock(mutex);
   runners.push_back(std::this_thread::get_id());
   Time idle_since = Clock::now();
   while (!is_stopping) {
@@ -311,7 +310,7 @@ void Logins::State::run() {
     const bool has_rest = log_count > logged_at_once;
     if (has_rest) until = std::min(until, log_begin + log_period);
     ++idle;
-    channel::wait_until(wake, lock, until);
+    channel::wait_until(wake, mutex, until);
     --idle;
     if (has_rest && Clock::now() >= log_begin + log_period) {
       lock.unlock();
@@ -334,7 +333,7 @@ void Logins::State::check(Attempt& attempt) {
   attempt.request.check = nullptr;
   if (attempt.refusal) {
     {
-      const std::lock_guard lock(mutex);
+      const MutexLock lock(mutex);
       Remote& remote = remote_of(channel::remote_key(attempt.request.address));
       ++remote.failures;
       remote.last_failure = Clock::now();
@@ -355,7 +354,7 @@ void Logins::State::note_failure(const Attempt& attempt) {
   unsigned rest = 0;
   bool is_told = false;
   {
-    const std::lock_guard lock(mutex);
+    const MutexLock lock(mutex);
     if (log_begin == Time::min() || now - log_begin >= log_period) {
       rest = log_count > logged_at_once ? log_count - logged_at_once : 0;
       log_begin = now;
@@ -373,7 +372,7 @@ void Logins::State::note_failure(const Attempt& attempt) {
 void Logins::State::report_rest() {
   unsigned rest = 0;
   {
-    const std::lock_guard lock(mutex);
+    const MutexLock lock(mutex);
     if (log_count <= logged_at_once) return;
     rest = log_count - logged_at_once;
     log_count = 0;

@@ -59,7 +59,7 @@ Monitors::~Monitors() { core_->reactor().cancel(*this); }
 
 void Monitors::post(std::function<void()> work) { core_->reactor().post(std::move(work)); }
 
-// Null when the session is not in line. Under the lock, as find().
+// Null when the session is not in line. With the lock.
 std::shared_ptr<Monitors::Attempt> Monitors::find_attempt(const Monitor& monitor,
                                                           std::uint32_t endpoint) {
   for (const auto& attempt : monitor.line) {
@@ -77,7 +77,7 @@ void Monitors::enter(const ServedObject& object, std::uint32_t endpoint,
                      channel::Milliseconds timeout, Reply reply) {
   std::shared_ptr<Monitor> monitor;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     check_count(endpoint);
     std::shared_ptr<Monitor>& place = monitors_[{object.path, object.owner}];
     if (!place) {
@@ -98,7 +98,6 @@ void Monitors::enter(const ServedObject& object, std::uint32_t endpoint,
   admit_next(monitor);
 }
 
-// Under the lock.
 void Monitors::check_count(std::uint32_t endpoint) const {
   if (monitors_.size() < limit_) return;
   const auto count = std::count_if(monitors_.begin(), monitors_.end(), [&](const auto& each) {
@@ -110,7 +109,6 @@ void Monitors::check_count(std::uint32_t endpoint) const {
   }
 }
 
-// Under the lock.
 void Monitors::await(const std::shared_ptr<Attempt>& attempt, Reply reply) {
   attempt->reply = std::move(reply);
   const channel::Time step_end = channel::after(channel::Clock::now(), step_time);
@@ -119,7 +117,7 @@ void Monitors::await(const std::shared_ptr<Attempt>& attempt, Reply reply) {
 
 void Monitors::go_on(const ServedObject& object, std::uint32_t endpoint, Reply reply) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto monitor = find(object);
     if (!monitor) throw not_in_line();
     if (monitor->holder != endpoint) {
@@ -141,7 +139,7 @@ void Monitors::step(const std::shared_ptr<Monitor>& monitor,
                     const std::shared_ptr<Attempt>& attempt) {
   Replies replies;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto place = std::find(monitor->line.begin(), monitor->line.end(), attempt);
     if (place == monitor->line.end()) return;
     const bool is_over = channel::Clock::now() >= attempt->deadline;
@@ -160,7 +158,7 @@ void Monitors::step(const std::shared_ptr<Monitor>& monitor,
   for (const auto& reply : replies) reply();
 }
 
-// Under the lock. The client hears it now, or when it asks.
+// The client hears it now, or when it asks.
 void Monitors::fail(Monitor& monitor, Attempt& attempt, const Error& error, Replies& replies) {
   const auto self = attempt.shared_from_this();
   if (!take_out(monitor, attempt)) return;
@@ -173,14 +171,14 @@ void Monitors::fail(Monitor& monitor, Attempt& attempt, const Error& error, Repl
   }
 }
 
-// Under the lock. False when it has been taken out already.
+// False when it has been taken out already.
 bool Monitors::take_out(Monitor& monitor, const Attempt& attempt) {
   return std::erase_if(monitor.line, [&](const auto& item) { return item.get() == &attempt; }) != 0;
 }
 
 void Monitors::admit_next(const std::shared_ptr<Monitor>& monitor) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (monitor->holder != 0 || monitor->is_busy || monitor->line.empty()) return;
     monitor->is_busy = true;
   }
@@ -193,7 +191,7 @@ void Monitors::ask(const std::shared_ptr<Monitor>& monitor) {
     std::shared_ptr<Attempt> attempt;
     channel::Milliseconds time = slice;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (monitor->line.empty()) {
         monitor->is_busy = false;
         return;
@@ -215,7 +213,7 @@ void Monitors::ask(const std::shared_ptr<Monitor>& monitor) {
     Replies replies;
     bool is_wanted = true;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (error) {
         fail(*monitor, *attempt, *error, replies);
       } else if (is_free) {
@@ -236,7 +234,7 @@ void Monitors::ask(const std::shared_ptr<Monitor>& monitor) {
     }
     for (const auto& reply : replies) reply();
     if (is_free && is_wanted) {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       schedule_drop();
       return;
     }
@@ -244,7 +242,7 @@ void Monitors::ask(const std::shared_ptr<Monitor>& monitor) {
   }
 }
 
-// Under the lock. When the session is in, the object is to be given back.
+// When the session is in, the object is to be given back.
 bool Monitors::begin_exit(Monitor& monitor, std::uint32_t endpoint) {
   if (endpoint == 0 || monitor.holder != endpoint) return false;
   monitor.holder = 0;
@@ -256,7 +254,7 @@ bool Monitors::begin_exit(Monitor& monitor, std::uint32_t endpoint) {
 void Monitors::give_back(const std::shared_ptr<Monitor>& monitor) {
   leave_object(*monitor);
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     monitor->is_busy = false;
   }
   admit_next(monitor);
@@ -270,7 +268,7 @@ bool Monitors::exit(const ServedObject& object, std::uint32_t endpoint) {
   std::shared_ptr<Monitor> monitor;
   Replies replies;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     monitor = find(object);
     if (!monitor) return false;
     if (!begin_exit(*monitor, endpoint)) {
@@ -288,7 +286,7 @@ bool Monitors::exit(const ServedObject& object, std::uint32_t endpoint) {
 
 void Monitors::leave_lines(std::uint32_t endpoint) {
   std::vector<std::shared_ptr<Attempt>> left;  // end when the lock has
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const auto& [path, monitor] : monitors_) {
     const std::shared_ptr<Attempt> attempt = find_attempt(*monitor, endpoint);
     if (!attempt) continue;
@@ -300,7 +298,7 @@ void Monitors::leave_lines(std::uint32_t endpoint) {
 void Monitors::leave(std::uint32_t endpoint) {
   std::vector<std::shared_ptr<Monitor>> held;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (const auto& [path, monitor] : monitors_) {
       std::erase_if(monitor->line, [&](const auto& item) { return item->endpoint == endpoint; });
       monitor->failures.erase(endpoint);
@@ -317,7 +315,7 @@ std::size_t Monitors::end_if(std::uint32_t endpoint,
   Replies replies;
   std::size_t count = 0;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (const auto& [place, monitor] : monitors_) {
       if (!is_over(place.first)) continue;
       if (const std::shared_ptr<Attempt> attempt = find_attempt(*monitor, endpoint)) {
@@ -337,7 +335,7 @@ void Monitors::forget(const ServedObject& object) {
   bool is_held = false;
   Replies replies;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     monitor = find(object);
     if (!monitor) return;
     monitors_.erase({object.path, object.owner});
@@ -353,7 +351,7 @@ void Monitors::forget(const ServedObject& object) {
 }
 
 void Monitors::check(const ServedObject& object, std::uint32_t endpoint) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto monitor = find(object);
   if (!monitor || monitor->holder == 0) return;
   if (monitor->holder != endpoint) {
@@ -370,7 +368,7 @@ void Monitors::on_timer() {
 void Monitors::drop_unused() {
   std::vector<std::shared_ptr<Monitor>> dropped;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const channel::Time now = channel::Clock::now();
     for (const auto& [path, monitor] : monitors_) {
       if (monitor->holder == 0 || now - monitor->used < patience_) continue;
@@ -382,7 +380,6 @@ void Monitors::drop_unused() {
   for (const auto& monitor : dropped) give_back(monitor);
 }
 
-// Under the lock.
 void Monitors::schedule_drop() {
   channel::Time next = channel::never;
   for (const auto& [path, monitor] : monitors_) {

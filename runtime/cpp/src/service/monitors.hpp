@@ -8,13 +8,13 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/skeleton.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
@@ -78,29 +78,30 @@ class Monitors final : public channel::Timer, public std::enable_shared_from_thi
 
   void on_timer() override;
   void drop_unused();
-  void check_count(std::uint32_t endpoint) const;
+  void check_count(std::uint32_t endpoint) const RR_REQUIRES(mutex_);
   void step(const std::shared_ptr<Monitor>& monitor, const std::shared_ptr<Attempt>& attempt);
   void ask(const std::shared_ptr<Monitor>& monitor);
   void give_back(const std::shared_ptr<Monitor>& monitor);
   void admit_next(const std::shared_ptr<Monitor>& monitor);
-  void fail(Monitor& monitor, Attempt& attempt, const Error& error, Replies& replies);
-  bool take_out(Monitor& monitor, const Attempt& attempt);
-  bool begin_exit(Monitor& monitor, std::uint32_t endpoint);
-  void await(const std::shared_ptr<Attempt>& attempt, Reply reply);
+  void fail(Monitor& monitor, Attempt& attempt, const Error& error, Replies& replies)
+      RR_REQUIRES(mutex_);
+  bool take_out(Monitor& monitor, const Attempt& attempt) RR_REQUIRES(mutex_);
+  bool begin_exit(Monitor& monitor, std::uint32_t endpoint) RR_REQUIRES(mutex_);
+  void await(const std::shared_ptr<Attempt>& attempt, Reply reply) RR_REQUIRES(mutex_);
   void leave_object(const Monitor& monitor);
-  void schedule_drop();
+  void schedule_drop() RR_REQUIRES(mutex_);
   static std::shared_ptr<Attempt> find_attempt(const Monitor& monitor, std::uint32_t endpoint);
-  std::shared_ptr<Monitor> find(const ServedObject& object);
+  std::shared_ptr<Monitor> find(const ServedObject& object) RR_REQUIRES(mutex_);
   void post(std::function<void()> work);
 
   const std::shared_ptr<endpoint::Core> core_;
   const channel::Milliseconds patience_;
   const std::size_t limit_;
   std::atomic<int> held_{0};
-  std::mutex mutex_;
+  Mutex mutex_;
   // By path, and by the client whose own the object is.
   using Place = std::pair<std::string, std::uint32_t>;
-  std::map<Place, std::shared_ptr<Monitor>> monitors_;
+  std::map<Place, std::shared_ptr<Monitor>> monitors_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::service

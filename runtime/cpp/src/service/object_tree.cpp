@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/service/places.hpp"
 #include "runtime/cpp/src/service/turn_break.hpp"
@@ -102,12 +103,12 @@ ObjectTree::Object ObjectTree::find(std::string_view path, std::uint32_t client)
 ObjectTree::Known ObjectTree::find_known(const std::string& path, std::uint32_t client,
                                          bool is_below_own) {
   const channel::Time deadline = channel::after(channel::Clock::now(), patience_);
-  std::unique_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   while (true) {
     const auto found = places_.find(path);
     if (found == places_.end()) {
       if (is_below_own && client == 0) break;
-      if (!take_room(path, lock)) continue;
+      if (!take_room(path)) continue;
       Place& place = places_[path];
       if (is_below_own) place.own.try_emplace(client);
       return {nullptr, true, is_below_own};
@@ -117,7 +118,7 @@ ObjectTree::Known ObjectTree::find_known(const std::string& path, std::uint32_t 
       if (client == 0) break;
       const auto own = place.own.find(client);
       if (own == place.own.end()) {
-        if (!take_room(path, lock)) continue;
+        if (!take_room(path)) continue;
         place.own.try_emplace(client);
         return {nullptr, true, true};
       }
@@ -126,51 +127,46 @@ ObjectTree::Known ObjectTree::find_known(const std::string& path, std::uint32_t 
       add_user(place, client);
       return {place.object, false, false};
     }
-    await_settlement(lock, deadline);
+    await_settlement(deadline);
   }
   throw Error(ErrorCode::object_not_found, "this object is for clients only");
 }
 
-// Under the lock, which is given up meanwhile. Who looks for the object may be waiting for its
+// The lock is given up meanwhile. Who looks for the object may be waiting for its
 // client, and that for this request. Throws rr::Error at the deadline.
-void ObjectTree::await_settlement(std::unique_lock<std::mutex>& lock, channel::Time deadline) {
+void ObjectTree::await_settlement(channel::Time deadline) {
   const std::uint64_t seen = settlements_;
-  lock.unlock();
   {
+    const MutexUnlock unlock(mutex_);
     const TurnBreak turn_break(channel::never);  // what follows needs the turn
     channel::Reactor::about_to_wait();
-    lock.lock();
+    const MutexLock lock(mutex_);  // not when the turn is taken again
     while (settlements_ == seen && channel::Clock::now() < deadline) {
-      channel::wait_until(settled_, lock, deadline);
+      channel::wait_until(settled_, mutex_, deadline);
     }
-    lock.unlock();
   }
-  lock.lock();
   if (settlements_ == seen) {
     throw Error(ErrorCode::operation_timeout, "another request still looks for this object");
   }
 }
 
-// Under the lock. False when it was given up meanwhile, for what is not used to be released.
-bool ObjectTree::take_room(const std::string& path, std::unique_lock<std::mutex>& lock) {
-  const auto draw = [&] {
-    return size_ < limit_ && path_size_ + path.size() <= limit_ * path_room &&
-           charge_.add(cost_of(path));
-  };
-  if (!draw()) {
+// False when the lock was given up meanwhile, for what is not used to be released.
+bool ObjectTree::take_room(const std::string& path) {
+  const bool has_room = size_ < limit_ && path_size_ + path.size() <= limit_ * path_room &&
+                        charge_.add(cost_of(path));
+  if (!has_room) {
     // Not for each request of a client that asks for more and more.
     const channel::Time now = channel::coarse_now();
     Released released = now < next_sweep_ ? Released() : release_unused();
     if (released.empty() && now >= next_sweep_) next_sweep_ = now + sweep_pause;
     const bool is_full = released.empty();
-    lock.unlock();
+    const MutexUnlock unlock(mutex_);
     if (is_full) {
       throw Error(ErrorCode::out_of_system_resource,
                   "the objects of the service are as many as they may be, " +
                       std::to_string(limit_) + ", or take too much memory");
     }
     notices_.drop(std::move(released));
-    lock.lock();
     return false;
   }
   ++size_;
@@ -178,14 +174,12 @@ bool ObjectTree::take_room(const std::string& path, std::unique_lock<std::mutex>
   return true;
 }
 
-// Under the lock.
 void ObjectTree::count_out(const std::string& path) {
   --size_;
   path_size_ -= path.size();
   charge_.reduce(cost_of(path));
 }
 
-// Under the lock.
 void ObjectTree::add_user(Place& place, std::uint32_t client) {
   if (client == 0) return;
   const auto at = std::lower_bound(place.users.begin(), place.users.end(), client);
@@ -224,7 +218,7 @@ std::shared_ptr<ServedObject> ObjectTree::make(const ServedObject& parent,
   std::shared_ptr<Skeleton> skeleton = parent.skeleton->rr_child(*place, index);
   if (!skeleton) throw Error(ErrorCode::service_error, "there is no object at this path");
   const ObjectType& type = skeleton->rr_object_type();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return std::make_shared<ServedObject>(
       ServedObject{path, std::move(skeleton), &type, &members_of(type)});
 }
@@ -232,7 +226,7 @@ std::shared_ptr<ServedObject> ObjectTree::make(const ServedObject& parent,
 // Ends what find_known() has begun: `is_own` as it said then.
 void ObjectTree::settle(const std::string& path, std::uint32_t client, bool is_own, Object object) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     ++settlements_;
     Place& place = places_[path];
     if (object && object->owner != 0) {
@@ -256,7 +250,6 @@ const MemberIndex& ObjectTree::members_of(const ObjectType& type) {
   return *index;
 }
 
-// Under the lock, as the next.
 void ObjectTree::take(Object& object, Released& released) {
   if (object->owner != 0) {
     const auto paths = own_paths_.find(object->owner);
@@ -271,7 +264,7 @@ void ObjectTree::take(Object& object, Released& released) {
 template <class Condition>
 ObjectTree::Released ObjectTree::release_if(Condition condition) {
   Released released;
-  const auto is_released = [&](Object& object) {
+  const auto is_released = [&](Object& object) RR_REQUIRES(mutex_) {
     if (!object || !condition(*object)) return false;
     take(object, released);
     return true;
@@ -291,7 +284,7 @@ ObjectTree::Released ObjectTree::release_if(Condition condition) {
 }
 
 ObjectTree::Released ObjectTree::release(std::string_view path) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = places_.find(std::string(path));
   if (found == places_.end()) return {};
   const Place& place = found->second;
@@ -303,7 +296,7 @@ ObjectTree::Released ObjectTree::release(std::string_view path) {
 }
 
 ObjectTree::Released ObjectTree::release(std::string_view path, std::uint32_t client) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = places_.find(std::string(path));
   if (found == places_.end()) return {};
   const auto own = found->second.own.find(client);
@@ -315,7 +308,7 @@ ObjectTree::Released ObjectTree::release(std::string_view path, std::uint32_t cl
 
 ObjectTree::Released ObjectTree::release_all_of(std::uint32_t client) {
   Released released;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto paths = own_paths_.extract(client);
   if (paths.empty()) return released;
   for (const std::string& path : paths.mapped()) {
@@ -328,7 +321,7 @@ ObjectTree::Released ObjectTree::release_all_of(std::uint32_t client) {
   return released;
 }
 
-// Under the lock: objects of all that no client uses, but for those that something holds. Whoever
+// Objects of all that no client uses, but for those that something holds. Whoever
 // uses one has used those above it.
 ObjectTree::Released ObjectTree::release_unused() {
   Released released;
@@ -346,7 +339,7 @@ ObjectTree::Released ObjectTree::release_unused() {
 }
 
 ObjectTree::Released ObjectTree::leave(std::uint32_t client, std::size_t limit) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (auto& [path, place] : places_) {
     const auto at = std::lower_bound(place.users.begin(), place.users.end(), client);
     if (at != place.users.end() && *at == client) place.users.erase(at);
@@ -356,7 +349,7 @@ ObjectTree::Released ObjectTree::leave(std::uint32_t client, std::size_t limit) 
 }
 
 ObjectTree::Released ObjectTree::clear() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   Released released = release_if([](const ServedObject& object) { return object.owner == 0; });
   released.push_back(root_);
   generation_.fetch_add(1, std::memory_order_release);

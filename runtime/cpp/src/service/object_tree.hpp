@@ -2,13 +2,11 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string>
 #include <string_view>
@@ -16,6 +14,7 @@
 #include <vector>
 
 #include "rr/definition.hpp"
+#include "rr/mutex.hpp"
 #include "rr/skeleton.hpp"
 #include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
@@ -98,9 +97,9 @@ class ObjectTree {
     bool is_own = false;
   };
 
-  void await_settlement(std::unique_lock<std::mutex>& lock, channel::Time deadline);
+  void await_settlement(channel::Time deadline) RR_REQUIRES(mutex_);
   Known find_known(const std::string& path, std::uint32_t client, bool is_below_own);
-  bool take_room(const std::string& path, std::unique_lock<std::mutex>& lock);
+  bool take_room(const std::string& path) RR_REQUIRES(mutex_);
   static void add_user(Place& place, std::uint32_t client);
   Object look_up(const ServedObject& parent, const endpoint::PathSegment& segment,
                  const std::string& path, std::uint32_t client, bool is_own);
@@ -108,27 +107,30 @@ class ObjectTree {
                                      const endpoint::PathSegment& segment, const std::string& path);
   void settle(const std::string& path, std::uint32_t client, bool is_own, Object object);
   template <class Condition>
-  Released release_if(Condition condition);
-  Released release_unused();
-  void count_out(const std::string& path);
-  void take(Object& object, Released& released);
-  const MemberIndex& members_of(const ObjectType& type);
+  Released release_if(Condition condition) RR_REQUIRES(mutex_);
+  Released release_unused() RR_REQUIRES(mutex_);
+  void count_out(const std::string& path) RR_REQUIRES(mutex_);
+  void take(Object& object, Released& released) RR_REQUIRES(mutex_);
+  const MemberIndex& members_of(const ObjectType& type) RR_REQUIRES(mutex_);
 
   Object root_;
   const std::size_t limit_;
   const Notices notices_;
   const channel::Milliseconds patience_;
   std::atomic<std::uint32_t> generation_{0};
-  std::mutex mutex_;
-  std::condition_variable settled_;
-  std::uint64_t settlements_ = 0;
-  std::size_t size_ = 0;        // objects besides the root, and those that are looked for
-  std::size_t path_size_ = 0;   // bytes of their paths
-  channel::Charge charge_;      // for them
-  channel::Time next_sweep_{};  // what is not used is looked for then, or later
-  std::unordered_map<std::string, Place> places_;                       // all but the root
-  std::unordered_map<std::uint32_t, std::set<std::string>> own_paths_;  // of clients' own
-  std::map<const ObjectType*, std::unique_ptr<MemberIndex>> indexes_;
+  Mutex mutex_;
+  Condition settled_;
+  std::uint64_t settlements_ RR_GUARDED_BY(mutex_) = 0;
+  std::size_t size_ RR_GUARDED_BY(mutex_) =
+      0;  // objects besides the root, and those that are looked for
+  std::size_t path_size_ RR_GUARDED_BY(mutex_) = 0;  // bytes of their paths
+  channel::Charge charge_ RR_GUARDED_BY(mutex_);     // for them
+  channel::Time next_sweep_
+      RR_GUARDED_BY(mutex_){};  // what is not used is looked for then, or later
+  std::unordered_map<std::string, Place> places_ RR_GUARDED_BY(mutex_);  // all but the root
+  std::unordered_map<std::uint32_t, std::set<std::string>> own_paths_
+      RR_GUARDED_BY(mutex_);  // of clients' own
+  std::map<const ObjectType*, std::unique_ptr<MemberIndex>> indexes_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::service

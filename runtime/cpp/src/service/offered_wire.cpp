@@ -68,7 +68,7 @@ void OfferedWire::send_all(const void* value) {
   std::shared_ptr<const Ends> ends;
   endpoint::SenderTime time = 0;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     before = std::exchange(in_, kept);
     ends = ends_;
     if (ends->empty()) return;
@@ -92,7 +92,7 @@ void OfferedWire::join(const End& end) {
   endpoint::SenderTime time = 0;
   Shared<Connected> connected;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (std::find(ends_->begin(), ends_->end(), end) == ends_->end()) {
       ends_ = with_end(*ends_, end, [](const End& one) { return one->node(); });
     }
@@ -110,70 +110,73 @@ void OfferedWire::join(const End& end) {
 
 void OfferedWire::leave(const ServedWireEnd& end) {
   std::shared_ptr<const Ends> before;  // freed outside of the lock
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   auto ends = std::make_shared<Ends>(*ends_);
   std::erase_if(*ends, [&](const End& other) { return other.get() == &end; });
   before = std::exchange(ends_, std::move(ends));
 }
 
 std::shared_ptr<const void> OfferedWire::received(TimeSpec& time) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return out_.get(time);
 }
 
 void OfferedWire::set_lifespan(std::chrono::milliseconds lifespan) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   out_.set_lifespan(lifespan);
 }
 
 std::shared_ptr<const OfferedWire::Ends> OfferedWire::ends() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return ends_;
 }
 
 template <class Function>
-OfferedWire::Shared<Function> OfferedWire::get(const Shared<Function>& function) const {
-  const std::lock_guard lock(mutex_);
-  return function;
+OfferedWire::Shared<Function> OfferedWire::get(Shared<Function> OfferedWire::*place) const {
+  const MutexLock lock(mutex_);
+  return this->*place;
 }
 
 template <class Function>
-void OfferedWire::set(Shared<Function>& place, Function function) {
+void OfferedWire::set(Shared<Function> OfferedWire::*place, Function function) {
   auto shared = function ? std::make_shared<const Function>(std::move(function)) : nullptr;
-  const std::lock_guard lock(mutex_);
-  place.swap(shared);  // what was there is freed outside of the lock: `shared` is the older
+  const MutexLock lock(mutex_);
+  (this->*place)
+      .swap(shared);  // what was there is freed outside of the lock: `shared` is the older
 }
 
-void OfferedWire::set_connected(Connected function) { set(connected_, std::move(function)); }
-void OfferedWire::set_peek_in(Peek function) { set(peek_in_, std::move(function)); }
-void OfferedWire::set_peek_out(Peek function) { set(peek_out_, std::move(function)); }
+void OfferedWire::set_connected(Connected function) {
+  set(&OfferedWire::connected_, std::move(function));
+}
+void OfferedWire::set_peek_in(Peek function) { set(&OfferedWire::peek_in_, std::move(function)); }
+void OfferedWire::set_peek_out(Peek function) { set(&OfferedWire::peek_out_, std::move(function)); }
 void OfferedWire::set_received(Received function) {
   const bool has_function = static_cast<bool>(function);
-  set(received_, std::move(function));
+  set(&OfferedWire::received_, std::move(function));
   has_received_ = has_function;
 }
 
 std::shared_ptr<const void> OfferedWire::peek_in() const {
-  if (const auto function = get(peek_in_)) return need((*function)());
-  const std::lock_guard lock(mutex_);
+  if (const auto function = get(&OfferedWire::peek_in_)) return need((*function)());
+  const MutexLock lock(mutex_);
   return need(in_);
 }
 
 std::shared_ptr<const void> OfferedWire::peek_out() const {
-  if (const auto function = get(peek_out_)) return need((*function)());
+  if (const auto function = get(&OfferedWire::peek_out_)) return need((*function)());
   TimeSpec time;
   return need(received(time));
 }
 
 void OfferedWire::keep(std::shared_ptr<const void> value, const TimeSpec& time) {
   std::shared_ptr<const void> before;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   before = out_.put(std::move(value), time);
 }
 
 void OfferedWire::tell_received(const void* value, const TimeSpec& time,
                                 std::uint32_t client) const {
-  if (const auto function = get(received_)) (*function)(value, time, client);
+  if (const auto function = get(&OfferedWire::received_)) (*function)(value, time, client);
 }
 
 }  // namespace rr::service

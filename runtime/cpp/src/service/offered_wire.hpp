@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <vector>
 
 #include "rr/definition.hpp"
+#include "rr/mutex.hpp"
 #include "rr/wires.hpp"
 #include "runtime/cpp/src/endpoint/newest_value.hpp"
 #include "runtime/cpp/src/endpoint/sender_clock.hpp"
@@ -58,22 +58,23 @@ class OfferedWire {
   template <class Function>
   using Shared = std::shared_ptr<const Function>;
   template <class Function>
-  Shared<Function> get(const Shared<Function>& function) const;
+  Shared<Function> get(Shared<Function> OfferedWire::*place) const;
   template <class Function>
-  void set(Shared<Function>& place, Function function);
+  void set(Shared<Function> OfferedWire::*place, Function function);
 
   const Member& member_;
   endpoint::SenderTimes times_;
   std::atomic<bool> has_received_{false};
 
-  mutable std::mutex mutex_;
-  std::shared_ptr<const Ends> ends_ = std::make_shared<const Ends>();  // replaced, never changed
-  std::shared_ptr<const void> in_;                                     // what was sent to all last
-  endpoint::NewestValue out_;
-  Shared<Connected> connected_;
-  Shared<Peek> peek_in_;
-  Shared<Peek> peek_out_;
-  Shared<Received> received_;
+  mutable Mutex mutex_;
+  std::shared_ptr<const Ends> ends_ RR_GUARDED_BY(mutex_) =
+      std::make_shared<const Ends>();                     // replaced, never changed
+  std::shared_ptr<const void> in_ RR_GUARDED_BY(mutex_);  // what was sent to all last
+  endpoint::NewestValue out_ RR_GUARDED_BY(mutex_);
+  Shared<Connected> connected_ RR_GUARDED_BY(mutex_);
+  Shared<Peek> peek_in_ RR_GUARDED_BY(mutex_);
+  Shared<Peek> peek_out_ RR_GUARDED_BY(mutex_);
+  Shared<Received> received_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::service

@@ -19,7 +19,7 @@ std::size_t cost(const LateAnswer& answer) {
 
 std::uint64_t OwedAnswers::add(const std::shared_ptr<ServerEndpoint>& endpoint, LateAnswer answer,
                                std::size_t limit) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const std::uint64_t number = next_++;
   if (has_ended_) return number;
   if (answers_.size() >= limit) {
@@ -37,7 +37,7 @@ std::uint64_t OwedAnswers::add(const std::shared_ptr<ServerEndpoint>& endpoint, 
 }
 
 std::optional<OwedAnswers::Taken> OwedAnswers::take(std::uint64_t number) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = answers_.find(number);
   if (found == answers_.end()) return std::nullopt;
   charge_.reduce(cost(found->second));
@@ -51,7 +51,7 @@ std::optional<OwedAnswers::Taken> OwedAnswers::take(std::uint64_t number) {
 
 void OwedAnswers::end() {
   std::unordered_map<std::uint64_t, LateAnswer> dropped;  // without the lock
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   has_ended_ = true;
   endpoint_.reset();
   answers_.swap(dropped);

@@ -4,13 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <unordered_map>
 #include <utility>
 
 #include "rr/definition.hpp"
+#include "rr/mutex.hpp"
 #include "rr/reader.hpp"
 #include "runtime/cpp/src/channel/account.hpp"
 
@@ -61,12 +61,12 @@ class OwedAnswers {
   void end();
 
  private:
-  std::mutex mutex_;
-  std::weak_ptr<ServerEndpoint> endpoint_;
-  std::unordered_map<std::uint64_t, LateAnswer> answers_;
-  channel::Charge charge_;  // for them
-  std::uint64_t next_ = 0;
-  bool has_ended_ = false;
+  Mutex mutex_;
+  std::weak_ptr<ServerEndpoint> endpoint_ RR_GUARDED_BY(mutex_);
+  std::unordered_map<std::uint64_t, LateAnswer> answers_ RR_GUARDED_BY(mutex_);
+  channel::Charge charge_ RR_GUARDED_BY(mutex_);  // for them
+  std::uint64_t next_ RR_GUARDED_BY(mutex_) = 0;
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace rr::service

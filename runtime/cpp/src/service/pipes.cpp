@@ -24,36 +24,36 @@ constexpr Parameter index_parameter = parameter<std::int32_t>("index");
 }  // namespace
 
 void PipePlace::set_connected(Function<void(PipeEnd)> function) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::swap(connected_, function);  // what was there before ends behind the lock
 }
 
 Function<void(PipeEnd)> PipePlace::connected() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return connected_;
 }
 
 void PipePlace::set_backlog_limit(std::size_t packets) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   audience_.backlog_limit = packets;
 }
 
 void PipePlace::add(const End& end) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   audience_.ends =
       with_end(*audience_.ends, end, [](const End& one) { return one->identity.node; });
 }
 
 void PipePlace::remove(const PipeEnd::State& end) {
   std::shared_ptr<const Ends> before;  // ends behind the lock
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   auto ends = std::make_shared<Ends>(*audience_.ends);
   std::erase_if(*ends, [&](const End& other) { return other.get() == &end; });
   before = std::exchange(audience_.ends, std::move(ends));
 }
 
 PipePlace::Audience PipePlace::audience() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return audience_;
 }
 
@@ -78,7 +78,7 @@ Pipes::End Pipes::open(const Question& question, const ServedObject& object, con
   const bool is_unreliable =
       (member.access & unreliable) != 0 &&
       find_element(decoder, entry.elements, entry.element_count, "unreliable", element);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto index = ends_.choose(object.path, member.name, wanted);
   if (!index || ends_.size() >= ends_of_a_client) {
     throw Error(ErrorCode::out_of_system_resource, "too many pipe endpoints");
@@ -127,7 +127,7 @@ void Pipes::connect(const Question& question) {
   type_of<std::int32_t>.write(writer, "index", &end->identity.index);
   endpoint_.answer_elements(question, writer, end->identity.is_unreliable ? 2 : 1);
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     end->is_announced = true;
     if (!end->is_closed_unannounced) return;
   }
@@ -142,7 +142,7 @@ void Pipes::disconnect(const Question& question) {
   endpoint::read_value(decoder, question.entry, "index", type_of<std::int32_t>, &index);
   endpoint::PipeTable::End end;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     end = ends_.find(object->path, member.name, index);
     if (!end) throw Error(ErrorCode::invalid_argument, "Invalid pipe");
     ends_.remove(*end);
@@ -158,7 +158,7 @@ void Pipes::take_packets(const Question& question) {
                                 *endpoint_.host_->types(),
                                 {connection().account(), endpoint_.container_limit()});
   arrival.take([&](const endpoint::PipePacket& packet, Decoder&) -> endpoint::PipeArrival::Taken {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     auto end = ends_.find(object->path, member.name, packet.index);
     const bool is_taken = end != nullptr;
     return {std::move(end), is_taken};
@@ -180,7 +180,7 @@ void Pipes::take_acknowledgements(const Question& question) {
                                      [&](std::int32_t index, std::uint32_t number) {
                                        endpoint::PipeTable::End end;
                                        {
-                                         const std::lock_guard lock(mutex_);
+                                         const MutexLock lock(mutex_);
                                          end = ends_.find(entry.service_path, entry.member, index);
                                        }
                                        if (end) end->take_acknowledgement(number);
@@ -196,7 +196,7 @@ void Pipes::finish(Served& end) {
 std::size_t Pipes::end_if(const Choice& is_over) {
   std::vector<endpoint::PipeTable::End> over;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     over = ends_.all();
   }
   std::erase_if(over, [&](const auto& end) {
@@ -209,7 +209,7 @@ std::size_t Pipes::end_if(const Choice& is_over) {
 void Pipes::release(std::string_view path) {
   std::vector<endpoint::PipeTable::End> ended;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     ended = ends_.take_below(path);
     // The notice of the release may leave before the answer, and then is not of what that opens.
     for (const auto& end : ended) {
@@ -223,7 +223,7 @@ void Pipes::release(std::string_view path) {
 void Pipes::end() {
   std::vector<endpoint::PipeTable::End> ended;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     ended = ends_.take_all();
   }
   for (const auto& end : ended) finish(static_cast<Served&>(*end));
@@ -245,7 +245,7 @@ void Pipes::close(PipeEnd::State& state, bool /*may_wait*/) {
   const auto keep = end.shared_from_this();
   bool is_announced = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!ends_.remove(end)) return;
     is_announced = end.is_announced;
     end.is_closed_unannounced = !is_announced;
@@ -267,7 +267,7 @@ void Pipes::send_closed(const Served& end) {
 namespace rr {
 
 std::shared_ptr<service::PipePlace> Skeleton::Places::pipe(std::string_view name) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = pipes_.find(name);
   if (found != pipes_.end()) return found->second;
   return pipes_.emplace(std::string(name), std::make_shared<service::PipePlace>()).first->second;

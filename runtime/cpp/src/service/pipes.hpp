@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string_view>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/pipes.hpp"
 #include "runtime/cpp/src/endpoint/pipe_state.hpp"
 #include "runtime/cpp/src/endpoint/pipe_table.hpp"
@@ -40,9 +40,10 @@ class PipePlace {
   [[nodiscard]] Audience audience() const;
 
  private:
-  mutable std::mutex mutex_;
-  Function<void(PipeEnd)> connected_;
-  Audience audience_{std::make_shared<Ends>()};  // the list is replaced, never changed
+  mutable Mutex mutex_;
+  Function<void(PipeEnd)> connected_ RR_GUARDED_BY(mutex_);
+  Audience audience_ RR_GUARDED_BY(mutex_){
+      std::make_shared<Ends>()};  // the list is replaced, never changed
 };
 
 /// The pipe endpoints of a client, on the service's side.
@@ -78,8 +79,8 @@ class Pipes final : public endpoint::PipeSide {
   void send_closed(const Served& end);
 
   ServerEndpoint& endpoint_;
-  std::mutex mutex_;
-  endpoint::PipeTable ends_;
+  Mutex mutex_;
+  endpoint::PipeTable ends_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::service

@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/skeleton.hpp"
 
 namespace rr {
@@ -47,10 +47,11 @@ struct Skeleton::Places {
   std::atomic<bool> is_per_client{false};
 
  private:
-  std::mutex mutex_;
-  std::vector<Place<std::weak_ptr<service::ServiceHost>>> places_;
-  std::map<std::string_view, std::shared_ptr<service::OfferedWire>> wires_;
-  std::map<std::string, std::shared_ptr<service::PipePlace>, std::less<>> pipes_;
+  Mutex mutex_;
+  std::vector<Place<std::weak_ptr<service::ServiceHost>>> places_ RR_GUARDED_BY(mutex_);
+  std::map<std::string_view, std::shared_ptr<service::OfferedWire>> wires_ RR_GUARDED_BY(mutex_);
+  std::map<std::string, std::shared_ptr<service::PipePlace>, std::less<>> pipes_
+      RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr

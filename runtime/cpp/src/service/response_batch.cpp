@@ -72,29 +72,28 @@ void ResponseBatch::put(std::size_t place, const Entry& request, Writer& answer,
       answer_cost + answer.size() + request.service_path.size() + request.member.size();
   bool is_drawn = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_drawn = charge_.add(cost);
   }
   Answer result = kept(request, answer);  // the writer may be the thread's, which flush() uses
   result.cost = cost;
-  std::unique_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!is_drawn) {
     must_flush_ = true;  // what leaves may make room
-    flush(lock, is_late);
+    flush(is_late);
     if (!charge_.add(cost)) throw too_much();
   }
   waiting_.insert_or_assign(place, std::move(result));
   settle(place);
-  flush(lock, is_late);
+  flush(is_late);
 }
 
 void ResponseBatch::put_nothing(std::size_t place) {
-  std::unique_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   settle(place);
-  flush(lock, false);
+  flush(false);
 }
 
-// Under the lock.
 void ResponseBatch::settle(std::size_t place) {
   settled_[place] = true;
   --missing_;
@@ -108,7 +107,7 @@ void ResponseBatch::settle(std::size_t place) {
   }
 }
 
-// Under the lock: the next answers, if they fill a message or no more will come.
+// The next answers, if they fill a message or no more will come.
 ResponseBatch::Answers ResponseBatch::take_ready() {
   Answers answers;
   const bool is_full =
@@ -133,17 +132,18 @@ ResponseBatch::Answers ResponseBatch::take_ready() {
 }
 
 // One thread at a time sends, so that batches leave in their order; it sends what comes meanwhile.
-void ResponseBatch::flush(std::unique_lock<std::mutex>& lock, bool is_late) {
+void ResponseBatch::flush(bool is_late) {
   if (std::exchange(is_sending_, true)) return;
   for (Answers answers = take_ready(); !answers.empty(); answers = take_ready()) {
-    lock.unlock();
-    if (const auto endpoint = endpoint_.lock(); endpoint && !endpoint->connection().is_closed()) {
-      send(*endpoint, answers, is_late);
-    }
     std::size_t cost = 0;
-    for (const Answer& answer : answers) cost += answer.cost;
-    answers.clear();
-    lock.lock();
+    {
+      const MutexUnlock unlock(mutex_);
+      if (const auto endpoint = endpoint_.lock(); endpoint && !endpoint->connection().is_closed()) {
+        send(*endpoint, answers, is_late);
+      }
+      for (const Answer& answer : answers) cost += answer.cost;
+      answers.clear();
+    }
     charge_.reduce(cost);  // not before: the connection has drawn for its copy
   }
   is_sending_ = false;

@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "rr/buffer.hpp"
+#include "rr/mutex.hpp"
 #include "rr/reader.hpp"
 #include "rr/wire.hpp"
 #include "rr/writer.hpp"
@@ -55,9 +55,9 @@ class ResponseBatch {
   using Answers = std::vector<Answer>;
 
   static Answer kept(const Entry& request, Writer& answer);
-  void settle(std::size_t place);
-  void flush(std::unique_lock<std::mutex>& lock, bool is_late);
-  Answers take_ready();
+  void settle(std::size_t place) RR_REQUIRES(mutex_);
+  void flush(bool is_late) RR_REQUIRES(mutex_);
+  Answers take_ready() RR_REQUIRES(mutex_);
   void send(ServerEndpoint& endpoint, std::span<const Answer> answers, bool is_late);
   void send_errors(ServerEndpoint& endpoint, const Answer& answer, bool is_late);
 
@@ -65,17 +65,17 @@ class ResponseBatch {
   const MessageVersion version_;
   const std::size_t message_room_;  // bytes of answers that one message holds
 
-  std::mutex mutex_;
-  channel::Charge charge_;
-  std::map<std::size_t, Answer> waiting_;  // by their places
-  std::vector<bool> settled_;              // the places that nothing more comes for
-  std::size_t missing_;                    // places that are not settled
-  std::size_t ready_ = 0;                  // all before this place are settled
-  std::size_t ready_size_ = 0;             // bytes of answers before it
-  std::size_t ready_copied_ = 0;           // those of them that are to be copied
-  std::size_t ready_count_ = 0;
-  bool must_flush_ = false;  // what is ready, though more would fit
-  bool is_sending_ = false;  // a thread is in flush()
+  Mutex mutex_;
+  channel::Charge charge_ RR_GUARDED_BY(mutex_);
+  std::map<std::size_t, Answer> waiting_ RR_GUARDED_BY(mutex_);  // by their places
+  std::vector<bool> settled_ RR_GUARDED_BY(mutex_);     // the places that nothing more comes for
+  std::size_t missing_ RR_GUARDED_BY(mutex_);           // places that are not settled
+  std::size_t ready_ RR_GUARDED_BY(mutex_) = 0;         // all before this place are settled
+  std::size_t ready_size_ RR_GUARDED_BY(mutex_) = 0;    // bytes of answers before it
+  std::size_t ready_copied_ RR_GUARDED_BY(mutex_) = 0;  // those of them that are to be copied
+  std::size_t ready_count_ RR_GUARDED_BY(mutex_) = 0;
+  bool must_flush_ RR_GUARDED_BY(mutex_) = false;  // what is ready, though more would fit
+  bool is_sending_ RR_GUARDED_BY(mutex_) = false;  // a thread is in flush()
 };
 
 }  // namespace rr::service

@@ -27,7 +27,7 @@ RightsFile::State RightsFile::state() const {
 std::shared_ptr<const Rights> RightsFile::read() {
   const State now = state();
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     seen_ = now;
   }
   if (platform::state_of(path_).may_others_write) {
@@ -56,7 +56,7 @@ void RightsFile::look() {
   bool is_same = false;
   {
     const State now = state();
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_same = now == seen_;
   }
   if (!is_same) {

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 
+#include "rr/mutex.hpp"
 #include "rr/rights.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
@@ -40,9 +40,9 @@ class RightsFile final : public channel::Timer, public std::enable_shared_from_t
 
   const std::shared_ptr<endpoint::Core> core_;
   const std::string path_;
-  std::mutex mutex_;
-  State seen_;
-  Changed changed_;
+  Changed changed_;  // set by watch(), before anything is looked at
+  Mutex mutex_;
+  State seen_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::service

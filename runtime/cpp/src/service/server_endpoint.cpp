@@ -318,7 +318,7 @@ void ServerEndpoint::leave() {
 void ServerEndpoint::lost(const Error& why, channel::DeferredCallbacks& deferred) {
   std::shared_ptr<Logins::Attempt> login;
   {
-    const std::lock_guard lock(user_mutex_);
+    const MutexLock lock(user_mutex_);
     login = login_;
   }
   if (login) directory_->logins().cancel(login);
@@ -328,7 +328,7 @@ void ServerEndpoint::lost(const Error& why, channel::DeferredCallbacks& deferred
   std::shared_ptr<ServiceHost> host;
   ServiceClient client;
   {
-    const std::lock_guard lock(user_mutex_);
+    const MutexLock lock(user_mutex_);
     std::tie(host, client) = session_;
   }
   if (host) host->monitors().leave_lines(client.endpoint);
@@ -364,7 +364,7 @@ void ServerEndpoint::end_members() {
 
 // Once for each session, whatever ends it.
 void ServerEndpoint::announce_leaving(channel::DeferredCallbacks& deferred) {
-  const std::lock_guard lock(user_mutex_);
+  const MutexLock lock(user_mutex_);
   if (!present_at_) return;
   deferred.emplace_back([host = std::exchange(present_at_, nullptr), client = session_.second] {
     host->announce_leaving(client);

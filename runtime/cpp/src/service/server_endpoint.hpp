@@ -6,7 +6,6 @@
 #include <exception>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,6 +13,7 @@
 
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/reader.hpp"
 #include "rr/service.hpp"
 #include "rr/skeleton.hpp"
@@ -262,11 +262,13 @@ class ServerEndpoint final : public channel::Receiver,
   Callbacks callbacks_{*this};
   Generators generators_;
   ClientScopedValues client_values_;
-  mutable std::mutex user_mutex_;
-  // The host and the client, for whoever has no turn; the same lock.
-  std::pair<std::shared_ptr<ServiceHost>, ServiceClient> session_;
-  std::shared_ptr<ServiceHost> present_at_;  // is to be told that the client leaves; the same lock
-  std::shared_ptr<Logins::Attempt> login_;   // of the message that is handled; under user_mutex_
+  mutable Mutex user_mutex_;
+  // The host and the client, for whoever has no turn.
+  std::pair<std::shared_ptr<ServiceHost>, ServiceClient> session_ RR_GUARDED_BY(user_mutex_);
+  std::shared_ptr<ServiceHost> present_at_
+      RR_GUARDED_BY(user_mutex_);  // is to be told that the client leaves
+  std::shared_ptr<Logins::Attempt> login_
+      RR_GUARDED_BY(user_mutex_);  // of the message that is handled
   // With the dispatch turn:
   std::vector<Unfinished> unfinished_;       // the next one is the last
   bool has_outcome_ = false;                 // of login_

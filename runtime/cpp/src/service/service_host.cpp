@@ -16,14 +16,14 @@ namespace rr {
 
 void Skeleton::Places::add(std::weak_ptr<service::ServiceHost> host,
                            const service::ServedObject& object) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   places_.push_back({std::move(host), object.path, object.owner});
 }
 
 void Skeleton::Places::remove(const service::ServiceHost& host,
                               const service::ServedObject& object) {
   const std::weak_ptr<const service::ServiceHost> self = host.weak_from_this();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   // Compared without taking hold of any: letting go of the last one would destroy it under the
   // lock.
   std::erase_if(places_, [&](const auto& place) {
@@ -35,7 +35,7 @@ void Skeleton::Places::remove(const service::ServiceHost& host,
 
 auto Skeleton::Places::all() -> std::vector<Place<std::shared_ptr<service::ServiceHost>>> {
   std::vector<Place<std::shared_ptr<service::ServiceHost>>> result;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const auto& place : places_) {
     if (auto alive = place.host.lock()) {
       result.push_back({std::move(alive), place.path, place.owner});
@@ -45,7 +45,7 @@ auto Skeleton::Places::all() -> std::vector<Place<std::shared_ptr<service::Servi
 }
 
 std::shared_ptr<service::OfferedWire> Skeleton::Places::wire(const Member& member) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   auto& wire = wires_[member.name];
   if (!wire) wire = std::make_shared<service::OfferedWire>(member);
   return wire;
@@ -90,6 +90,8 @@ ServiceHost::ServiceHost(std::shared_ptr<endpoint::Core> core, std::weak_ptr<Dir
     : core_(std::move(core)),
       directory_(std::move(directory)),
       name_(std::move(name)),
+      attributes_(std::move(options.attributes)),
+      rights_(std::move(options.rights)),
       options_(std::move(options)),
       types_(core_->types()),
       definitions_(all_definitions(*root, options_)),
@@ -108,11 +110,11 @@ ServiceHost::ServiceHost(std::shared_ptr<endpoint::Core> core, std::weak_ptr<Dir
           std::make_shared<Monitors>(core_, options_.monitor_patience, options_.limits.monitors)),
       clients_(std::make_shared<const Clients>()) {
   if (options_.rights_file.empty()) return;
-  if (options_.rights) {
+  if (rights_) {
     throw Error(ErrorCode::invalid_argument, "the rights of `" + name_ + "` are given twice");
   }
   rights_file_ = std::make_shared<RightsFile>(core_, options_.rights_file);
-  options_.rights = rights_file_->read();
+  rights_ = rights_file_->read();
 }
 
 void ServiceHost::start() {
@@ -160,14 +162,14 @@ void ServiceHost::tell_released_later(ObjectTree::Released released) const {
 }
 
 std::map<std::string, VarValue> ServiceHost::attributes() const {
-  const std::lock_guard lock(mutex_);
-  return options_.attributes;
+  const MutexLock lock(mutex_);
+  return attributes_;
 }
 
 void ServiceHost::set_attributes(std::map<std::string, VarValue> attributes) {
   {
-    const std::lock_guard lock(mutex_);
-    options_.attributes.swap(attributes);  // the old ones go when the lock has
+    const MutexLock lock(mutex_);
+    attributes_.swap(attributes);  // the old ones go when the lock has
   }
   if (const auto directory = directory_.lock()) directory->services_changed();
 }
@@ -178,19 +180,19 @@ std::optional<std::string> ServiceHost::root_type_for(
 }
 
 std::shared_ptr<const ServiceHost::Clients> ServiceHost::connected() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return clients_;
 }
 
 std::shared_ptr<const Rights> ServiceHost::rights() const {
-  const std::lock_guard lock(mutex_);
-  return options_.rights;
+  const MutexLock lock(mutex_);
+  return rights_;
 }
 
 void ServiceHost::set_rights(std::shared_ptr<const Rights> rights) {
   {
-    const std::lock_guard lock(mutex_);
-    options_.rights.swap(rights);  // the old ones go when the lock has
+    const MutexLock lock(mutex_);
+    rights_.swap(rights);  // the old ones go when the lock has
   }
   const auto clients = connected();
   for (const auto& client : *clients) client->renew_rights(*this);
@@ -210,7 +212,7 @@ std::vector<ServiceClient> ServiceHost::clients() const {
 bool ServiceHost::add_client(const std::shared_ptr<ServerEndpoint>& client) {
   std::shared_ptr<const Clients> old;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_closed_) return false;
     auto clients = std::make_shared<Clients>(*clients_);
     clients->push_back(client);
@@ -224,7 +226,7 @@ bool ServiceHost::add_client(const std::shared_ptr<ServerEndpoint>& client) {
 void ServiceHost::remove_client(const ServerEndpoint& client) {
   std::shared_ptr<const Clients> old;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     auto clients = std::make_shared<Clients>(*clients_);
     std::erase_if(*clients, [&](const auto& other) { return other.get() == &client; });
     old = std::exchange(clients_, std::move(clients));
@@ -331,7 +333,7 @@ void ServiceHost::fire(const std::string& path, std::uint32_t owner, const Membe
 void ServiceHost::close() {
   const auto self = shared_from_this();  // the directory's reference may be the last
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (std::exchange(is_closed_, true)) return;
   }
   if (const auto directory = directory_.lock()) directory->remove(*this);

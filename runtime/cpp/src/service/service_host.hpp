@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/service.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
 #include "runtime/cpp/src/service/answer_sizes.hpp"
@@ -100,7 +100,9 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   const std::shared_ptr<endpoint::Core> core_;
   const std::weak_ptr<Directory> directory_;
   const std::string name_;
-  ServiceOptions options_;  // its attributes and rights are guarded
+  std::map<std::string, VarValue> attributes_ RR_GUARDED_BY(mutex_);
+  std::shared_ptr<const Rights> rights_ RR_GUARDED_BY(mutex_);
+  const ServiceOptions options_;  // without these two
   const std::shared_ptr<const TypeRegistry> types_;
   const std::vector<const Definition*> definitions_;
   ObjectTree objects_;
@@ -110,9 +112,9 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   std::shared_ptr<RightsFile> rights_file_;  // null without one
 
   std::atomic<bool> is_started_{false};
-  mutable std::mutex mutex_;
-  std::shared_ptr<const Clients> clients_;  // replaced, never changed
-  bool is_closed_ = false;
+  mutable Mutex mutex_;
+  std::shared_ptr<const Clients> clients_ RR_GUARDED_BY(mutex_);  // replaced, never changed
+  bool is_closed_ RR_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace rr::service

@@ -27,7 +27,7 @@ bool are_same(const User* a, const User* b) {
 }  // namespace
 
 void SessionAccess::open(const ServiceHost& host) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   is_open_ = true;
   has_users_ = host.users() != nullptr;
   requires_user_ = host.requires_user();
@@ -36,7 +36,7 @@ void SessionAccess::open(const ServiceHost& host) {
 }
 
 void SessionAccess::close() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   is_open_ = false;
   user_.reset();
   rights_.reset();
@@ -45,13 +45,13 @@ void SessionAccess::close() {
 }
 
 std::shared_ptr<const User> SessionAccess::user() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return user_;
 }
 
 // What nobody had opened is the first user's, as far as that one may have it.
 std::shared_ptr<const User> SessionAccess::log_in(std::shared_ptr<const User> user) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::shared_ptr<const User> before = std::exchange(user_, std::move(user));
   if (before && are_same(before.get(), user_.get())) before.reset();
   if (before) login_.fetch_add(1, std::memory_order_release);
@@ -60,7 +60,7 @@ std::shared_ptr<const User> SessionAccess::log_in(std::shared_ptr<const User> us
 }
 
 std::shared_ptr<const User> SessionAccess::log_out() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::shared_ptr<const User> before = std::exchange(user_, nullptr);
   if (!before) return nullptr;
   login_.fetch_add(1, std::memory_order_release);
@@ -70,7 +70,7 @@ std::shared_ptr<const User> SessionAccess::log_out() {
 
 // They are asked for under the lock, so that of two changes the later one remains.
 bool SessionAccess::renew_rights(const ServiceHost& host) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   auto rights = host.rights();
   if (!is_open_ || rights_ == rights) return false;
   rights_ = std::move(rights);
@@ -78,7 +78,6 @@ bool SessionAccess::renew_rights(const ServiceHost& host) {
   return true;
 }
 
-// Under the lock.
 void SessionAccess::renew() {
   grants_ = rights_ ? std::make_shared<const Grants>(rights_, user_.get()) : nullptr;
   std::uint32_t bits = 0;
@@ -91,7 +90,7 @@ void SessionAccess::renew() {
 }
 
 std::shared_ptr<const Grants> SessionAccess::grants() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return grants_;
 }
 

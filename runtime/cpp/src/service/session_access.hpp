@@ -4,10 +4,10 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <string_view>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/rights.hpp"
 #include "rr/users.hpp"
 #include "rr/wire.hpp"
@@ -78,18 +78,18 @@ class SessionAccess {
 
   [[nodiscard]] static bool suffices(const AccessRow& row, std::uint32_t standing);
   [[nodiscard]] std::shared_ptr<const Grants> grants() const;
-  void renew();
+  void renew() RR_REQUIRES(mutex_);
 
   std::atomic<std::uint32_t> standing_{0};
   std::atomic<std::uint32_t> login_{0};
 
-  mutable std::mutex mutex_;
-  bool is_open_ = false;
-  bool has_users_ = false;
-  bool requires_user_ = false;
-  std::shared_ptr<const User> user_;
-  std::shared_ptr<const Rights> rights_;
-  std::shared_ptr<const Grants> grants_;  // null without rules
+  mutable Mutex mutex_;
+  bool is_open_ RR_GUARDED_BY(mutex_) = false;
+  bool has_users_ RR_GUARDED_BY(mutex_) = false;
+  bool requires_user_ RR_GUARDED_BY(mutex_) = false;
+  std::shared_ptr<const User> user_ RR_GUARDED_BY(mutex_);
+  std::shared_ptr<const Rights> rights_ RR_GUARDED_BY(mutex_);
+  std::shared_ptr<const Grants> grants_ RR_GUARDED_BY(mutex_);  // null without rules
 };
 
 /// Whether somebody who is not connected may ask for the type of an object.

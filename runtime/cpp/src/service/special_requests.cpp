@@ -304,7 +304,7 @@ std::uint32_t ServerEndpoint::join(const std::shared_ptr<ServiceHost>& host,
   }
   is_announced_ = true;
   {
-    const std::lock_guard lock(user_mutex_);
+    const MutexLock lock(user_mutex_);
     session_ = {host, client_};
     present_at_ = host;
   }
@@ -329,7 +329,7 @@ void ServerEndpoint::quit() {
   client_ = {};
   connection_->set_endpoints(0, 0);
   connection_->set_authorised(false);
-  const std::lock_guard lock(user_mutex_);
+  const MutexLock lock(user_mutex_);
   session_ = {};
 }
 

@@ -17,7 +17,7 @@ void Target::on_timer() {
 
 // On the watching thread.
 void Services::due(const TargetPointer& target) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (target->phase == Target::Phase::resting) {
     begin_soon(target);
   } else if (target->phase == Target::Phase::attempting) {
@@ -26,7 +26,6 @@ void Services::due(const TargetPointer& target) {
   }
 }
 
-// Under the lock, as the next one.
 void Services::begin_soon(const TargetPointer& target) {
   host_.core->reactor().post([self = shared_from_this(), target] { self->begin(target); });
 }
@@ -51,7 +50,7 @@ void Services::begin(const TargetPointer& target) {
   try {
     auto made = std::make_shared<Attempt>();
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       const bool is_idle =
           target->phase == Target::Phase::resting || target->phase == Target::Phase::waiting;
       if (is_closed_ || !is_idle) return;
@@ -98,7 +97,7 @@ Services::Reached Services::reach(const TargetPointer& target, const AttemptPoin
   bool is_known = false;
   const auto wanted = filter();
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     service = target->service;
     is_known = target->is_known;
   }
@@ -208,7 +207,7 @@ void Services::succeed(const TargetPointer& target, const AttemptPointer& attemp
   bool is_wanted = false;
   std::optional<Error> ended;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     ended = reached.end->why;
     is_wanted = target->phase == Target::Phase::attempting && target->attempt == attempt;
     if (is_wanted && !ended) {
@@ -238,7 +237,7 @@ void Services::succeed(const TargetPointer& target, const AttemptPointer& attemp
        ended ? *ended : Error(ErrorCode::operation_cancelled, "connecting was given up"));
 }
 
-// Under the lock: the target has no attempt, and is tried again later.
+// The target has no attempt, and is tried again later.
 void Services::rest(Target& target, const Error& why) {
   target.phase = Target::Phase::resting;
   target.attempt.reset();
@@ -253,7 +252,7 @@ void Services::rest(Target& target, const Error& why) {
 
 void Services::fail(const TargetPointer& target, const AttemptPointer& attempt, const Error& why) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const bool is_this = attempt ? target->phase == Target::Phase::attempting
                                  : target->phase == Target::Phase::resting;
     if (is_closed_ || target->attempt != attempt || !is_this) return;
@@ -269,7 +268,7 @@ void Services::fail(const TargetPointer& target, const AttemptPointer& attempt, 
 void Services::session_ended(const TargetPointer& target, SessionEnd& end, const Error& why) {
   TargetPointer gone;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     end.why = why;
     if (is_closed_ || target->phase != Target::Phase::connected || target->end.get() != &end)
       return;

@@ -54,7 +54,7 @@ Links::Links(std::shared_ptr<endpoint::Core> core, std::weak_ptr<Services> servi
 void Links::client_came(const std::shared_ptr<const LiveClient>& client) {
   LinkPointer link;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!is_open_) return;
     link = make_link(client);
     links_.push_back(link);
@@ -67,7 +67,7 @@ void Links::client_left(const std::shared_ptr<const LiveClient>& client) {
   LinkPointer link;
   bool was_open = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto found = std::find_if(links_.begin(), links_.end(),
                                     [&](const auto& other) { return other->client == client; });
     if (found == links_.end()) return;
@@ -82,7 +82,7 @@ void Links::client_left(const std::shared_ptr<const LiveClient>& client) {
 void Links::try_again() {
   std::vector<LinkPointer> links;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (const LinkPointer& link : links_) {
       if (link->phase == Link::Phase::resting && link->error) links.push_back(link);
     }
@@ -94,7 +94,7 @@ void Links::end() {
   std::vector<LinkPointer> links;
   std::vector<LinkPointer> open;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!std::exchange(is_open_, false)) return;
     links.swap(links_);
     for (const LinkPointer& link : links) {
@@ -115,7 +115,7 @@ void Links::close() {
 // What handles do
 
 bool Links::is_open() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return is_open_;
 }
 
@@ -125,7 +125,7 @@ void Links::check_open() const {
 
 std::vector<SubscriptionClientId> Links::clients() const {
   std::vector<SubscriptionClientId> result;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const LinkPointer& link : links_) {
     if (link->phase == Link::Phase::open) result.push_back(link->client->id);
   }
@@ -133,7 +133,7 @@ std::vector<SubscriptionClientId> Links::clients() const {
 }
 
 std::optional<Error> Links::last_error() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const LinkPointer& link : links_) {
     if (link->error) return link->error;
   }
@@ -141,7 +141,7 @@ std::optional<Error> Links::last_error() const {
 }
 
 Subscription Links::on_failed(Function<void(const SubscriptionClientId&, const Error&)> function) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   check_open();
   const auto listener = on_failed_.add(std::move(function));
   for (const LinkPointer& link : links_) {
@@ -203,7 +203,7 @@ Error Links::error_of(const std::exception_ptr& error) {
 // On the watching thread, or another.
 void Links::due(const LinkPointer& link) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (link->phase != Link::Phase::resting) return;
     link->phase = Link::Phase::connecting;
     core_->reactor().cancel(*link);
@@ -238,7 +238,7 @@ void Links::found(const LinkPointer& link, const std::shared_ptr<Stub>& object) 
 void Links::opened(const LinkPointer& link) {
   bool is_wanted = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_wanted = link->phase == Link::Phase::connecting;
     if (is_wanted) {
       link->phase = Link::Phase::open;
@@ -257,7 +257,7 @@ void Links::failed(const LinkPointer& link, const Error& why) {
   // A session that has ended is told of in another way.
   const bool is_alive = link->client->session->is_open();
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (link->phase != Link::Phase::connecting) return;
     if (is_alive) {
       link->error = why;
@@ -269,7 +269,7 @@ void Links::failed(const LinkPointer& link, const Error& why) {
 }
 
 void Links::complain(const LinkPointer& link, const Error& why) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (link->phase != Link::Phase::open || link->error) return;  // told once
   link->error = why;
   on_failed_.notify(*notifier_, link->client->id, why);
@@ -277,7 +277,7 @@ void Links::complain(const LinkPointer& link, const Error& why) {
 
 void Links::closed(const LinkPointer& link) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (link->phase != Link::Phase::open) return;
   }
   rest(link);
@@ -288,7 +288,7 @@ void Links::rest(const LinkPointer& link) {
   const auto services = services_.lock();
   if (!services) return;
   const channel::Time when = channel::after(channel::Clock::now(), services->retry_delay());
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (link->phase == Link::Phase::over) return;
   link->phase = Link::Phase::resting;
   core_->reactor().schedule(*link, link, when);

@@ -4,13 +4,13 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "rr/member_subscription.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
 #include "runtime/cpp/src/subscription/notifier.hpp"
@@ -81,8 +81,8 @@ class Links : public std::enable_shared_from_this<Links> {
  protected:
   using LinkPointer = std::shared_ptr<Link>;
 
-  // What the three kinds do in their own ways. None under the lock but make_link().
-  virtual LinkPointer make_link(std::shared_ptr<const LiveClient> client) = 0;
+  // What the three kinds do in their own ways.
+  virtual LinkPointer make_link(std::shared_ptr<const LiveClient> client) RR_REQUIRES(mutex_) = 0;
   /// The object is there: connects the member, then opened() or failed() is to be called. Throws
   /// rr::Error.
   virtual void connect(const LinkPointer& link, const std::shared_ptr<Stub>& object) = 0;
@@ -92,8 +92,8 @@ class Links : public std::enable_shared_from_this<Links> {
   virtual void leave(Link& link) = 0;
   /// This or its links are others than before.
   virtual void changed() {}
-  /// Frees functions of the program; under the lock.
-  virtual void end_functions() {}
+  /// Frees functions of the program.
+  virtual void end_functions() RR_REQUIRES(mutex_) {}
 
   void opened(const LinkPointer& link);
   void failed(const LinkPointer& link, const Error& why);
@@ -109,11 +109,11 @@ class Links : public std::enable_shared_from_this<Links> {
   [[nodiscard]] static Error error_of(const std::exception_ptr& error);
 
   [[nodiscard]] const std::shared_ptr<endpoint::Core>& core() const { return core_; }
-  void check_open() const;  // throws invalid_operation; under the lock
+  void check_open() const RR_REQUIRES(mutex_);  // throws invalid_operation
 
-  mutable std::mutex mutex_;
-  bool is_open_ = true;
-  std::vector<LinkPointer> links_;
+  mutable Mutex mutex_;
+  bool is_open_ RR_GUARDED_BY(mutex_) = true;
+  std::vector<LinkPointer> links_ RR_GUARDED_BY(mutex_);
   const std::shared_ptr<Notifier> notifier_;  // to functions of the program
 
  private:
@@ -128,7 +128,7 @@ class Links : public std::enable_shared_from_this<Links> {
   const std::weak_ptr<Services> services_;
   const std::string member_;
   const std::string path_;
-  Listeners<const SubscriptionClientId&, const Error&> on_failed_;
+  Listeners<const SubscriptionClientId&, const Error&> on_failed_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::subscription

@@ -8,7 +8,7 @@
 namespace rr::subscription {
 
 void Notifier::add(std::function<void()> work) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   work_.push_back(std::move(work));
   if (std::exchange(is_running_, true)) return;
   core_->reactor().post([self = shared_from_this()] { self->run(); });
@@ -18,7 +18,7 @@ void Notifier::run() {
   while (true) {
     std::function<void()> work;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (work_.empty()) {
         is_running_ = false;
         return;

@@ -4,11 +4,11 @@
 #include <deque>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <utility>
 #include <vector>
 
 #include "rr/function.hpp"
+#include "rr/mutex.hpp"
 #include "rr/stub.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
 #include "runtime/cpp/src/endpoint/subscription.hpp"
@@ -28,9 +28,9 @@ class Notifier : public std::enable_shared_from_this<Notifier> {
   void run();
 
   const std::shared_ptr<endpoint::Core> core_;
-  std::mutex mutex_;
-  std::deque<std::function<void()>> work_;
-  bool is_running_ = false;
+  Mutex mutex_;
+  std::deque<std::function<void()>> work_ RR_GUARDED_BY(mutex_);
+  bool is_running_ RR_GUARDED_BY(mutex_) = false;
 };
 
 /// A function of the program.

@@ -10,7 +10,7 @@ namespace rr::subscription {
 // Clients come in the order in which they are connected: the first is the default one.
 std::shared_ptr<Stub> ObjectLinks::find(const ObjectType* type) {
   if (const auto services = services_.lock()) services->learn(type);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (links_.empty() || links_.front()->phase != Link::Phase::open) return nullptr;
   return as_object(*links_.front()).object;
 }

@@ -26,7 +26,7 @@ class ObjectLinks final : public Links, public Waits {
   };
 
   static ObjectLink& as_object(Link& link) { return static_cast<ObjectLink&>(link); }
-  LinkPointer make_link(std::shared_ptr<const LiveClient> client) override;
+  LinkPointer make_link(std::shared_ptr<const LiveClient> client) override RR_REQUIRES(mutex_);
   void connect(const LinkPointer& link, const std::shared_ptr<Stub>& object) override;
   void use(Link& /*link*/) override {}
   void leave(Link& /*link*/) override {}

@@ -20,7 +20,7 @@ std::shared_ptr<Services> Owner::add(SubscriptionOptions options) {
   auto subscription = std::make_shared<Services>(host_, std::move(options), weak_from_this());
   host_.core->start();
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (has_ended_) throw Error(ErrorCode::invalid_operation, "the node is shut down");
     subscriptions_.push_back(subscription);
   }
@@ -29,7 +29,7 @@ std::shared_ptr<Services> Owner::add(SubscriptionOptions options) {
 
 void Owner::forget(const Services& subscription) {
   std::shared_ptr<Services> gone;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = std::find_if(subscriptions_.begin(), subscriptions_.end(),
                                   [&](const auto& other) { return other.get() == &subscription; });
   if (found == subscriptions_.end()) return;
@@ -40,7 +40,7 @@ void Owner::forget(const Services& subscription) {
 void Owner::end() {
   std::vector<std::shared_ptr<Services>> subscriptions;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     has_ended_ = true;
     subscriptions.swap(subscriptions_);
   }

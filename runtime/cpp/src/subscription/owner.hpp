@@ -2,10 +2,10 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/subscription.hpp"
 #include "runtime/cpp/src/subscription/host.hpp"
 #include "runtime/cpp/src/subscription/services.hpp"
@@ -28,9 +28,9 @@ class Owner : public std::enable_shared_from_this<Owner> {
 
  private:
   const Host host_;
-  std::mutex mutex_;
-  bool has_ended_ = false;
-  std::vector<std::shared_ptr<Services>> subscriptions_;
+  Mutex mutex_;
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;
+  std::vector<std::shared_ptr<Services>> subscriptions_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::subscription

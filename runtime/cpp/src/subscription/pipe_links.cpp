@@ -45,7 +45,7 @@ void PipeLinks::use(Link& link) {
   const auto weak_this = std::weak_ptr(std::static_pointer_cast<PipeLinks>(shared_from_this()));
   const auto weak_link = link.weak_from_this();
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     end.ask_for_acknowledgements(backlog_limit_ != 0);
   }
   end.on_closed([weak_this, weak_link] {
@@ -69,7 +69,7 @@ void PipeLinks::leave(Link& link) {
 void PipeLinks::put(Packet packet) {
   Packet lost;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!is_open_) return;
     packets_.push_back(std::move(packet));
     if (max_received_ != 0 && packets_.size() > max_received_) {
@@ -84,7 +84,7 @@ void PipeLinks::put(Packet packet) {
 
 PipeLinks::Packet PipeLinks::take() {
   Packet packet;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (packets_.empty()) return packet;
   packet = std::move(packets_.front());
   packets_.pop_front();
@@ -92,12 +92,12 @@ PipeLinks::Packet PipeLinks::take() {
 }
 
 std::size_t PipeLinks::available() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return packets_.size();
 }
 
 std::size_t PipeLinks::lost_count() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return lost_;
 }
 
@@ -105,9 +105,9 @@ bool PipeLinks::wait(std::chrono::milliseconds limit) {
   const channel::Time deadline = channel::after(channel::Clock::now(), limit);
   if (available() != 0) return true;
   channel::Reactor::about_to_wait();
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   while (packets_.empty() && is_open_ && channel::Clock::now() < deadline) {
-    channel::wait_until(arrived_, lock, deadline);
+    channel::wait_until(arrived_, mutex_, deadline);
   }
   return !packets_.empty();
 }
@@ -119,7 +119,7 @@ Subscription PipeLinks::on_received(Function<void(const Packet&)> function) {
   Subscription result(receiver);
   Receiver before;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     check_open();
     before = std::exchange(receiver_, std::move(receiver));
     deliver_soon();
@@ -138,7 +138,7 @@ void PipeLinks::deliver() {
     Packet packet;
     Receiver receiver;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (receiver_ && !receiver_->is_connected()) receiver.swap(receiver_);
       if (packets_.empty() || !receiver_) {
         is_delivering_ = false;
@@ -152,7 +152,7 @@ void PipeLinks::deliver() {
     endpoint::call_user_code(*core(), "a function for the pipe", member(),
                              [&] { is_taken = receiver->call(packet); });
     if (is_taken) continue;
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     packets_.push_front(std::move(packet));
   }
 }
@@ -165,7 +165,7 @@ void PipeLinks::end_functions() {
 // Sending
 
 void PipeLinks::set_backlog_limit(std::size_t packets) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   backlog_limit_ = packets;
   for (const LinkPointer& link : links_) {
     if (link->phase == Link::Phase::open) {
@@ -178,7 +178,7 @@ std::size_t PipeLinks::send_all(const void* value) {
   std::vector<End> ends;
   std::size_t limit = 0;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     check_open();
     limit = backlog_limit_;
     for (const LinkPointer& link : links_) {

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <deque>
 #include <memory>
 #include <string>
 #include <string_view>
 
+#include "rr/mutex.hpp"
 #include "rr/pipes.hpp"
 #include "runtime/cpp/src/subscription/links.hpp"
 
@@ -54,25 +54,25 @@ class PipeLinks final : public Links {
   using Receiver = std::shared_ptr<Listener<const Packet&>>;
 
   static PipeLink& as_pipe(Link& link) { return static_cast<PipeLink&>(link); }
-  LinkPointer make_link(std::shared_ptr<const LiveClient> client) override;
+  LinkPointer make_link(std::shared_ptr<const LiveClient> client) override RR_REQUIRES(mutex_);
   void connect(const LinkPointer& link, const std::shared_ptr<Stub>& object) override;
   void use(Link& link) override;
   void leave(Link& link) override;
   void changed() override { arrived_.notify_all(); }
-  void end_functions() override;
+  void end_functions() override RR_REQUIRES(mutex_);
 
   void put(Packet packet);
-  void deliver_soon();
+  void deliver_soon() RR_REQUIRES(mutex_);
   void deliver();
 
   const Holding& holding_;
   const std::size_t max_received_;
-  mutable std::condition_variable arrived_;
-  std::deque<Packet> packets_;
-  std::size_t lost_ = 0;
-  std::size_t backlog_limit_ = 0;
-  Receiver receiver_;
-  bool is_delivering_ = false;  // or will be, by the teller
+  mutable Condition arrived_;
+  std::deque<Packet> packets_ RR_GUARDED_BY(mutex_);
+  std::size_t lost_ RR_GUARDED_BY(mutex_) = 0;
+  std::size_t backlog_limit_ RR_GUARDED_BY(mutex_) = 0;
+  Receiver receiver_ RR_GUARDED_BY(mutex_);
+  bool is_delivering_ RR_GUARDED_BY(mutex_) = false;  // or will be, by the teller
 };
 
 }  // namespace rr::subscription

@@ -11,7 +11,6 @@
 
 namespace rr::subscription {
 
-// Under the lock.
 std::shared_ptr<Links> Services::add_member(std::shared_ptr<Links> member) {
   check_open();
   members_.push_back(member);
@@ -37,7 +36,7 @@ std::shared_ptr<Links> Services::add_wire(std::string_view member, std::string_v
   check_holding(member, holding);
   auto wire =
       std::make_shared<WireLinks>(host_.core, weak_from_this(), std::string(member), path, holding);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const auto& other : members_) {
     const auto same = std::dynamic_pointer_cast<WireLinks>(other);
     if (!same || same->member() != wire->member() || same->path() != wire->path()) continue;
@@ -53,19 +52,19 @@ std::shared_ptr<Links> Services::add_pipe(std::string_view member, std::string_v
   check_holding(member, holding);
   auto pipe = std::make_shared<PipeLinks>(host_.core, weak_from_this(), std::string(member), path,
                                           holding, max_received);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return add_member(std::move(pipe));
 }
 
 std::shared_ptr<Links> Services::add_sub_object(std::string_view path) {
   auto object = std::make_shared<ObjectLinks>(host_.core, weak_from_this(), path);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return add_member(std::move(object));
 }
 
 void Services::forget(const Links& member) {
   std::shared_ptr<Links> gone;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = std::find_if(members_.begin(), members_.end(),
                                   [&](const auto& other) { return other.get() == &member; });
   if (found == members_.end()) return;

@@ -48,7 +48,7 @@ Services::TargetPointer Services::find_target(const std::string& key) const {
 void Services::appear(const std::string& key, FoundService service, bool is_known) {
   DisconnectBatch batch;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     check_open();
     TargetPointer target = find_target(key);
     if (target) target->is_fading = false;
@@ -79,7 +79,7 @@ void Services::appear(const std::string& key, FoundService service, bool is_know
 void Services::disappear(const std::string& key) {
   DisconnectBatch batch;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const TargetPointer target = find_target(key);
     if (!target) return;
     leave(target, batch, closed_here);
@@ -91,7 +91,7 @@ void Services::disappear(const std::string& key) {
 
 void Services::fade(const std::string& key) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const TargetPointer target = find_target(key);
     if (!target) return;
     if (target->phase == Target::Phase::connected) {
@@ -103,12 +103,12 @@ void Services::fade(const std::string& key) {
 }
 
 std::shared_ptr<const Filter> Services::filter() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return filter_;
 }
 
 void Services::set_source(std::shared_ptr<FindingSource> source) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   check_open();
   source_ = std::move(source);
 }
@@ -117,7 +117,7 @@ void Services::look_for(std::vector<std::string> types, ServiceFilter filter) {
   auto prepared = std::make_shared<const Filter>(std::move(filter));
   std::shared_ptr<FindingSource> source;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     check_open();
     if (!source_) {
       throw Error(ErrorCode::invalid_operation, "the subscription is one of URLs, not of types");
@@ -158,7 +158,7 @@ void Services::close() {
   std::vector<std::shared_ptr<Links>> members;
   std::shared_ptr<FindingSource> source;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (std::exchange(is_closed_, true)) return;
     source.swap(source_);
     while (!targets_.empty()) leave(TargetPointer(targets_.back()), batch, closed_here);
@@ -179,18 +179,18 @@ void Services::check_open() const {
 }
 
 bool Services::is_open() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return !is_closed_;
 }
 
 void Services::set_retry_delay(std::chrono::milliseconds delay, std::chrono::milliseconds maximum) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   delay_ = usable(delay);
   maximum_ = channel::saturated(maximum);
 }
 
 std::chrono::milliseconds Services::retry_delay() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return delay_;
 }
 
@@ -214,7 +214,7 @@ void Services::learn(const ObjectType* type) {
   const auto before = host_.core->types();
   host_.core->add_definition(type->definition);
   if (host_.core->types() == before) return;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   inner_->add([members = members_] {
     for (const auto& member : members) member->try_again();
   });
@@ -224,7 +224,7 @@ std::shared_ptr<Stub> Services::find(const ObjectType* type) {
   learn(type);
   std::shared_ptr<const LiveClient> client;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto found = connected();
     if (!found.empty()) client = found.front()->client;
   }
@@ -235,7 +235,7 @@ std::shared_ptr<Stub> Services::find(const SubscriptionClientId& id, const Objec
   learn(type);
   std::shared_ptr<const LiveClient> client;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (const TargetPointer& target : connected()) {
       if (!client && target->client->id == id) client = target->client;
     }
@@ -245,14 +245,14 @@ std::shared_ptr<Stub> Services::find(const SubscriptionClientId& id, const Objec
 
 std::vector<SubscriptionClientId> Services::connected_clients() const {
   std::vector<SubscriptionClientId> result;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const TargetPointer& target : connected()) result.push_back(target->client->id);
   return result;
 }
 
 std::vector<SubscribedService> Services::services() const {
   std::vector<SubscribedService> result;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const TargetPointer& target : targets_) {
     SubscribedService& service = result.emplace_back();
     service.urls = target->service.urls;
@@ -265,7 +265,7 @@ std::vector<SubscribedService> Services::services() const {
 }
 
 std::optional<Error> Services::last_error() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const Target* newest = nullptr;
   for (const TargetPointer& target : targets_) {
     if (!target->error) continue;
@@ -280,7 +280,7 @@ bool Services::is_claimed(const std::shared_ptr<Session>& session) const {
 }
 
 std::shared_ptr<Session> Services::claim(const Stub* stub) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   check_open();
   for (const TargetPointer& target : connected()) {
     const auto& session = target->client->session;
@@ -298,7 +298,7 @@ std::shared_ptr<Session> Services::claim(const Stub* stub) {
 void Services::release(ClientBase& client) {
   std::shared_ptr<Session> session;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!is_claimed(client.rr_session())) {
       throw Error(ErrorCode::invalid_argument, "the client is not one that was claimed here");
     }
@@ -314,7 +314,7 @@ void Services::release(ClientBase& client) {
 // Functions
 
 Subscription Services::on_connected(Function<void(const SubscriptionClientId&)> function) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   check_open();
   const auto listener = on_connected_.add(std::move(function));
   for (const TargetPointer& target : connected()) {
@@ -325,14 +325,14 @@ Subscription Services::on_connected(Function<void(const SubscriptionClientId&)> 
 
 Subscription Services::on_disconnected(
     Function<void(const SubscriptionClientId&, const Error&)> function) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   check_open();
   return Subscription(on_disconnected_.add(std::move(function)));
 }
 
 Subscription Services::on_failed(
     Function<void(const std::vector<std::string>&, const Error&)> function) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   check_open();
   const auto listener = on_failed_.add(std::move(function));
   for (const TargetPointer& target : targets_) {

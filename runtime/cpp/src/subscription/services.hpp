@@ -5,12 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/subscription.hpp"
 #include "runtime/cpp/src/subscription/filter.hpp"
 #include "runtime/cpp/src/subscription/host.hpp"
@@ -107,8 +107,8 @@ class Services final : public Waits, public std::enable_shared_from_this<Service
   };
 
   // Attempts (attempts.cpp)
-  void begin_soon(const TargetPointer& target);
-  void begin_waiting();
+  void begin_soon(const TargetPointer& target) RR_REQUIRES(mutex_);
+  void begin_waiting() RR_REQUIRES(mutex_);
   void begin(const TargetPointer& target);
   void attempt(const TargetPointer& target, const AttemptPointer& attempt);
   struct Reached {
@@ -127,17 +127,17 @@ class Services final : public Waits, public std::enable_shared_from_this<Service
 
   [[nodiscard]] std::shared_ptr<const Filter> filter() const;
 
-  // Under the lock
-  void check_open() const;  // throws invalid_operation
-  [[nodiscard]] bool is_full() const;
-  [[nodiscard]] TargetPointer find_target(const std::string& key) const;
-  [[nodiscard]] std::vector<TargetPointer> connected() const;
-  [[nodiscard]] bool is_claimed(const std::shared_ptr<Session>& session) const;
-  void rest(Target& target, const Error& why);
-  void leave(const TargetPointer& target, DisconnectBatch& batch, const Error& why);
-  void notify_left(const std::shared_ptr<const LiveClient>& client);
-  std::shared_ptr<Links> add_member(std::shared_ptr<Links> member);
-  void check_holding(std::string_view member, const Holding& holding) const;  // not under the lock
+  void check_open() const RR_REQUIRES(mutex_);  // throws invalid_operation
+  [[nodiscard]] bool is_full() const RR_REQUIRES(mutex_);
+  [[nodiscard]] TargetPointer find_target(const std::string& key) const RR_REQUIRES(mutex_);
+  [[nodiscard]] std::vector<TargetPointer> connected() const RR_REQUIRES(mutex_);
+  [[nodiscard]] bool is_claimed(const std::shared_ptr<Session>& session) const RR_REQUIRES(mutex_);
+  void rest(Target& target, const Error& why) RR_REQUIRES(mutex_);
+  void leave(const TargetPointer& target, DisconnectBatch& batch, const Error& why)
+      RR_REQUIRES(mutex_);
+  void notify_left(const std::shared_ptr<const LiveClient>& client) RR_REQUIRES(mutex_);
+  std::shared_ptr<Links> add_member(std::shared_ptr<Links> member) RR_REQUIRES(mutex_);
+  void check_holding(std::string_view member, const Holding& holding) const RR_EXCLUDES(mutex_);
 
   [[nodiscard]] bool has_ended() const override { return !is_open(); }
   [[nodiscard]] std::optional<Error> why_none() const override { return last_error(); }
@@ -150,20 +150,20 @@ class Services final : public Waits, public std::enable_shared_from_this<Service
   const std::shared_ptr<Notifier> inner_;    // to members
   const std::shared_ptr<Notifier> program_;  // to functions of the program
 
-  mutable std::mutex mutex_;
-  bool is_closed_ = false;
-  std::shared_ptr<const Filter> filter_;  // replaced, never changed
-  std::shared_ptr<FindingSource> source_;
-  std::chrono::milliseconds delay_;
-  std::chrono::milliseconds maximum_;
-  std::vector<TargetPointer> targets_;
-  std::uint64_t last_order_ = 0;
-  std::uint64_t last_failure_ = 0;
-  std::vector<std::weak_ptr<Session>> claimed_;
-  std::vector<std::shared_ptr<Links>> members_;
-  Listeners<const SubscriptionClientId&> on_connected_;
-  Listeners<const SubscriptionClientId&, const Error&> on_disconnected_;
-  Listeners<const std::vector<std::string>&, const Error&> on_failed_;
+  mutable Mutex mutex_;
+  bool is_closed_ RR_GUARDED_BY(mutex_) = false;
+  std::shared_ptr<const Filter> filter_ RR_GUARDED_BY(mutex_);  // replaced, never changed
+  std::shared_ptr<FindingSource> source_ RR_GUARDED_BY(mutex_);
+  std::chrono::milliseconds delay_ RR_GUARDED_BY(mutex_);
+  std::chrono::milliseconds maximum_ RR_GUARDED_BY(mutex_);
+  std::vector<TargetPointer> targets_ RR_GUARDED_BY(mutex_);
+  std::uint64_t last_order_ RR_GUARDED_BY(mutex_) = 0;
+  std::uint64_t last_failure_ RR_GUARDED_BY(mutex_) = 0;
+  std::vector<std::weak_ptr<Session>> claimed_ RR_GUARDED_BY(mutex_);
+  std::vector<std::shared_ptr<Links>> members_ RR_GUARDED_BY(mutex_);
+  Listeners<const SubscriptionClientId&> on_connected_ RR_GUARDED_BY(mutex_);
+  Listeners<const SubscriptionClientId&, const Error&> on_disconnected_ RR_GUARDED_BY(mutex_);
+  Listeners<const std::vector<std::string>&, const Error&> on_failed_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::subscription

@@ -44,7 +44,7 @@ UrlSource::Lists UrlSource::checked(endpoint::Core& core,
 }
 
 void UrlSource::replace(const Lists& lists) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   auto before = std::exchange(known_, {});
   std::vector<std::string> keys;
   for (const FoundService& service : lists) {

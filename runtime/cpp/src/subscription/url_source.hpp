@@ -3,10 +3,10 @@
 
 #include <cstdint>
 #include <map>
-#include <mutex>
 #include <string>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/service_filter.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
 
@@ -30,9 +30,9 @@ class UrlSource {
 
  private:
   Services& services_;
-  std::mutex mutex_;  // while it is changed; before those of Services
-  std::map<std::string, std::vector<std::string>> known_;
-  std::uint64_t last_key_ = 0;
+  Mutex mutex_;  // while it is changed; before those of Services
+  std::map<std::string, std::vector<std::string>> known_ RR_GUARDED_BY(mutex_);
+  std::uint64_t last_key_ RR_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace rr::subscription

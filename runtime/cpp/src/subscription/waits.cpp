@@ -76,15 +76,15 @@ std::shared_ptr<Stub> Waits::wait(const ObjectType* type, std::chrono::milliseco
   std::uint64_t seen = 0;
   while (true) {
     {
-      const std::lock_guard lock(waiting_mutex_);
+      const MutexLock lock(waiting_mutex_);
       seen = changes_;
     }
     if (auto stub = find(type)) return stub;
     if (has_ended()) throw Error(ErrorCode::invalid_operation, "the subscription is closed");
     channel::Reactor::about_to_wait();
-    std::unique_lock lock(waiting_mutex_);
+    MutexLock lock(waiting_mutex_);
     while (changes_ == seen && channel::Clock::now() < deadline) {
-      channel::wait_until(waiting_changed_, lock, deadline);
+      channel::wait_until(waiting_changed_, waiting_mutex_, deadline);
     }
     if (changes_ != seen) continue;
     lock.unlock();
@@ -96,7 +96,7 @@ void Waits::start_wait(const ObjectType* type, std::chrono::milliseconds limit,
                        std::unique_ptr<Completion> completion) {
   const auto waiting = std::make_shared<Waiting>(share(), type, std::move(completion));
   {
-    const std::lock_guard lock(waiting_mutex_);
+    const MutexLock lock(waiting_mutex_);
     waiting_.push_back(waiting);
   }
   waiting->schedule(channel::after(channel::Clock::now(), limit));
@@ -106,7 +106,7 @@ void Waits::start_wait(const ObjectType* type, std::chrono::milliseconds limit,
 void Waits::changed() {
   std::vector<std::shared_ptr<Waiting>> waiting;
   {
-    const std::lock_guard lock(waiting_mutex_);
+    const MutexLock lock(waiting_mutex_);
     ++changes_;
     waiting = waiting_;
   }
@@ -115,7 +115,7 @@ void Waits::changed() {
 }
 
 void Waits::forget(const Waiting& waiting) {
-  const std::lock_guard lock(waiting_mutex_);
+  const MutexLock lock(waiting_mutex_);
   std::erase_if(waiting_, [&](const auto& other) { return other.get() == &waiting; });
 }
 

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +11,7 @@
 
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 #include "rr/stub.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
 
@@ -48,10 +47,10 @@ class Waits {
   [[nodiscard]] Error error_for(ErrorCode code, std::string text) const;
 
   const std::shared_ptr<endpoint::Core> core_;
-  std::mutex waiting_mutex_;
-  std::condition_variable waiting_changed_;
-  std::uint64_t changes_ = 0;
-  std::vector<std::shared_ptr<Waiting>> waiting_;
+  Mutex waiting_mutex_;
+  Condition waiting_changed_;
+  std::uint64_t changes_ RR_GUARDED_BY(waiting_mutex_) = 0;
+  std::vector<std::shared_ptr<Waiting>> waiting_ RR_GUARDED_BY(waiting_mutex_);
 };
 
 }  // namespace rr::subscription

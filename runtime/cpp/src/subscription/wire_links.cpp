@@ -79,7 +79,7 @@ void WireLinks::leave(Link& link) {
 // Of a wire that is closed: nobody says any more that this is the value.
 void WireLinks::forget(WireLink& link) {
   std::shared_ptr<const void> value;  // freed behind the lock
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   value = link.newest.take();
 }
 
@@ -90,7 +90,7 @@ void WireLinks::take(WireLink& link) {
   std::shared_ptr<const void> before;
   std::shared_ptr<const void> newest_before;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     // A later call may have come first.
     if (link.phase != Link::Phase::open || link.newest.value() == value) return;
     link.error.reset();
@@ -104,7 +104,7 @@ void WireLinks::take(WireLink& link) {
 }
 
 void WireLinks::set_lifespan(std::chrono::milliseconds lifespan) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   lifespan_ = channel::saturated(lifespan);
   newest_.set_lifespan(lifespan_);
   for (const LinkPointer& link : links_) as_wire(*link).newest.set_lifespan(lifespan_);
@@ -112,13 +112,13 @@ void WireLinks::set_lifespan(std::chrono::milliseconds lifespan) {
 
 WireLinks::Value WireLinks::received() const {
   Value result;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   result.value = newest_.get(result.time);
   result.client = newest_client_;
   return result;
 }
 
-// Under the lock: those that have a value, in the order of arrival.
+// Those that have a value, in the order of arrival.
 std::vector<const WireLinks::WireLink*> WireLinks::fresh_links() const {
   std::vector<const WireLink*> result;
   for (const LinkPointer& link : links_) {
@@ -132,7 +132,7 @@ std::vector<const WireLinks::WireLink*> WireLinks::fresh_links() const {
 
 std::vector<WireLinks::Value> WireLinks::all_received() const {
   std::vector<Value> result;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const WireLink* const link : fresh_links()) {
     result.push_back({link->newest.value(), link->newest.time(), link->client->id});
   }
@@ -141,14 +141,14 @@ std::vector<WireLinks::Value> WireLinks::all_received() const {
 
 bool WireLinks::wait(std::chrono::milliseconds limit) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (newest_.is_fresh()) return true;
   }
   const channel::Time deadline = channel::after(channel::Clock::now(), limit);
   channel::Reactor::about_to_wait();
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   while (!newest_.is_fresh() && is_open_ && channel::Clock::now() < deadline) {
-    channel::wait_until(arrived_, lock, deadline);
+    channel::wait_until(arrived_, mutex_, deadline);
   }
   return newest_.is_fresh();
 }
@@ -157,7 +157,7 @@ bool WireLinks::wait(std::chrono::milliseconds limit) {
 
 Subscription WireLinks::on_received(Function<void(const Value&)> function) {
   const auto listener = std::make_shared<Listener<const Value&>>(std::move(function));
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   check_open();
   std::erase_if(notified_,
                 [](const Notified& notified) { return !notified.listener->is_connected(); });
@@ -184,7 +184,7 @@ void WireLinks::notify_all() {
 // What each function is to be called with next; nothing when all have been.
 std::vector<WireLinks::Turn> WireLinks::next_turn() {
   std::vector<Turn> turns;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto links = fresh_links();
   for (Notified& notified : notified_) {
     for (const WireLink* const link : links) {
@@ -210,7 +210,7 @@ void WireLinks::end_functions() {
 std::size_t WireLinks::send_all(const void* value) {
   std::vector<End> ends;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     check_open();
     for (const LinkPointer& link : links_) {
       if (link->phase == Link::Phase::open) ends.push_back(as_wire(*link).end);

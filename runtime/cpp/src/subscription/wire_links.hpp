@@ -2,7 +2,6 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -11,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/wires.hpp"
 #include "runtime/cpp/src/endpoint/newest_value.hpp"
 #include "runtime/cpp/src/subscription/links.hpp"
@@ -67,28 +67,28 @@ class WireLinks final : public Links {
   };
 
   static WireLink& as_wire(Link& link) { return static_cast<WireLink&>(link); }
-  LinkPointer make_link(std::shared_ptr<const LiveClient> client) override;
+  LinkPointer make_link(std::shared_ptr<const LiveClient> client) override RR_REQUIRES(mutex_);
   void connect(const LinkPointer& link, const std::shared_ptr<Stub>& object) override;
   void use(Link& link) override;
   void leave(Link& link) override;
   void changed() override { arrived_.notify_all(); }
-  void end_functions() override;
+  void end_functions() override RR_REQUIRES(mutex_);
 
   void forget(WireLink& link);
   void take(WireLink& link);
-  void notify_soon();
+  void notify_soon() RR_REQUIRES(mutex_);
   void notify_all();
   std::vector<Turn> next_turn();
-  [[nodiscard]] std::vector<const WireLink*> fresh_links() const;
+  [[nodiscard]] std::vector<const WireLink*> fresh_links() const RR_REQUIRES(mutex_);
 
   const Holding& holding_;
-  std::condition_variable arrived_;
-  endpoint::NewestValue newest_;
-  SubscriptionClientId newest_client_;
-  std::uint64_t sequence_ = 0;  // counts values
-  std::chrono::milliseconds lifespan_{0};
-  std::vector<Notified> notified_;
-  bool is_notifying_ = false;  // or will be, by the notifier
+  Condition arrived_;
+  endpoint::NewestValue newest_ RR_GUARDED_BY(mutex_);
+  SubscriptionClientId newest_client_ RR_GUARDED_BY(mutex_);
+  std::uint64_t sequence_ RR_GUARDED_BY(mutex_) = 0;  // counts values
+  std::chrono::milliseconds lifespan_ RR_GUARDED_BY(mutex_){0};
+  std::vector<Notified> notified_ RR_GUARDED_BY(mutex_);
+  bool is_notifying_ RR_GUARDED_BY(mutex_) = false;  // or will be, by the notifier
 };
 
 }  // namespace rr::subscription

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
-#include <condition_variable>
 #include <cstring>
 #include <limits>
-#include <mutex>
 #include <set>
 #include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/tap.hpp"
 #include "runtime/cpp/src/platform/files.hpp"
 #include "runtime/cpp/src/platform/threads.hpp"
@@ -60,13 +59,13 @@ class Recorder::Tape {
   Tape& operator=(const Tape&) = delete;
 
   std::uint32_t next_connection() {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return ++connections_;
   }
 
   // A record that is never left out for want of room: there are few, and they are small.
   void add(tap::Kind kind, std::uint32_t connection, std::span<const std::byte> body) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!is_closed_ && failure_.empty()) append(kind, 0, connection, body);
   }
 
@@ -74,9 +73,9 @@ class Recorder::Tape {
                             std::span<const Piece> message) {
     std::size_t size = 0;
     for (const Piece& piece : message) size += piece.size;
-    std::unique_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_closed_) return 0;
-    if (!wait_for_room(lock, size)) {
+    if (!wait_for_room(size)) {
       ++lost_;
       ++lost_here_.count;
       lost_here_.bytes += size;
@@ -89,20 +88,20 @@ class Recorder::Tape {
   }
 
   void add_definition(std::string_view text) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_closed_ || !failure_.empty() || !definitions_.insert(std::string(text)).second) return;
     append(tap::Kind::definition, 0, 0, bytes_of_text(text));
   }
 
   void flush() {
-    std::unique_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     const std::uint64_t wanted = told_;
-    has_written_.wait(lock, [&] { return written_ >= wanted || !failure_.empty(); });
+    while (written_ < wanted && failure_.empty()) has_written_.wait(mutex_);
   }
 
   void close() {
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (is_closed_) return;
       note_lost();
       if (failure_.empty()) append(tap::Kind::end, 0, 0, {});
@@ -114,15 +113,15 @@ class Recorder::Tape {
   }
 
   [[nodiscard]] std::uint64_t messages() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return messages_;
   }
   [[nodiscard]] std::uint64_t lost() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return lost_;
   }
   [[nodiscard]] std::string failure() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return failure_;
   }
 
@@ -132,22 +131,26 @@ class Recorder::Tape {
     std::uint64_t bytes = 0;
   };
 
-  [[nodiscard]] std::size_t waiting() const { return filling_.size() + writing_size_; }
-
-  bool wait_for_room(std::unique_lock<std::mutex>& lock, std::size_t size) {
-    if (size > std::numeric_limits<std::uint32_t>::max()) return false;
-    const std::size_t whole = size + tap::RecordHeader::size;
-    const auto has_room = [&] {
-      return waiting() == 0 || waiting() + whole <= options_.buffer_size;
-    };
-    if (options_.when_full == RecorderOptions::WhenFull::wait) {
-      has_written_.wait(lock, [&] { return has_room() || is_closed_ || !failure_.empty(); });
-    }
-    return has_room() && !is_closed_ && failure_.empty();
+  [[nodiscard]] std::size_t waiting() const RR_REQUIRES(mutex_) {
+    return filling_.size() + writing_size_;
   }
 
-  // Under the mutex, as the next two: what was left out stands where it would have been.
-  void note_lost() {
+  [[nodiscard]] bool has_room(std::size_t whole) const RR_REQUIRES(mutex_) {
+    return waiting() == 0 || waiting() + whole <= options_.buffer_size;
+  }
+
+  bool wait_for_room(std::size_t size) RR_REQUIRES(mutex_) {
+    if (size > std::numeric_limits<std::uint32_t>::max()) return false;
+    const std::size_t whole = size + tap::RecordHeader::size;
+    const bool may_wait = options_.when_full == RecorderOptions::WhenFull::wait;
+    while (may_wait && !has_room(whole) && !is_closed_ && failure_.empty()) {
+      has_written_.wait(mutex_);
+    }
+    return has_room(whole) && !is_closed_ && failure_.empty();
+  }
+
+  // What was left out stands where it would have been.
+  void note_lost() RR_REQUIRES(mutex_) {
     if (lost_here_.count == 0 || !failure_.empty()) return;
     tap::BodyWriter body;
     body.number(lost_here_.count);
@@ -157,14 +160,14 @@ class Recorder::Tape {
   }
 
   void append(tap::Kind kind, std::uint8_t direction, std::uint32_t connection,
-              std::span<const std::byte> body) {
+              std::span<const std::byte> body) RR_REQUIRES(mutex_) {
     begin_record(kind, direction, connection, body.size());
     add_bytes(body);
   }
 
   // The header of a record, whose body follows. The sum is left to the thread that writes.
   void begin_record(tap::Kind kind, std::uint8_t direction, std::uint32_t connection,
-                    std::size_t size) {
+                    std::size_t size) RR_REQUIRES(mutex_) {
     const auto time = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start_);
     const auto header =
         tap::bytes_of(tap::RecordHeader{.body_size = static_cast<std::uint32_t>(size),
@@ -177,7 +180,7 @@ class Recorder::Tape {
     told_ += header.size() + size;
   }
 
-  void add_bytes(std::span<const std::byte> bytes) {
+  void add_bytes(std::span<const std::byte> bytes) RR_REQUIRES(mutex_) {
     filling_.insert(filling_.end(), bytes.begin(), bytes.end());
   }
 
@@ -185,10 +188,10 @@ class Recorder::Tape {
     // Signals are for the program's own threads, and a pipe that nobody reads is an error here.
     platform::leave_signals_to_others();
     Bytes writing;
-    std::unique_lock lock(mutex_);
+    MutexLock lock(mutex_);
     while (true) {
       is_idle_ = true;
-      has_work_.wait(lock, [&] { return !filling_.empty() || is_closed_; });
+      while (filling_.empty() && !is_closed_) has_work_.wait(mutex_);
       is_idle_ = false;
       if (filling_.empty()) return;
       writing.clear();
@@ -245,21 +248,21 @@ class Recorder::Tape {
   const platform::File file_;
   const Clock::time_point start_;
 
-  mutable std::mutex mutex_;  // guards what follows
-  std::condition_variable has_work_;
-  std::condition_variable has_written_;
-  Bytes filling_;
-  std::size_t writing_size_ = 0;  // of what the thread writes now
-  std::uint64_t told_ = 0;        // bytes, as the next one
-  std::uint64_t written_ = 0;
-  std::uint64_t messages_ = 0;
-  std::uint64_t lost_ = 0;
-  Lost lost_here_;  // since the last record
-  std::uint32_t connections_ = 0;
-  std::set<std::string, std::less<>> definitions_;
-  std::string failure_;
-  bool is_idle_ = false;
-  bool is_closed_ = false;
+  mutable Mutex mutex_;
+  Condition has_work_;
+  Condition has_written_;
+  Bytes filling_ RR_GUARDED_BY(mutex_);
+  std::size_t writing_size_ RR_GUARDED_BY(mutex_) = 0;  // of what the thread writes now
+  std::uint64_t told_ RR_GUARDED_BY(mutex_) = 0;        // bytes, as the next one
+  std::uint64_t written_ RR_GUARDED_BY(mutex_) = 0;
+  std::uint64_t messages_ RR_GUARDED_BY(mutex_) = 0;
+  std::uint64_t lost_ RR_GUARDED_BY(mutex_) = 0;
+  Lost lost_here_ RR_GUARDED_BY(mutex_);  // since the last record
+  std::uint32_t connections_ RR_GUARDED_BY(mutex_) = 0;
+  std::set<std::string, std::less<>> definitions_ RR_GUARDED_BY(mutex_);
+  std::string failure_ RR_GUARDED_BY(mutex_);
+  bool is_idle_ RR_GUARDED_BY(mutex_) = false;
+  bool is_closed_ RR_GUARDED_BY(mutex_) = false;
 
   std::thread thread_;
 };

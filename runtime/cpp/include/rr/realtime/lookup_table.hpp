@@ -5,10 +5,10 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
 #include <span>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/visibility.hpp"
 
 namespace RR_VISIBLE rr {
@@ -74,9 +74,9 @@ class LookupTable {
   std::uint8_t active_ = 0;  // the loop's
   std::uint8_t next_ = 1;    // the loop's
   bool has_next_ = false;
-  std::mutex loading_;       // of those who load
-  std::uint8_t loaded_ = 3;  // under it
-  std::uint64_t number_ = 0;
+  Mutex loading_;  // of those who load
+  std::uint8_t loaded_ RR_GUARDED_BY(loading_) = 3;
+  std::uint64_t number_ RR_GUARDED_BY(loading_) = 0;
 };
 
 }  // namespace realtime

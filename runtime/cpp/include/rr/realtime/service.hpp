@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "rr/memories.hpp"
+#include "rr/mutex.hpp"
 #include "rr/realtime/cyclic_loop.hpp"
 #include "rr/realtime/layout.hpp"
 #include "rr/realtime/lookup_table.hpp"
@@ -73,10 +72,10 @@ class BusService {
   void run();
 
   const Nanoseconds period_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool is_over_ = false;
-  std::vector<std::function<void()>> new_tasks_;
+  Mutex mutex_;
+  Condition changed_;
+  bool is_over_ RR_GUARDED_BY(mutex_) = false;
+  std::vector<std::function<void()>> new_tasks_ RR_GUARDED_BY(mutex_);
   std::thread thread_;
 };
 

@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "rr/mutex.hpp"
 #include "rr/realtime/layout.hpp"
 #include "rr/realtime/signals.hpp"
 #include "rr/visibility.hpp"
@@ -38,7 +38,7 @@ class CommandGroup {
       const auto [before, count] = snapshot();
       T value = before;
       function(value);
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       if (count != count_) continue;
       ++count_;
       newest_ = value;
@@ -61,13 +61,13 @@ class CommandGroup {
     std::uint64_t count;
   };
   [[nodiscard]] Snapshot snapshot() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return {newest_, count_};
   }
 
-  mutable std::mutex mutex_;
-  T newest_;
-  std::uint64_t count_ = 0;  // of values that were set
+  mutable Mutex mutex_;
+  T newest_ RR_GUARDED_BY(mutex_);
+  std::uint64_t count_ RR_GUARDED_BY(mutex_) = 0;  // of values that were set
   Mailbox<T> mailbox_;
 };
 

@@ -7,11 +7,11 @@
 
 #include <algorithm>
 #include <map>
-#include <mutex>
 #include <system_error>
 #include <utility>
 
 #include "errors.hpp"
+#include "rr/mutex.hpp"
 #include "system_sockets.hpp"
 
 namespace rr::platform {
@@ -57,14 +57,15 @@ struct Poller::System {
   std::size_t collect(std::span<Event> events);
 
   const HANDLE event = CreateEventW(nullptr, FALSE, FALSE, nullptr);
-  std::mutex mutex;  // guards what follows
-  std::map<int, Watched> sockets;
-  int last = -1;  // the socket that was reported last: the next one comes first
-  bool is_woken = false;
+  Mutex mutex;
+  std::map<int, Watched> sockets RR_GUARDED_BY(mutex);
+  int last RR_GUARDED_BY(mutex) =
+      -1;  // the socket that was reported last: the next one comes first
+  bool is_woken RR_GUARDED_BY(mutex) = false;
 };
 
 void Poller::System::watch(int socket, std::uint32_t events, void* key, bool is_new) {
-  const std::lock_guard lock(mutex);
+  const MutexLock lock(mutex);
   const auto place = sockets.find(socket);
   if ((place == sockets.end()) != is_new) {
     throw std::system_error(std::make_error_code(is_new ? std::errc::file_exists
@@ -79,7 +80,7 @@ void Poller::System::watch(int socket, std::uint32_t events, void* key, bool is_
 }
 
 std::size_t Poller::System::collect(std::span<Event> events) {
-  const std::lock_guard lock(mutex);
+  const MutexLock lock(mutex);
   std::size_t count = 0;
   if (is_woken && !events.empty()) {
     events[count++] = {nullptr, ready::input};
@@ -118,7 +119,7 @@ void Poller::change(int socket, std::uint32_t events, void* key) {
 }
 
 void Poller::remove(int socket) {
-  const std::lock_guard lock(system_->mutex);
+  const MutexLock lock(system_->mutex);
   if (system_->sockets.erase(socket) != 0) {
     WSAEventSelect(static_cast<SOCKET>(socket), nullptr, 0);
   }
@@ -134,7 +135,7 @@ std::size_t Poller::wait(std::span<Event> events, bool may_wait) {
 
 void Poller::wake() {
   {
-    const std::lock_guard lock(system_->mutex);
+    const MutexLock lock(system_->mutex);
     system_->is_woken = true;
   }
   SetEvent(system_->event);

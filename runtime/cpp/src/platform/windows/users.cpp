@@ -10,10 +10,10 @@
 
 #include <algorithm>
 #include <array>
-#include <mutex>
 #include <vector>
 
 #include "errors.hpp"
+#include "rr/mutex.hpp"
 #include "runtime/cpp/src/platform/environment.hpp"
 #include "sids.hpp"
 
@@ -34,9 +34,9 @@ UserId number_of(PSID user) {
   if (!ConvertSidToStringSidA(user, &text)) return ~UserId{0};
   const std::string name = text;
   LocalFree(text);
-  static std::mutex mutex;
-  static std::vector<std::string> names;
-  const std::lock_guard lock(mutex);
+  static Mutex mutex;
+  static std::vector<std::string> names RR_GUARDED_BY(mutex);
+  const MutexLock lock(mutex);
   const auto found = std::find(names.begin(), names.end(), name);
   const auto number = static_cast<UserId>(found - names.begin());
   if (found == names.end()) names.push_back(name);

@@ -9,7 +9,7 @@ BusService::BusService(Nanoseconds period) : period_(period), thread_([this] { r
 
 BusService::~BusService() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_over_ = true;
   }
   changed_.notify_all();
@@ -17,20 +17,21 @@ BusService::~BusService() {
 }
 
 void BusService::add(std::function<void()> task) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   new_tasks_.push_back(std::move(task));
 }
 
 void BusService::run() {
   std::vector<std::function<void()>> tasks;
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   while (!is_over_) {
     std::ranges::move(new_tasks_, std::back_inserter(tasks));
     new_tasks_.clear();
     lock.unlock();
     for (const auto& task : tasks) task();
     lock.lock();
-    changed_.wait_for(lock, period_, [this] { return is_over_; });
+    changed_.wait_until(mutex_, std::chrono::steady_clock::now() + period_,
+                        [this]() RR_REQUIRES(mutex_) { return is_over_; });
   }
 }
 
