@@ -18,6 +18,8 @@ struct Faults {
   std::uint64_t split_segments = 0;       ///< what is sent at once arrives in parts
   std::size_t smallest_window = 4096;     ///< bytes under way in one direction of a connection
   std::size_t largest_window = 262'144;
+  std::uint64_t lost_datagrams = 0;
+  std::uint64_t doubled_datagrams = 0;
   std::uint64_t refused_connections = 0;
   std::uint64_t silent_connections = 0;  ///< nothing arrives, after some bytes
 

@@ -62,6 +62,17 @@ std::string Host::url() const {
   return "rr+tcp://127.0.0.1:" + std::to_string(port_) + "/?service=bench";
 }
 
+std::string Host::listen_inside() {
+  node_.listen("rr+intra://");
+  return "rr+intra:///?nodeid=" + node_.id().text() + "&service=bench";
+}
+
+void Host::announce(const DiscoveryNetwork& network) {
+  const Discovery discovery = node_.discovery();
+  discovery.listen({.network = network, .local = false});
+  discovery.announce({.network = network, .period = std::chrono::seconds(2)});
+}
+
 // Clients, their ends of pipes and wires, and generators.
 std::size_t Host::left() const {
   return service_->clients().size() + static_cast<std::size_t>(clients_.load()) + bench_->left();

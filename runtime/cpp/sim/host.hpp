@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "rr/discovery.hpp"
 #include "rr/node.hpp"
 #include "runtime/cpp/sim/random.hpp"
 #include "runtime/cpp/stress/bench.hpp"
@@ -29,6 +30,11 @@ class Host {
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] std::string url() const;
+  /// Listens for clients of this process, too: their URL, of connections without sockets.
+  [[nodiscard]] std::string listen_inside();
+  [[nodiscard]] const NodeId& id() const { return node_.id(); }
+  /// Makes the node known there, and lets it answer nodes that ask.
+  void announce(const DiscoveryNetwork& network);
   stress::Bench& bench() { return *bench_; }
   /// Ends the run when the service still has something of its clients after a time.
   void expect_nothing_left(std::chrono::seconds limit) const;

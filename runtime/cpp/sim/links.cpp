@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "rr/subscription.hpp"
@@ -25,7 +26,10 @@ using Packet = std::optional<Stamp>;
 /// A host that can be replaced by a new one at the same port.
 class Place {
  public:
-  Place(stress::Lines& lines, std::uint64_t seed) : lines_(lines), seed_(seed) { begin(0); }
+  Place(stress::Lines& lines, std::uint64_t seed, NodeOptions options)
+      : lines_(lines), seed_(seed), options_(std::move(options)) {
+    begin(0);
+  }
   ~Place() { end(); }
   Place(const Place&) = delete;
   Place& operator=(const Place&) = delete;
@@ -42,7 +46,7 @@ class Place {
 
  private:
   void begin(std::uint16_t port) {
-    host_ = std::make_unique<Host>(lines_, 8, impatient_options(), port);
+    host_ = std::make_unique<Host>(lines_, 8, options_, port);
     producer_ = std::make_unique<Producer>(host_->bench(), ++seed_, milliseconds(500));
   }
   void end() {
@@ -52,6 +56,7 @@ class Place {
 
   stress::Lines& lines_;
   std::uint64_t seed_;
+  const NodeOptions options_;
   std::unique_ptr<Host> host_;
   std::unique_ptr<Producer> producer_;
 };
@@ -124,15 +129,20 @@ void run_with_visitors(Scheduler& run, bool is_scarce) {
   Faults::spare_this_thread();
   stress::Lines lines;
   Random random(run.random().next());
-  Place place(lines, random.next());
+  NodeOptions options = impatient_options();
+  const Visitor::Terms terms{is_scarce, random.once_in(2)};
+  if (terms.generators_stay) options.generator_timeout = milliseconds::max();
+  Place place(lines, random.next(), options);
   const std::string url = place.host().url();
   {
     std::atomic<bool> is_over{false};
     const auto visitors_count = 1 + random.below(2);
     std::vector<std::unique_ptr<Visitor>> visitors;
     for (std::uint64_t i = 0; i < visitors_count; ++i) {
-      visitors.push_back(std::make_unique<Visitor>(lines, url, "visitor" + std::to_string(i),
-                                                   random.next(), is_scarce));
+      Visitor::Terms own = terms;
+      own.own_part += static_cast<std::int32_t>(i);
+      visitors.push_back(
+          std::make_unique<Visitor>(lines, url, "visitor" + std::to_string(i), random.next(), own));
     }
     std::unique_ptr<Subscriber> subscriber;
     if (random.once_in(2)) subscriber = std::make_unique<Subscriber>(lines, url);
@@ -158,7 +168,7 @@ void run_with_visitors(Scheduler& run, bool is_scarce) {
     for (std::thread& each : threads) each.join();
     visitors.clear();
     // A user of its own: a lock lasts as long as its user has a session.
-    Visitor(lines, url, "inspector", random.next(), false).expect_all_well();
+    Visitor(lines, url, "inspector", random.next(), {}).expect_all_well();
     if (subscriber) subscriber->expect_values(place.host());
   }
   place.host().expect_nothing_left(std::chrono::seconds(60));

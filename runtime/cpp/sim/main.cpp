@@ -56,6 +56,8 @@ void draw_faults(Random& random, Faults& faults) {
   faults.longest_delay = static_cast<Nanoseconds>(one_of(random, {1, 50, 1'000, 30'000})) * 1'000;
   faults.split_segments = one_of(random, {0, 0, 2, 10});
   faults.smallest_window = one_of(random, {16'000, 100'000});
+  faults.lost_datagrams = one_of(random, {0, 3, 20});
+  faults.doubled_datagrams = one_of(random, {0, 5});
   faults.largest_window = faults.smallest_window + one_of(random, {0, 10'000, 200'000});
 }
 
@@ -217,10 +219,12 @@ void settle(char** words) {
 }  // namespace
 
 std::span<const Scenario> scenarios() {
-  static constexpr std::array<Scenario, 3> all{{
+  static constexpr std::array<Scenario, 5> all{{
       {"sessions", "clients that use all members of a service", run_sessions},
       {"links", "links that break and hosts that start anew", run_links},
       {"scarce", "links that break, and memory and threads that are refused", run_scarce},
+      {"finding", "nodes that find each other by datagrams", run_finding},
+      {"inside", "clients in the process of their service", run_inside},
   }};
   return all;
 }

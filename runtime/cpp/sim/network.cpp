@@ -12,6 +12,8 @@ namespace {
 constexpr int first_descriptor = 1'000'000;
 constexpr std::size_t largest_queue = 1'048'576;
 
+constexpr std::size_t most_datagrams = 200;
+
 Network* running = nullptr;
 
 }  // namespace
@@ -280,6 +282,24 @@ void Listener::close() {
   Network::current()->stop_listening(*this);
 }
 
+// Datagrams
+
+void Datagrams::arrive(std::uint16_t sender, const std::vector<std::byte>& content) {
+  if (received_.size() == most_datagrams) return;
+  received_.emplace_back(sender, content);
+  notify();
+}
+
+std::ptrdiff_t Datagrams::receive(std::span<std::byte> room, bool is_peek, std::uint16_t& sender) {
+  if (received_.empty()) return -EAGAIN;
+  const auto& [from, content] = received_.front();
+  sender = from;
+  const std::size_t size = std::min(room.size(), content.size());
+  std::copy_n(content.begin(), size, room.begin());
+  if (!is_peek) received_.pop_front();
+  return static_cast<std::ptrdiff_t>(size);
+}
+
 // The network
 
 Network::Network(Scheduler& run) : run_(run) { running = this; }
@@ -378,6 +398,29 @@ int Network::connect(int descriptor, std::uint16_t port) {
     place->second->add(std::move(accepted));
   });
   return -EINPROGRESS;
+}
+
+void Network::place(Datagrams& socket, std::uint16_t port) {
+  socket.port = port == 0 ? next_port_++ : port;
+}
+
+void Network::send_to_all(const Datagrams& sender, std::uint16_t port,
+                          std::span<const std::byte> content) {
+  const Faults& faults = Faults::current();
+  const std::vector<std::byte> copy(content.begin(), content.end());
+  for (const auto& [number, file] : files_) {
+    const auto receiver = std::dynamic_pointer_cast<Datagrams>(file);
+    if (!receiver || receiver->family != sender.family || receiver->port != port) continue;
+    if (run_.random().once_in(faults.lost_datagrams)) continue;
+    for (int left = run_.random().once_in(faults.doubled_datagrams) ? 2 : 1; left != 0; --left) {
+      const auto delay = static_cast<Nanoseconds>(
+          run_.random().below(static_cast<std::uint64_t>(faults.longest_delay) + 1));
+      run_.at(run_.now() + delay,
+              [copy, from = sender.port, its = std::weak_ptr<Datagrams>(receiver)] {
+                if (const auto to = its.lock()) to->arrive(from, copy);
+              });
+    }
+  }
 }
 
 std::vector<std::shared_ptr<Stream>> Network::streams() const {

@@ -169,6 +169,24 @@ class Listener final : public File {
   std::deque<std::shared_ptr<Stream>> waiting_;
 };
 
+/// A socket of UDP. All sockets of its family at a port get what is sent there.
+class Datagrams final : public File {
+ public:
+  using File::File;
+  [[nodiscard]] std::uint32_t ready() const override {
+    return std::uint32_t{EPOLLOUT} | (received_.empty() ? 0U : std::uint32_t{EPOLLIN});
+  }
+  void arrive(std::uint16_t sender, const std::vector<std::byte>& content);
+  /// Bytes of the next one, cut to the room; -EAGAIN when there is none.
+  std::ptrdiff_t receive(std::span<std::byte> room, bool is_peek, std::uint16_t& sender);
+
+  std::uint16_t port = 0;
+  sa_family_t family = AF_INET;
+
+ private:
+  std::deque<std::pair<std::uint16_t, std::vector<std::byte>>> received_;
+};
+
 /// A socket of which it is not known yet whether it connects or listens.
 class Unbound final : public File {
  public:
@@ -206,6 +224,10 @@ class Network {
   /// Begins to connect.
   int connect(int descriptor, std::uint16_t port);
   void stop_listening(const Listener& listener);
+  /// Gives a socket of UDP a port, which others may have too; 0: one of its own.
+  void place(Datagrams& socket, std::uint16_t port);
+  /// Some get lost, come twice, or overtake others.
+  void send_to_all(const Datagrams& sender, std::uint16_t port, std::span<const std::byte> content);
 
   /// Connections that exist, by descriptor of one of their ends.
   [[nodiscard]] std::vector<std::shared_ptr<Stream>> streams() const;

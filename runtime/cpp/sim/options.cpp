@@ -13,7 +13,7 @@ const char* const usage =
     "usage: rr_sim [--scenario NAME] [--seed N | --from N --count N | --seconds S] [--first]\n"
     "              [--repeat]\n"
     "       rr_sim --seeds FILE | --planted\n"
-    "  --scenario   sessions, links, scarce; otherwise each seed has one of them\n"
+    "  --scenario   sessions, links, scarce, finding, inside; otherwise each seed has one of them\n"
     "  --seed N     one run; when it fails its last steps are printed (RR_SIM_STEPS of them)\n"
     "  --count N    so many seeds, from 1 or --from on\n"
     "  --seconds S  as many seeds as there is time for\n"

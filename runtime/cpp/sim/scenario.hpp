@@ -28,6 +28,10 @@ void run_sessions(Scheduler& run);
 void run_links(Scheduler& run);
 /// The same with one host, whose node and clients are refused memory and threads.
 void run_scarce(Scheduler& run);
+/// Nodes that find each other by datagrams, and hosts that come and go.
+void run_finding(Scheduler& run);
+/// Clients in the process of their service, by intra-process connections.
+void run_inside(Scheduler& run);
 
 /// All of them.
 std::span<const Scenario> scenarios();

@@ -94,6 +94,8 @@ int poll(Scheduler& run, Network& network, std::span<pollfd> wanted, Nanoseconds
   while (true) {
     int count = 0;
     for (pollfd& each : wanted) {
+      each.revents = 0;
+      if (each.fd < 0) continue;
       const auto file = network.find(each.fd);
       const auto events = static_cast<std::uint32_t>(each.events) | POLLHUP | POLLERR;
       each.revents = static_cast<short>(file ? file->ready() & events : POLLNVAL);
@@ -140,12 +142,19 @@ struct Use {
   std::shared_ptr<File> file;
 };
 
-// Apart from poll(), whose declaration says that it writes only.
-[[gnu::noinline]] int first_descriptor(const pollfd* wanted) { return wanted->fd; }
+// Whether all of these are the run's, or none at all. Apart from poll(), whose declaration says
+// that it writes only.
+[[gnu::noinline]] bool are_of_a_run(const pollfd* wanted, nfds_t count) {
+  const Network* const network = Scheduler::current() == nullptr ? nullptr : Network::current();
+  return network != nullptr && std::all_of(wanted, wanted + count, [&](const pollfd& each) {
+           return each.fd < 0 || network->find(each.fd) != nullptr;
+         });
+}
 
 }  // namespace
 }  // namespace rr::sim
 
+using rr::sim::Datagrams;
 using rr::sim::Epoll;
 using rr::sim::given;
 using rr::sim::Listener;
@@ -170,9 +179,13 @@ int socket(int family, int type, int protocol) noexcept {
     static constinit Real<int(int, int, int)> call{"socket"};
     return call(family, type, protocol);
   }
-  if ((family != AF_INET && family != AF_INET6) || kind != SOCK_STREAM) {
-    return given(-EAFNOSUPPORT);
+  if (family != AF_INET && family != AF_INET6) return given(-EAFNOSUPPORT);
+  if (kind == SOCK_DGRAM) {
+    auto datagrams = std::make_shared<Datagrams>(network->run());
+    datagrams->family = static_cast<sa_family_t>(family);
+    return network->open(std::move(datagrams));
   }
+  if (kind != SOCK_STREAM) return given(-EPROTONOSUPPORT);
   auto socket = std::make_shared<Unbound>(network->run());
   socket->family = static_cast<sa_family_t>(family);
   socket->is_blocking = (type & SOCK_NONBLOCK) == 0;
@@ -200,6 +213,10 @@ int bind(int descriptor, const sockaddr* address, socklen_t size) noexcept {
   if (!use) {
     static constinit Real<int(int, const sockaddr*, socklen_t)> call{"bind"};
     return call(descriptor, address, size);
+  }
+  if (const auto datagrams = use.as<Datagrams>()) {
+    use.network->place(*datagrams, rr::sim::port_of(address));
+    return 0;
   }
   const auto socket = use.as<Unbound>();
   return given(socket ? use.network->bind(*socket, rr::sim::port_of(address)) : -EINVAL);
@@ -248,6 +265,11 @@ ssize_t recv(int descriptor, void* room, size_t size, int flags) {
     static constinit Real<ssize_t(int, void*, size_t, int)> call{"recv"};
     return call(descriptor, room, size, flags);
   }
+  if (const auto datagrams = use.as<Datagrams>()) {
+    std::uint16_t sender = 0;
+    return given(
+        datagrams->receive({static_cast<std::byte*>(room), size}, (flags & MSG_PEEK) != 0, sender));
+  }
   const auto stream = use.as<Stream>();
   if (!stream) return given<ssize_t>(-ENOTCONN);
   return given(
@@ -264,6 +286,42 @@ ssize_t send(int descriptor, const void* bytes, size_t size, int flags) {
   if (!stream) return given<ssize_t>(-ENOTCONN);
   return given(
       rr::sim::send(*use.run, *stream, {static_cast<const std::byte*>(bytes), size}, RR_CALLER));
+}
+
+ssize_t recvfrom(int descriptor, void* __restrict room, size_t size, int flags,
+                 sockaddr* __restrict address, socklen_t* __restrict length) {
+  const Use use(descriptor);
+  if (!use) {
+    static constinit Real<ssize_t(int, void*, size_t, int, sockaddr*, socklen_t*)> call{"recvfrom"};
+    return call(descriptor, room, size, flags, address, length);
+  }
+  const auto datagrams = use.as<Datagrams>();
+  if (!datagrams) return recv(descriptor, room, size, flags);
+  use.run->point("receive", datagrams.get(), descriptor, RR_CALLER);
+  std::uint16_t sender = 0;
+  const auto received =
+      datagrams->receive({static_cast<std::byte*>(room), size}, (flags & MSG_PEEK) != 0, sender);
+  if (received >= 0 && address != nullptr) {
+    rr::sim::write_address(datagrams->family, sender, address, length);
+  }
+  return given(received);
+}
+
+ssize_t sendto(int descriptor, const void* bytes, size_t size, int flags, const sockaddr* address,
+               socklen_t length) {
+  const Use use(descriptor);
+  if (!use) {
+    static constinit Real<ssize_t(int, const void*, size_t, int, const sockaddr*, socklen_t)> call{
+        "sendto"};
+    return call(descriptor, bytes, size, flags, address, length);
+  }
+  const auto datagrams = use.as<Datagrams>();
+  if (!datagrams) return send(descriptor, bytes, size, flags);
+  use.run->point("send", datagrams.get(), static_cast<std::int64_t>(size), RR_CALLER);
+  if (datagrams->port == 0) use.network->place(*datagrams, 0);
+  use.network->send_to_all(*datagrams, rr::sim::port_of(address),
+                           {static_cast<const std::byte*>(bytes), size});
+  return static_cast<ssize_t>(size);
 }
 
 ssize_t sendmsg(int descriptor, const msghdr* message, int flags) {
@@ -384,8 +442,7 @@ int epoll_wait(int descriptor, epoll_event* events, int most, int timeout) {
 
 int poll(pollfd* wanted, nfds_t count, int timeout) {
   const rr::sim::Spared spared;
-  const bool is_of_a_run = count != 0 && Use(rr::sim::first_descriptor(wanted));
-  if (!is_of_a_run) {
+  if (!rr::sim::are_of_a_run(wanted, count)) {
     static constinit Real<int(pollfd*, nfds_t, int)> call{"poll"};
     return call(wanted, count, timeout);
   }
@@ -427,6 +484,8 @@ int getsockname(int descriptor, sockaddr* __restrict address, socklen_t* __restr
     rr::sim::write_address(stream->family, stream->local_port, address, size);
   } else if (const auto listener = use.as<Listener>()) {
     rr::sim::write_address(listener->family, listener->port, address, size);
+  } else if (const auto datagrams = use.as<Datagrams>()) {
+    rr::sim::write_address(datagrams->family, datagrams->port, address, size);
   } else if (const auto socket = use.as<Unbound>()) {
     rr::sim::write_address(socket->family, socket->port, address, size);
   }

@@ -64,12 +64,12 @@ struct Visitor::Streams {
 };
 
 Visitor::Visitor(stress::Lines& lines, std::string url, std::string user, std::uint64_t seed,
-                 bool is_scarce)
+                 Terms terms)
     : lines_(lines),
       url_(std::move(url)),
       user_(std::move(user)),
       random_(seed),
-      is_scarce_(is_scarce),
+      terms_(terms),
       node_(impatient_options()) {}
 
 void Visitor::fault(const std::string& what) { lines_.fault(user_ + ": " + what); }
@@ -81,8 +81,9 @@ void Visitor::attempt(const char* what, const std::function<void()>& action, mil
     action();
   } catch (const Error& error) {
     // A member without memory may answer with anything.
-    const bool is_excused = !holds_ && (is_scarce_ || std::find(excused.begin(), excused.end(),
-                                                                error.code()) != excused.end());
+    const bool is_excused =
+        !holds_ && (terms_.is_scarce ||
+                    std::find(excused.begin(), excused.end(), error.code()) != excused.end());
     if (!is_excused) failure = error.what();
     Scheduler::current()->note(user_ + ": " + what + " fails: " + error.what());
   }
@@ -135,7 +136,7 @@ void Visitor::connect_streams() {
   attempt(
       "connect a wire", [&] { level_ = bench->level().connect(); }, call_limit);
   // A service that is refused memory for what it sends back leaves a packet out.
-  if (echo_.is_open() && !is_scarce_) {
+  if (echo_.is_open() && !terms_.is_scarce) {
     subscriptions_.push_back(echo_.on_packet([streams](const Packet& packet) {
       expect_no_lock("a packet");
       streams->echo.take(packet->number);
@@ -191,7 +192,13 @@ void Visitor::settle_calls() {
 
 void Visitor::act() {
   const auto bench = client_.stub();
-  switch (random_.below(13)) {
+  switch (random_.below(16)) {
+    case 14:
+      return replace_part();
+    case 15:
+      return send_much();
+    case 13:
+      return keep_generator();
     case 10:
       return be_asked();
     case 11:
@@ -220,7 +227,7 @@ void Visitor::act() {
             [&] {
               if (!echo_.is_open()) return;
               echo_.send(Stamp{1, sent_ + 1,
-                               Array<double>(!is_scarce_ && random_.once_in(8) ? 2'000 : 3)});
+                               Array<double>(!terms_.is_scarce && random_.once_in(8) ? 2'000 : 3)});
               ++sent_;
             },
             milliseconds(0));
@@ -251,6 +258,66 @@ void Visitor::use_generator() {
         if (random_.once_in(2)) generator.close();
       },
       6 * call_limit);
+}
+
+// One that nobody uses for a while is there still.
+void Visitor::keep_generator() {
+  if (!terms_.generators_stay || !random_.once_in(4)) return;
+  attempt(
+      "a generator that waits",
+      [&] {
+        auto generator = client_.stub()->count(7, 4);
+        if (generator.next() != 7) fault("a generator's value is wrong");
+        std::this_thread::sleep_for(std::chrono::seconds(20));
+        try {
+          if (generator.next() != 8) fault("a generator's value is wrong");
+        } catch (const Error& error) {
+          if (client_.is_open() && error.code() == ErrorCode::invalid_operation) {
+            fault(std::string("a generator is dropped: ") + error.what());
+          }
+          throw;
+        }
+      },
+      milliseconds(20'000) + 3 * call_limit);
+}
+
+// What the service says of the ends of a released object is not meant for those of the next one.
+void Visitor::replace_part() {
+  attempt(
+      "an object in the place of another",
+      [&] {
+        const auto bench = client_.stub();
+        const auto first = bench->get_parts(terms_.own_part);
+        const auto old_end = first->samples().connect();
+        const auto old_wire = first->level().connect();
+        bench->release(terms_.own_part);
+        const auto second = bench->get_parts(terms_.own_part);
+        auto end = second->samples().connect();
+        auto wire = second->level().connect();
+        second->set_value(1);
+        std::this_thread::sleep_for(milliseconds(100));
+        if (client_.is_open() && (!end.is_open() || !wire.is_open())) {
+          fault("the end of an object that was released ends those of the next one");
+        }
+        end.close();
+        wire.close();
+      },
+      8 * call_limit);
+}
+
+// A message that does not fit into what is kept for small ones.
+void Visitor::send_much() {
+  attempt(
+      "a function with many numbers",
+      [&] {
+        Array<double> values(1'000 + random_.below(3'000));
+        values.mutate()[0] = 1;
+        const Array<double> back = client_.stub()->reversed(values);
+        if (back.size() != values.size() || back.data()[back.size() - 1] != 1) {
+          fault("a result is wrong");
+        }
+      },
+      call_limit);
 }
 
 // The service looks at the time of its callback, while another member of this client keeps a

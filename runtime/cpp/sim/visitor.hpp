@@ -24,9 +24,14 @@ NodeOptions impatient_options();
 /// in time and once; its streams may end, but have no gap.
 class Visitor {
  public:
-  /// `is_scarce`: memory and threads may be refused to nodes.
-  Visitor(stress::Lines& lines, std::string url, std::string user, std::uint64_t seed,
-          bool is_scarce);
+  /// What is true of the run.
+  struct Terms {
+    bool is_scarce = false;        ///< memory and threads may be refused to nodes
+    bool generators_stay = false;  ///< the service drops none that is not used
+    bool links_hold = false;       ///< all the time
+    std::int32_t own_part = 12;    ///< which no other visitor uses
+  };
+  Visitor(stress::Lines& lines, std::string url, std::string user, std::uint64_t seed, Terms terms);
 
   /// Connects, does `actions` things, closes or is closed; so again until `is_over`.
   void visit(const std::function<bool()>& is_over);
@@ -42,6 +47,9 @@ class Visitor {
   void connect_streams();
   void act();
   void use_generator();
+  void keep_generator();
+  void replace_part();
+  void send_much();
   void be_asked();
   void reach_part_twice();
   void wait_in_two_threads();
@@ -56,7 +64,7 @@ class Visitor {
   const std::string url_;
   const std::string user_;
   Random random_;
-  const bool is_scarce_;
+  const Terms terms_;
   Node node_;
   Client<Bench> client_;
   std::shared_ptr<Streams> streams_;
