@@ -16,12 +16,14 @@ namespace rr::gateway {
 /// Owned bytes.
 using Bytes = std::vector<std::byte>;
 
+/// Texts of UTF-8 by name, in any order; names are lower case letters and `-`.
+using Properties = std::vector<std::pair<std::string, std::string>>;
+
 /// What is published, and what arrives.
 struct Message {
   std::string topic;  ///< levels with `/` between them (gateway/topics.hpp), no wildcards
   Bytes payload;
-  /// Texts of UTF-8 by name, in any order; names are lower case letters and `-`.
-  std::vector<std::pair<std::string, std::string>> properties{};
+  Properties properties{};
   std::string response_topic{};  ///< of a request: where the answer goes; empty: no answer
   Bytes correlation{};           ///< of a request: what its answer repeats
   std::optional<std::chrono::seconds> expiry{};  ///< after this the broker drops it; nothing: never

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::chrono::milliseconds export_tick{20};
 constexpr std::chrono::seconds stream_tick{1};
+constexpr std::chrono::minutes left_idle{10};
 
 Message life(const ExportFile& file, std::string_view state) {
   Message message{node_topic(file.site, file.node) + "/$life", bytes_of(state)};
@@ -60,10 +61,7 @@ void ServiceExporter::connect(Node& node) {
 
 std::vector<std::string> ServiceExporter::filters() const {
   std::vector<std::string> all;
-  for (const Verb verb :
-       {Verb::get, Verb::set, Verb::call, Verb::poke, Verb::object, Verb::stream, Verb::confirm}) {
-    all.push_back(request_filter(address_, verb));
-  }
+  for (const Verb verb : all_verbs) all.push_back(request_filter(address_, verb));
   return all;
 }
 
@@ -84,6 +82,8 @@ bool ServiceExporter::pump(Carrier& carrier) {
 void ServiceExporter::tick() {
   const auto now = std::chrono::steady_clock::now();
   window_.forget_old(wall_time());
+  generators_.end_idle(now, left_idle);
+  endpoints_.close_idle(now, left_idle);
   for (auto& [topic, stream] : streams_) {
     if (now - stream.ticked < stream_tick) continue;
     stream.ticked = now;

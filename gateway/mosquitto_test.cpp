@@ -10,6 +10,7 @@
 
 #include "gateway/mqtt_carrier.hpp"
 #include "gateway/properties.hpp"
+#include "gateway/testing/listener.hpp"
 #include "gateway/testing/mosquitto_broker.hpp"
 #include "gateway/testing/rig.hpp"
 
@@ -20,23 +21,10 @@ using std::chrono::milliseconds;
 using testing::comes_true;
 using testing::Folder;
 using testing::Kept;
+using testing::Listener;
 using testing::MosquittoBroker;
-using testing::Process;
+using testing::Program;
 using testing::Rig;
-
-/// Keeps what a carrier says.
-struct Listener final : CarrierHandler {
-  void on_message(Message message) override { messages.add(std::move(message)); }
-  void on_connected() override { connected.add(1); }
-  void on_disconnected(const std::string& reason) override { reasons.add(reason); }
-  void on_room() override { rooms.add(1); }
-  void on_refused(const std::string& what) override { refused.add(what); }
-  Kept<Message> messages;
-  Kept<int> connected;
-  Kept<std::string> reasons;
-  Kept<int> rooms;
-  Kept<std::string> refused;
-};
 
 class Mosquitto : public ::testing::Test {
  protected:
@@ -87,7 +75,7 @@ TEST_F(Mosquitto, CarriesMessagesAsTheyAre) {
 
 TEST_F(Mosquitto, TakesNoMoreThanTheBrokerAcknowledges) {
   Listener listener;
-  const auto carrier = make_mqtt_carrier({.url = broker->url(), .in_flight = 10});
+  const auto carrier = make_mqtt_carrier({broker->url()}, {.in_flight = 10});
   carrier->start(listener, {"life", {}});
   ASSERT_TRUE(listener.connected.wait_for(1));
   int taken = 0;
@@ -231,49 +219,6 @@ TEST_F(Mosquitto, WiresHaveTheNewestValueAfterTheBrokerWasKilled) {
   EXPECT_TRUE(newest_is(2));
 }
 
-// The lists of docs/howto/fleet.md.
-TEST_F(Mosquitto, AUserCannotAskInTheNameOfAnother) {
-  const Folder folder;
-  std::ofstream(folder.path() + "/acl") << "user robot\ntopic readwrite rr/hall/robot/#\n"
-                                           "topic write rr/$reply/#\n\n"
-                                           "user hub\ntopic read rr/hall/#\n\n"
-                                           "pattern write rr/+/+/+/$get/%u/#\n"
-                                           "pattern write rr/+/+/+/$set/%u/#\n"
-                                           "pattern write rr/+/+/+/$call/%u/#\n"
-                                           "pattern write rr/+/+/+/$poke/%u/#\n"
-                                           "pattern write rr/+/+/+/$object/%u/#\n"
-                                           "pattern write rr/+/+/+/$stream/%u/#\n"
-                                           "pattern write rr/+/+/+/$confirm/%u/#\n"
-                                           "pattern read rr/$reply/%u/#\n";
-  const std::string words = folder.path() + "/words";
-  std::ofstream(words) << "robot:one\nhub:two\neve:three\n";
-  Process hashing({"/usr/bin/mosquitto_passwd", "-U", words});
-  ASSERT_EQ(hashing.wait(), 0);
-  const MosquittoBroker strict("allow_anonymous false\npassword_file " + words + "\nacl_file " +
-                               folder.path() + "/acl\n");
-  int made = 0;
-  Rig all([&] {
-    return ++made == 1 ? make_mqtt_carrier({strict.url(), "robot", "one"})
-                       : make_mqtt_carrier({strict.url(), "hub", "two"});
-  });
-  const auto bench = all.connect();
-  EXPECT_EQ(bench->call("count").as<int>(), 1);
-
-  Listener listener;
-  const auto eve = make_mqtt_carrier({strict.url(), "eve", "three"});
-  eve->subscribe("rr/$reply/hub/#");
-  eve->start(listener, {"life", {}});
-  ASSERT_TRUE(listener.connected.wait_for(1));
-  Message request{"rr/hall/robot/bench/$call/hub/count", {}};
-  request.correlation = Bytes(4);
-  request.response_topic = "rr/$reply/hub/1";
-  ASSERT_EQ(eve->publish(request), Published::taken);
-  EXPECT_TRUE(listener.refused.wait_for(1));
-  EXPECT_EQ(bench->call("count").as<int>(), 2);
-  EXPECT_EQ(listener.messages.size(), 0U);
-  eve->stop({});
-}
-
 // The programs themselves; the one beside the robot is killed.
 TEST_F(Mosquitto, TheProgramGoesOnAfterItWasKilled) {
   const testing::BenchService robot;
@@ -294,7 +239,8 @@ TEST_F(Mosquitto, TheProgramGoesOnAfterItWasKilled) {
     const auto all = life.messages.items();
     return all.empty() ? std::string() : text_of(all.back().payload);
   };
-  auto gateway = std::make_unique<Process>(std::vector<std::string>{ROBDEF_GATEWAY, path});
+  std::optional<Program> gateway;
+  gateway.emplace(std::vector<std::string>{ROBDEF_GATEWAY, path});
   ASSERT_TRUE(comes_true([&] { return newest_life() == "up"; }));
 
   Node server_node;
@@ -318,10 +264,9 @@ TEST_F(Mosquitto, TheProgramGoesOnAfterItWasKilled) {
   EXPECT_EQ(bench->call("count").as<int>(), 1);
   gateway->end(SIGKILL);
   EXPECT_TRUE(comes_true([&] { return newest_life() == "lost"; }));
-  gateway = std::make_unique<Process>(std::vector<std::string>{ROBDEF_GATEWAY, path});
+  gateway.emplace(std::vector<std::string>{ROBDEF_GATEWAY, path});
   EXPECT_EQ(bench->call("count").as<int>(), 2);
-  const int status = gateway->end(SIGTERM);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_TRUE(testing::exited_with(gateway->end(SIGTERM), 0));
   EXPECT_TRUE(comes_true([&] { return newest_life() == "ended"; }));
   watcher->stop({});
 }

@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gateway/carrier.hpp"
 
@@ -49,6 +50,33 @@ inline std::optional<std::uint64_t> number_property(const Message& message, std:
   const auto result = std::from_chars(text->data(), end, number, base);
   if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
   return number;
+}
+
+/// `1,2,3`.
+inline std::string list_text(const std::vector<std::uint64_t>& numbers) {
+  std::string text;
+  for (const std::uint64_t number : numbers) {
+    if (!text.empty()) text += ',';
+    text += std::to_string(number);
+  }
+  return text;
+}
+
+/// A property as such a list; nothing for what is none.
+inline std::optional<std::vector<std::uint64_t>> numbers_property(const Message& message,
+                                                                  std::string_view name) {
+  const auto text = message.find(name);
+  if (!text) return std::nullopt;
+  std::vector<std::uint64_t> numbers;
+  const char* at = text->data();
+  const char* const end = at + text->size();
+  for (;;) {
+    const auto result = std::from_chars(at, end, numbers.emplace_back());
+    if (result.ec != std::errc()) return std::nullopt;
+    if (result.ptr == end) return numbers;
+    if (*result.ptr != ',') return std::nullopt;
+    at = result.ptr + 1;
+  }
 }
 
 }  // namespace rr::gateway

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "gateway/call_window.hpp"
+#include "gateway/exported_endpoints.hpp"
+#include "gateway/exported_generators.hpp"
 #include "gateway/exporter.hpp"
 #include "gateway/outbox.hpp"
 #include "gateway/properties.hpp"
@@ -104,14 +106,22 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   void handle(const RequestTopic& request, const Message& message);
   bool is_reachable(const RequestTopic& request, const Message& message);
   void handle_stream(const RequestTopic& request, const Message& message);
-  void execute(const RequestTopic& request, const Message& message);
   void execute_once(const RequestTopic& request, const Message& message);
-  void perform(const RequestTopic& request, const Message& message, const dynamic::Object& object,
-               const Function<void(std::exception_ptr, Bytes, std::string)>& done);
   void answer(const RequestTopic& request, const Message& message, Message result);
   void answer_error(const RequestTopic& request, const Message& message,
                     const std::exception_ptr& error, std::string_view at);
   std::shared_ptr<RobotSession> session_of(const std::string& user);
+
+  // service_execution.cpp
+  using Executed = Function<void(std::exception_ptr, Message)>;
+  void execute(const RequestTopic& request, const Message& message);
+  void perform(const RequestTopic& request, const Message& message, const dynamic::Object& object,
+               const Executed& done);
+  void send_packets(const RequestTopic& request, const Message& message,
+                    const dynamic::Object& object, const Executed& done);
+  void open_generator(const RequestTopic& request, const dynamic::Object& object,
+                      const dynamic::List& arguments, const Executed& done);
+  void step(const RequestTopic& request, const Message& message, const Executed& done);
 
   ServiceAddress address_;
   ExportedServiceOptions options_;
@@ -125,6 +135,8 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   std::map<std::string, Message> retained_;                             // by topic
   std::map<std::string, std::shared_ptr<WireExport>> wires_;            // by topic
   std::map<std::string, StreamExport> streams_;                         // by topic
+  ExportedGenerators generators_;
+  ExportedEndpoints endpoints_;
   std::string trouble_;           // why the robot is not connected, as was reported
   std::uint64_t connection_ = 0;  // counts connections to the robot
   // Their handlers last as long. Kept until the robot is connected again: what it had sent before

@@ -102,6 +102,15 @@ void MemoryBroker::cut() {
   disconnect(lock, true);
 }
 
+void MemoryBroker::set_links(bool are_up) {
+  {
+    const std::scoped_lock lock(mutex_);
+    links_are_up_ = are_up;
+    changed_.notify_all();
+  }
+  if (!are_up) cut();
+}
+
 void MemoryBroker::disconnect(std::unique_lock<std::mutex>& lock, bool publishes_life) {
   const auto clients = clients_;
   for (const auto& client : clients) {
@@ -159,7 +168,9 @@ void MemoryBroker::enqueue(const std::shared_ptr<Client>& client, Message messag
 void MemoryBroker::connect_all(std::unique_lock<std::mutex>& lock) {
   const auto clients = clients_;
   for (const auto& client : clients) {
-    if (!is_up_ || client->is_connected || client->is_stopped || client->is_called) continue;
+    if (!is_up_ || !links_are_up_ || client->is_connected || client->is_stopped ||
+        client->is_called)
+      continue;
     client->is_connected = true;
     client->is_called = true;
     for (const auto& [topic, message] : retained_) {

@@ -75,12 +75,21 @@ class Rig {
     return client;
   }
 
+  /// The user of the gateway, for clients of the robot itself.
+  static ConnectOptions login() {
+    ConnectOptions options;
+    options.username = "gateway";
+    options.credentials["password"] = VarValue(std::string("open sesame"));
+    return options;
+  }
+
   BenchService robot;
   Kept<std::string> log;
   std::string rules =
       "[[service.allow]]\nmembers = [\"speed\", \"pose\", \"mode\", \"add\", \"describe\", "
       "\"fail\", "
-      "\"count\", \"whoami\", \"stopped\", \"samples\", \"force\", \"target\"]\n"
+      "\"count\", \"whoami\", \"stopped\", \"samples\", \"force\", \"target\", "
+      "\"count_to\", \"collect\", \"sums\", \"commands\", \"both\", \"trace\", \"grid\"]\n"
       "access = [\"read\", \"write\", \"call\"]\n"
       "[[service.allow]]\npath = \"tools[left%20hand]\"\nmembers = [\"*\"]\n"
       "access = [\"read\", \"write\", \"call\"]\n";
