@@ -59,6 +59,7 @@ class Collector {
     const std::string node = node_topic(file.site, file.node);
     AccessRights& own = list_.users[robot];
     own.publish.insert(node + "/#");
+    own.receive.insert({node + "/$life", node + "/$claim"});
     for (const ExportedServiceOptions& service : file.services) {
       const ServiceAddress address{file.site, file.node, service.name};
       for (const Verb verb : all_verbs) own.receive.insert(request_filter(address, verb));

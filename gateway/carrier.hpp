@@ -27,7 +27,8 @@ struct Message {
   std::string response_topic{};  ///< of a request: where the answer goes; empty: no answer
   Bytes correlation{};           ///< of a request: what its answer repeats
   std::optional<std::chrono::seconds> expiry{};  ///< after this the broker drops it; nothing: never
-  bool retained = false;  ///< kept by the broker for those that subscribe later
+  /// To be kept by the broker for those that subscribe later; of what arrives: it was kept.
+  bool retained = false;
 
   /// The value of a property; nothing for none.
   [[nodiscard]] std::optional<std::string_view> find(std::string_view name) const {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <atomic>
 #include <iostream>
 #include <utility>
 
@@ -33,8 +34,13 @@ void wait_for(const robdef::EndSignals& signals) {
 void run_export(const std::string& path, const robdef::EndSignals& signals) {
   ExportFile file = read_export_file(path);
   const auto carrier = make_mqtt_carrier(file.broker);
-  const Exporter exporter(std::move(file), *carrier, log);
-  wait_for(signals);
+  std::atomic<bool> is_refused{false};
+  const Exporter exporter(std::move(file), *carrier, log,
+                          [&](const std::string&) { is_refused = true; });
+  while (!is_refused) {
+    if (signals.wait()) return;
+  }
+  throw Error(ErrorCode::invalid_state, "this gateway ends: the robot has another one");
 }
 
 void print_access_list(const ProgramOptions& options) {

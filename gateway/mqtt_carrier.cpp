@@ -12,6 +12,7 @@
 #include <condition_variable>
 #include <cstdlib>
 #include <cstring>
+#include <map>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -95,10 +96,15 @@ class MqttCarrier final : public Carrier {
     const MqttProperties properties(message);
     // Before it is acknowledged, which the other thread may see at once.
     ++waiting_;
+    int id = 0;
     const int result = mosquitto_publish_v5(
-        client_.get(), nullptr, message.topic.c_str(), static_cast<int>(message.payload.size()),
+        client_.get(), &id, message.topic.c_str(), static_cast<int>(message.payload.size()),
         message.payload.data(), qos, message.retained, properties.get());
-    if (result == MOSQ_ERR_SUCCESS) return Published::taken;
+    if (result == MOSQ_ERR_SUCCESS) {
+      const std::scoped_lock lock(topics_mutex_);
+      topics_[id] = message.topic;
+      return Published::taken;
+    }
     --waiting_;
     const bool is_large = result == MOSQ_ERR_PAYLOAD_SIZE || result == MOSQ_ERR_OVERSIZE_PACKET;
     return is_large ? Published::refused : Published::later;
@@ -116,6 +122,8 @@ class MqttCarrier final : public Carrier {
         is_accepted_ = false;
         client_.reset();
         waiting_ = 0;
+        const std::scoped_lock topics_lock(topics_mutex_);
+        topics_.clear();
       }
       if (ends_) return;
       handler_->on_disconnected(broker_.url + ": " + reason_);
@@ -153,7 +161,7 @@ class MqttCarrier final : public Carrier {
       if (error == 0 && ::getpeername(wanted.fd, reinterpret_cast<sockaddr*>(&peer), &size) == 0) {
         return true;
       }
-      reason_ = error != 0 ? std::strerror(error) : "its port does not answer";
+      reason_ = error != 0 ? std::strerror(error) : "no server at its port, or it speaks no TLS";
       return false;
     }
     return false;
@@ -163,7 +171,7 @@ class MqttCarrier final : public Carrier {
     if (tls_ && !tls_->trouble().empty()) return tls_->trouble();
     if (!tls_reason_.empty()) return tls_reason_;
     if (result == MOSQ_ERR_TLS && !is_accepted_) {
-      return "the broker has ended the connection while TLS began: it may speak no TLS";
+      return "the broker has ended the connection while TLS began: perhaps it speaks no TLS";
     }
     return mosquitto_strerror(result);
   }
@@ -178,8 +186,11 @@ class MqttCarrier final : public Carrier {
     if (!broker_.user.empty()) {
       mosquitto_username_pw_set(client.get(), broker_.user.c_str(), broker_.password.c_str());
     }
-    mosquitto_will_set_v5(client.get(), life_.topic.c_str(), static_cast<int>(life_.payload.size()),
-                          life_.payload.data(), qos, life_.retained, nullptr);
+    MqttProperties properties(life_);
+    const int result = mosquitto_will_set_v5(
+        client.get(), life_.topic.c_str(), static_cast<int>(life_.payload.size()),
+        life_.payload.data(), qos, life_.retained, properties.get());
+    if (result == MOSQ_ERR_SUCCESS) properties.release();  // the library has taken them over
     mosquitto_connect_v5_callback_set(client.get(), on_connect);
     mosquitto_disconnect_v5_callback_set(client.get(), on_disconnect);
     mosquitto_subscribe_v5_callback_set(client.get(), on_subscribe);
@@ -264,10 +275,19 @@ class MqttCarrier final : public Carrier {
     if (self.subscribing_ > 0 && --self.subscribing_ == 0) self.become_connected();
   }
 
-  static void on_publish(mosquitto*, void* user, int, int code, const mosquitto_property*) {
+  /// Where a message that is acknowledged went; empty when the acknowledgement was faster than the
+  /// publisher's thread.
+  std::string take_topic(int id) {
+    const std::scoped_lock lock(topics_mutex_);
+    const auto node = topics_.extract(id);
+    return node.empty() ? std::string() : node.mapped();
+  }
+
+  static void on_publish(mosquitto*, void* user, int id, int code, const mosquitto_property*) {
     auto& self = *static_cast<MqttCarrier*>(user);
+    const std::string topic = self.take_topic(id);
     if (code >= refused_from) {
-      self.handler_->on_refused(std::string("a message: ") + mosquitto_reason_string(code));
+      self.handler_->on_refused("a message to `" + topic + "`: " + mosquitto_reason_string(code));
     }
     const std::size_t left = --self.waiting_;
     if (left <= self.limits_.in_flight / 2 && self.wants_room_.exchange(false)) {
@@ -311,6 +331,8 @@ class MqttCarrier final : public Carrier {
   std::atomic<bool> is_connected_{false};  // and it knows the subscriptions
   std::atomic<bool> wants_room_{false};
   std::atomic<std::size_t> waiting_{0};  // messages that are not acknowledged
+  std::mutex topics_mutex_;
+  std::map<int, std::string> topics_;  // of messages that are not acknowledged, by their ids
   std::mutex filters_mutex_;
   std::vector<std::string> filters_;
   // Of the carrier's thread.

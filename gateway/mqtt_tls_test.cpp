@@ -120,16 +120,16 @@ TEST_F(MosquittoTls, ABrokerMayAskForACertificate) {
 
 TEST_F(MosquittoTls, ABrokerWithoutTlsIsReported) {
   const MosquittoBroker broker;
-  EXPECT_EQ(failure({.url = broker.url("mqtts"), .authority = ours.file()}),
-            broker.url("mqtts") +
-                ": the broker has ended the connection while TLS began: it may speak no TLS");
+  EXPECT_THAT(failure({.url = broker.url("mqtts"), .authority = ours.file()}),
+              HasSubstr("it speaks no TLS"));
 }
 
 TEST_F(MosquittoTls, ABrokerThatIsNotThereIsReported) {
   MosquittoBroker broker;
   broker.kill();
   EXPECT_EQ(failure({broker.url()}), broker.url() + ": Connection refused");
-  EXPECT_EQ(failure({broker.url("mqtts")}), broker.url("mqtts") + ": its port does not answer");
+  EXPECT_EQ(failure({broker.url("mqtts")}),
+            broker.url("mqtts") + ": no server at its port, or it speaks no TLS");
 }
 
 TEST_F(MosquittoTls, ACertificateIsReplacedWhileItRuns) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,8 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   bool pump(Carrier& carrier);
   /// To be called often.
   void tick();
+  /// The system's clock was set, by so many nanoseconds.
+  void clock_was_set(std::int64_t by);
 
  private:
   /// The newest value of a wire. Filled on threads of the node.
@@ -92,6 +95,7 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
                     const dynamic::MemberDescription& member);
   void take_value(const std::shared_ptr<WireExport>& wire, const dynamic::Value& value,
                   const TimeSpec& time);
+  bool pump_retained(Carrier& carrier);
   bool pump_wire(WireExport& wire, Carrier& carrier);
   StreamExport* stream(const std::string& path, const std::string& member, bool makes);
   StreamExport* begin_stream(const std::string& path, const std::string& member);
@@ -133,6 +137,7 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   std::shared_ptr<RobotSession> session_;
   std::map<std::string, std::shared_ptr<RobotSession>> user_sessions_;  // by user of the broker
   std::map<std::string, Message> retained_;                             // by topic
+  std::set<std::string> unpublished_;                                   // topics of retained_
   std::map<std::string, std::shared_ptr<WireExport>> wires_;            // by topic
   std::map<std::string, StreamExport> streams_;                         // by topic
   ExportedGenerators generators_;

@@ -72,13 +72,13 @@ void ServiceExporter::publish_definitions(const dynamic::Object& root) {
 
 void ServiceExporter::retain(Message message) {
   message.retained = true;
-  shared_.outbox.add(message);
+  unpublished_.insert(message.topic);
   retained_[message.topic] = std::move(message);
   shared_.pump();
 }
 
 void ServiceExporter::broker_connected() {
-  for (const auto& [topic, message] : retained_) shared_.outbox.add(message);
+  for (const auto& [topic, message] : retained_) unpublished_.insert(topic);
   for (const auto& [topic, wire] : wires_) {
     if (!wire->message && !wire->last.topic.empty()) wire->message = wire->last;
   }

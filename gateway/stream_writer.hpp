@@ -56,6 +56,8 @@ class StreamWriter {
   /// To be called every second or so: removes what is too old at `wall` (nanoseconds since 1970),
   /// and announces the newest number while a reader has not confirmed it.
   void tick(Clock::time_point now, std::int64_t wall);
+  /// The system's clock was set, by so many nanoseconds.
+  void clock_was_set(std::int64_t by) { log_.clock_was_set(by); }
   /// Connected to the broker again: the newest number is announced.
   void announce() { head_is_due_ = true; }
 

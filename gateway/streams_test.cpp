@@ -21,6 +21,8 @@ namespace {
 using std::chrono::milliseconds;
 using testing::Folder;
 
+constexpr std::int64_t today = 1'795'779'856'000'000'000;  // nanoseconds since 1970
+
 Bytes bytes(std::uint64_t number) {
   Bytes result(sizeof number);
   std::memcpy(result.data(), &number, sizeof number);
@@ -61,7 +63,7 @@ class Link {
   }
 
   void append(std::uint64_t number) {
-    writer_->append(RecordKind::data, "uint64", bytes(number), 5, now_);
+    writer_->append(RecordKind::data, "uint64", bytes(number), today, now_);
   }
 
   /// 10 ms of both ends.
@@ -241,7 +243,7 @@ TEST(GatewayStreams, ALostEndIsReportedWithoutAnotherRecord) {
   for (std::uint64_t i = 1; i <= 10; ++i) link.append(i);
   ASSERT_TRUE(link.settle());
   for (std::uint64_t i = 11; i <= 20; ++i) link.append(i);
-  link.writer().tick(StreamWriter::Clock::now(), 10'000'000'000);
+  link.writer().tick(StreamWriter::Clock::now(), today + 10'000'000'000);
   ASSERT_TRUE(link.settle());
   ASSERT_EQ(link.gaps.size(), 1U);
   EXPECT_EQ(link.gaps[0].first, 11U);

@@ -77,8 +77,9 @@ class TwoUsers final : public Users {
 /// Serves it at a port of this machine, in this process.
 class BenchService {
  public:
-  BenchService()
-      : definitions_({bench_definition}),
+  /// At a port that is free, unless one is named.
+  explicit BenchService(const std::string& definition = bench_definition, std::uint16_t port = 0)
+      : definitions_({definition}),
         bench_(definitions_, "test.bench.Bench"),
         tool_(definitions_, "test.bench.Tool") {
     bench_.store("speed", 0.5);
@@ -91,12 +92,13 @@ class BenchService {
     add_tool();
     bench_.store_memory("trace", std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7});
     bench_.store_memory("grid", grid());
-    port_ = node_.listen_tcp(0);
+    port_ = node_.listen_tcp(port);
     ServiceOptions options;
     options.users = std::make_shared<TwoUsers>();
     service_.emplace(dynamic::register_service(node_, "bench", bench_, options));
   }
 
+  [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] std::string url() const {
     return "rr+tcp://localhost:" + std::to_string(port_) + "/?service=bench";
   }

@@ -148,13 +148,15 @@ void MemoryBroker::route(const Message& message) {
   if (!is_up_ || message.topic.empty()) return;
   ++counts_[message.topic];
   if (message.retained) retained_[message.topic] = message;
+  Message live = message;
+  live.retained = false;
   for (const auto& client : clients_) {
     const bool fits = std::ranges::any_of(client->filters, [&](const std::string& filter) {
       return topic_matches(filter, message.topic);
     });
     if (!fits || !client->is_connected) continue;
-    enqueue(client, message);
-    if (happens(faults_.twice)) enqueue(client, message);
+    enqueue(client, live);
+    if (happens(faults_.twice)) enqueue(client, live);
   }
 }
 

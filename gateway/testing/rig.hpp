@@ -31,17 +31,22 @@ class Rig {
   }
 
   void start_export() {
-    const std::string text = "site = \"hall\"\nnode = \"robot\"\nstate = \"" + folder_.path() +
+    export_carrier_ = make_carrier_();
+    exporter_.emplace(export_file(folder_.path()), *export_carrier_, logger());
+  }
+  /// The export file, with its state in another folder.
+  [[nodiscard]] ExportFile export_file(const std::string& state) const {
+    const std::string text = "site = \"hall\"\nnode = \"robot\"\nstate = \"" + state +
                              "\"\n[broker]\nurl = \"mqtt://test\"\n[[service]]\nname = \"bench\"\n"
                              "url = \"" +
                              robot.url() +
                              "\"\nreaders = [\"hub\"]\nlogin = "
                              "\"gateway\"\npassword_file = \"login\"\n" +
                              rules;
-    export_carrier_ = make_carrier_();
-    exporter_.emplace(parse_export_file(folder_.path() + "/test.toml", text), *export_carrier_,
-                      logger());
+    return parse_export_file(folder_.path() + "/test.toml", text);
   }
+  /// Of the gateway that start_export() starts.
+  [[nodiscard]] const std::string& state_folder() const { return folder_.path(); }
   void stop_export() { exporter_.reset(); }
   void start_server() {
     server_node_ = std::make_unique<Node>();
