@@ -98,7 +98,7 @@ class Collector {
     }
     for (const std::string& prefix : prefixes) rights.publish.insert(topic(Verb::object, prefix));
     rights.receive.insert({node_topic(address.site, address.node) + "/$life", service + "/$life",
-                           service + "/$def/#", reply_topic(user, "#")});
+                           service + "/$streams", service + "/$def/#", reply_topic(user, "#")});
   }
 
   /// Values, packets and events, which the gateway publishes for all users or not at all.

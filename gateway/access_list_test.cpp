@@ -37,9 +37,10 @@ TEST(GatewayAccessList, HasWhatAllUsersMay) {
   EXPECT_THAT(list.everybody.publish,
               ElementsAre("rr/hall/r1/arm/$confirm/%u/pose", "rr/hall/r1/arm/$get/%u/pose",
                           "rr/hall/r1/arm/$stream/%u/pose"));
-  EXPECT_THAT(list.everybody.receive,
-              ElementsAre("rr/$reply/%u/#", "rr/hall/r1/$life", "rr/hall/r1/arm/$def/#",
-                          "rr/hall/r1/arm/$life", "rr/hall/r1/arm/pose"));
+  EXPECT_THAT(
+      list.everybody.receive,
+      ElementsAre("rr/$reply/%u/#", "rr/hall/r1/$life", "rr/hall/r1/arm/$def/#",
+                  "rr/hall/r1/arm/$life", "rr/hall/r1/arm/$streams", "rr/hall/r1/arm/pose"));
   ASSERT_EQ(list.users.size(), 1U);
   EXPECT_THAT(list.users.at("robot1").publish, ElementsAre("rr/$reply/#", "rr/hall/r1/#"));
   EXPECT_THAT(list.users.at("robot1").receive, Contains("rr/hall/r1/arm/$get/#"));
@@ -59,8 +60,9 @@ TEST(GatewayAccessList, HasWhatSingleUsersMay) {
                                          "rr/hall/r1/arm/$poke/alice/+/axis[2]/+",
                                          "rr/hall/r1/arm/$send/alice/+/axis[2]/+",
                                          "rr/hall/r1/arm/$set/alice/+/axis[2]/+"));
-  EXPECT_THAT(alice.receive, ElementsAre("rr/$reply/alice/#", "rr/hall/r1/$life",
-                                         "rr/hall/r1/arm/$def/#", "rr/hall/r1/arm/$life"));
+  EXPECT_THAT(alice.receive,
+              ElementsAre("rr/$reply/alice/#", "rr/hall/r1/$life", "rr/hall/r1/arm/$def/#",
+                          "rr/hall/r1/arm/$life", "rr/hall/r1/arm/$streams"));
   EXPECT_THAT(list.users.at("robot1").publish, ElementsAre("rr/$reply/alice/#", "rr/hall/r1/#"));
 }
 
@@ -82,6 +84,7 @@ TEST(GatewayAccessList, IsWrittenForMosquitto) {
             "topic read rr/hall/r1/$life\n"
             "topic read rr/hall/r1/arm/$def/#\n"
             "topic read rr/hall/r1/arm/$life\n"
+            "topic read rr/hall/r1/arm/$streams\n"
             "\n"
             "user robot1\n"
             "topic write rr/$reply/alice/#\n"
@@ -120,6 +123,7 @@ TEST(GatewayAccessList, IsWrittenForMosquitto) {
             "pattern read rr/hall/r2/$life\n"
             "pattern read rr/hall/r2/arm/$def/#\n"
             "pattern read rr/hall/r2/arm/$life\n"
+            "pattern read rr/hall/r2/arm/$streams\n"
             "pattern read rr/hall/r2/arm/+\n");
 }
 

@@ -77,7 +77,7 @@ class Carrier {
   virtual ~Carrier() = default;
 
   /// Connects, again and again, until stop(). `life` is published by the broker when it loses this
-  /// side without a stop(). Once. Does not wait.
+  /// side without a stop(); nothing for an empty topic. Once. Does not wait.
   virtual void start(CarrierHandler& handler, Message life) = 0;
   /// Publishes `farewell`, ends the connection, and returns when the handler is not called any
   /// more. Takes at most some seconds.

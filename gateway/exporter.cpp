@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::chrono::milliseconds export_tick{20};
 constexpr std::chrono::seconds stream_tick{1};
+constexpr std::chrono::seconds status_period{2};
 constexpr std::chrono::minutes left_idle{10};
 
 std::string host_name() {
@@ -110,10 +111,14 @@ void ServiceExporter::tick() {
   generators_.end_idle(now, left_idle);
   endpoints_.close_idle(now, left_idle);
   for (auto& [topic, stream] : streams_) {
+    stream.writer->flush(now);
     if (now - stream.ticked < stream_tick) continue;
     stream.ticked = now;
     stream.writer->tick(now, wall_time());
   }
+  if (now - status_told_ < status_period) return;
+  status_told_ = now;
+  publish_status();
 }
 
 /// All of it, behind a pointer so that the handler's address stays.

@@ -6,6 +6,7 @@
 #include "cli/end_signals.hpp"
 #include "gateway/access_list.hpp"
 #include "gateway/exporter.hpp"
+#include "gateway/fleet_query.hpp"
 #include "gateway/mqtt_carrier.hpp"
 #include "gateway/program_options.hpp"
 #include "gateway/server.hpp"
@@ -51,6 +52,14 @@ void print_access_list(const ProgramOptions& options) {
   std::cout << mosquitto_acl(access_list(files));
 }
 
+void print_fleet(const ProgramOptions& options) {
+  constexpr std::chrono::seconds limit{10};
+  constexpr std::chrono::seconds quiet{1};
+  const auto carrier = make_mqtt_carrier(options.broker);
+  const Fleet fleet = ask_for_fleet(*carrier, limit, quiet);
+  std::cout << (options.is_json ? fleet.json() : fleet.text());
+}
+
 void run_serve(const ProgramOptions& options, SetupOptions setup,
                const robdef::EndSignals& signals) {
   const NodeSetup node(std::move(setup));
@@ -72,6 +81,9 @@ int run(int count, char** words) {
       break;
     case ProgramOptions::Task::export_file:
       run_export(options.export_files[0], signals);
+      break;
+    case ProgramOptions::Task::fleet:
+      print_fleet(options);
       break;
     case ProgramOptions::Task::access_list:
       print_access_list(options);

@@ -186,11 +186,7 @@ class MqttCarrier final : public Carrier {
     if (!broker_.user.empty()) {
       mosquitto_username_pw_set(client.get(), broker_.user.c_str(), broker_.password.c_str());
     }
-    MqttProperties properties(life_);
-    const int result = mosquitto_will_set_v5(
-        client.get(), life_.topic.c_str(), static_cast<int>(life_.payload.size()),
-        life_.payload.data(), qos, life_.retained, properties.get());
-    if (result == MOSQ_ERR_SUCCESS) properties.release();  // the library has taken them over
+    if (!life_.topic.empty()) set_life(client.get());
     mosquitto_connect_v5_callback_set(client.get(), on_connect);
     mosquitto_disconnect_v5_callback_set(client.get(), on_disconnect);
     mosquitto_subscribe_v5_callback_set(client.get(), on_subscribe);
@@ -199,6 +195,14 @@ class MqttCarrier final : public Carrier {
     const std::scoped_lock lock(mutex_);
     client_ = std::move(client);
     return true;
+  }
+
+  void set_life(mosquitto* client) const {
+    MqttProperties properties(life_);
+    const int result =
+        mosquitto_will_set_v5(client, life_.topic.c_str(), static_cast<int>(life_.payload.size()),
+                              life_.payload.data(), qos, life_.retained, properties.get());
+    if (result == MOSQ_ERR_SUCCESS) properties.release();  // the library has taken them over
   }
 
   /// Anew for each connection: certificates run out, and are replaced while this runs.

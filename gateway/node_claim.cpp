@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/node_claim.hpp"
 
-#include <array>
-#include <ctime>
 #include <utility>
 
 #include "gateway/properties.hpp"
+#include "rr/version.hpp"
 
 namespace rr::gateway {
 namespace {
@@ -15,15 +14,6 @@ constexpr std::chrono::milliseconds ask_again{500};
 constexpr std::chrono::seconds objection{2};
 /// Two that do not agree must not fill the broker with their lives.
 constexpr std::chrono::milliseconds between_lives{200};
-
-std::string date_text(std::uint64_t nanoseconds) {
-  const auto seconds = static_cast<std::time_t>(nanoseconds / 1'000'000'000);
-  std::tm parts{};
-  ::gmtime_r(&seconds, &parts);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text.data();
-}
 
 }  // namespace
 
@@ -35,8 +25,10 @@ NodeClaim::NodeClaim(std::string topic, std::int64_t started, std::string host)
 
 Message NodeClaim::life(std::string_view state) const {
   Message message{life_topic(), bytes_of(state)};
-  message.properties = {
-      {"instance", instance_}, {"started", std::to_string(started_)}, {"host", host_}};
+  message.properties = {{"instance", instance_},
+                        {"started", std::to_string(started_)},
+                        {"host", host_},
+                        {"version", std::string(library_version())}};
   message.retained = true;
   return message;
 }

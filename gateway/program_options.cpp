@@ -40,6 +40,10 @@ class Words {
   ProgramOptions read() {
     while (at_ < words_.size()) take(words_[at_++]);
     if (options_.task == Task::serve) check_serve();
+    if (options_.task == Task::fleet && options_.broker.url.empty()) {
+      refuse_word("`--fleet` needs `--broker`");
+    }
+    if (options_.is_json && options_.task != Task::fleet) refuse_word("`--json` is for `--fleet`");
     if (options_.task == Task::access_list && options_.export_files.empty()) {
       refuse_word("`--acl` needs export files");
     }
@@ -75,6 +79,10 @@ class Words {
       options_.broker.certificate = value(word);
     } else if (word == "--key") {
       options_.broker.key = value(word);
+    } else if (word == "--fleet") {
+      options_.task = Task::fleet;
+    } else if (word == "--json") {
+      options_.is_json = true;
     } else if (word == "--acl") {
       options_.task = Task::access_list;
       options_.list_form = value(word);
@@ -118,6 +126,8 @@ const char* const program_help =
       Offers services of robots at a broker as ordinary services. Several --serve are allowed.
   robdef-gateway --acl mosquitto FILE...
       Prints the access list that the broker needs for these export files.
+  robdef-gateway --fleet --broker URL [--json]
+      Prints which robots are alive, and how far their streams and readers are.
 
   --broker URL           mqtt://host:port, or mqtts://host:port for TLS
   --reader NAME          the name by which export files declare this reader

@@ -11,12 +11,13 @@ namespace rr::gateway {
 
 /// What the command line of robdef-gateway asks for.
 struct ProgramOptions {
-  enum class Task { help, version, export_file, access_list, serve };
+  enum class Task { help, version, export_file, access_list, fleet, serve };
   Task task = Task::help;
   /// With Task::export_file one, with Task::access_list one or more.
   std::vector<std::string> export_files;
   std::string list_form;  ///< with Task::access_list: `mosquitto`
-  BrokerOptions broker;   ///< with Task::serve
+  bool is_json = false;   ///< with Task::fleet
+  BrokerOptions broker;   ///< with Task::serve and Task::fleet
   ServerOptions server;   ///< with Task::serve
 };
 

@@ -39,6 +39,13 @@ TEST(GatewayOptions, AccessListsAreMadeOfFiles) {
   EXPECT_EQ(options.export_files, (std::vector<std::string>{"one", "two"}));
 }
 
+TEST(GatewayOptions, FleetsAreShown) {
+  const auto options = read_options({"--fleet", "--broker", "mqtt://hub", "--json"});
+  EXPECT_EQ(options.task, Task::fleet);
+  EXPECT_TRUE(options.is_json);
+  EXPECT_EQ(options.broker.url, "mqtt://hub");
+}
+
 TEST(GatewayOptions, WhatIsMissingOrUnknownIsRefused) {
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"--serve"},
@@ -47,6 +54,8 @@ TEST(GatewayOptions, WhatIsMissingOrUnknownIsRefused) {
         {"--serve", "hall/r1/arm", "--broker", "x"},
         {"--what"},
         {"one", "two"},
+        {"--fleet"},
+        {"--json", "one"},
         {"--acl"},
         {"--acl", "mosquitto"},
         {"--acl", "nats", "one"},

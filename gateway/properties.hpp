@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
+#include <ctime>
 #include <optional>
 #include <random>
 #include <string>
@@ -50,6 +51,16 @@ inline std::optional<std::uint64_t> number_property(const Message& message, std:
   const auto result = std::from_chars(text->data(), end, number, base);
   if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
   return number;
+}
+
+/// `2026-11-27T11:44:16Z` of nanoseconds since 1970.
+inline std::string date_text(std::uint64_t nanoseconds) {
+  const auto seconds = static_cast<std::time_t>(nanoseconds / 1'000'000'000);
+  std::tm parts{};
+  ::gmtime_r(&seconds, &parts);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text.data();
 }
 
 /// `1,2,3`.

@@ -84,6 +84,7 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   void robot_disconnected(const std::string& reason);
   void publish_definitions(const dynamic::Object& root);
   void publish_life(std::string_view life, const std::string& reason);
+  void publish_status();
   void retain(Message message);
   void attach_path(const std::string& path);
   void attach_members(const std::string& path, const dynamic::Object& object);
@@ -140,6 +141,7 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   std::set<std::string> unpublished_;                                   // topics of retained_
   std::map<std::string, std::shared_ptr<WireExport>> wires_;            // by topic
   std::map<std::string, StreamExport> streams_;                         // by topic
+  std::chrono::steady_clock::time_point status_told_{};
   ExportedGenerators generators_;
   ExportedEndpoints endpoints_;
   std::string trouble_;           // why the robot is not connected, as was reported

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "gateway/elements.hpp"
+#include "gateway/fleet.hpp"
 #include "gateway/properties.hpp"
 #include "gateway/service_exporter.hpp"
 #include "rr/error.hpp"
@@ -68,6 +69,21 @@ void ServiceExporter::publish_definitions(const dynamic::Object& root) {
   Message message{topic, bytes_of(definitions.text(type.substr(0, type.rfind('.'))))};
   message.properties = {{"object", type}, {"definitions", names}};
   retain(std::move(message));
+}
+
+// For people and their tools (gateway/fleet.hpp).
+void ServiceExporter::publish_status() {
+  std::map<std::string, StreamStatus> streams;
+  const std::string base = service_topic(address_) + "/";
+  for (const auto& [topic, stream] : streams_) {
+    streams[topic.substr(base.size())] = stream.writer->status();
+  }
+  const std::string topic = base + "$streams";
+  const auto known = retained_.find(topic);
+  Message message{topic, bytes_of(status_text(streams))};
+  if (known != retained_.end() ? known->second.payload != message.payload : !streams.empty()) {
+    retain(std::move(message));
+  }
 }
 
 void ServiceExporter::retain(Message message) {

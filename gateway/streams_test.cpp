@@ -70,6 +70,7 @@ class Link {
   void step() {
     now_ += milliseconds(10);
     if (++steps_ % 100 == 0) writer_->tick(now_, 0);
+    writer_->flush(now_);
     for (int i = 0; i < 20 && is_up; ++i) {
       auto message = writer_->next();
       if (!message) break;
@@ -217,7 +218,37 @@ TEST(GatewayStreams, ConfirmedRecordsLeaveTheDisk) {
     link.step();
   }
   ASSERT_TRUE(link.settle());
-  EXPECT_LE(link.writer().log_bytes(), 2'100U);
+  for (int i = 0; i < 30; ++i) link.step();
+  EXPECT_LE(link.writer().status().bytes, 2'100U);
+}
+
+// Else a reader would miss what it has confirmed.
+TEST(GatewayStreams, NothingIsDiscardedBeforeItIsWrittenDownThatReadersHaveIt) {
+  const Folder folder;
+  const Folder copy;
+  const auto now = StreamWriter::Clock::now();
+  StreamWriter writer("topic", folder.path(), {.file_bytes = 100}, {"hub"});
+  for (std::uint64_t i = 1; i <= 20; ++i) writer.append(RecordKind::data, "", bytes(i), today, now);
+  writer.confirm("hub", writer.epoch(), 5);
+  writer.flush(now);
+  const std::uint64_t before = writer.status().bytes;
+  writer.confirm("hub", writer.epoch(), 20);
+  writer.flush(now + milliseconds(10));
+  EXPECT_EQ(writer.status().bytes, before);
+  // As a process that is killed leaves it.
+  std::filesystem::copy(folder.path(), copy.path(), std::filesystem::copy_options::recursive);
+  StreamWriter again("topic", copy.path(), {.file_bytes = 100}, {"hub"});
+  EXPECT_EQ(again.status().confirmed.at("hub"), 5U);
+  again.ask("hub", 0, 10, "reply");
+  std::optional<std::string> first;
+  while (auto message = again.next()) {
+    again.done(Published::taken);
+    if (message->topic == "reply" && !first) first = message->find("next");
+  }
+  EXPECT_EQ(first, "6");
+  writer.flush(now + milliseconds(300));
+  EXPECT_LT(writer.status().bytes, before);
+  EXPECT_EQ(writer.status().last, 20U);
 }
 
 TEST(GatewayStreams, WhatTheLimitsDropIsReportedAsAGap) {
