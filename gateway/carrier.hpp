@@ -46,6 +46,18 @@ enum class Published {
   refused,  ///< this broker can not carry it, now or later: it is too large
 };
 
+/// What a broker does not allow.
+struct Refusal {
+  std::string topic;   ///< of the message; empty: a subscription
+  std::string reason;  ///< as `Not authorized`
+
+  /// For the log.
+  [[nodiscard]] std::string text() const {
+    return "the broker has refused " +
+           (topic.empty() ? "a subscription" : "a message to `" + topic + "`") + ": " + reason;
+  }
+};
+
 /// Notified by a carrier, on any thread, one call at a time. Must not block, nor call stop().
 class CarrierHandler {
  public:
@@ -58,8 +70,8 @@ class CarrierHandler {
   virtual void on_disconnected(const std::string& reason) = 0;
   /// publish() takes messages again.
   virtual void on_room() = 0;
-  /// The broker has refused a message or a subscription: a name and a reason for the log.
-  virtual void on_refused(const std::string& what) = 0;
+  /// The broker has refused a message or a subscription.
+  virtual void on_refused(const Refusal& refusal) = 0;
 
  protected:
   ~CarrierHandler() = default;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <future>
+#include <set>
 #include <utility>
 
 #include "gateway/clock_watch.hpp"
@@ -169,6 +170,7 @@ class Exporter::Core final : public CarrierHandler {
   void on_disconnected(const std::string& reason) override {
     worker_->post([this, reason] {
       is_connected_ = false;
+      refusals_.clear();
       claim_.disconnected();
       outbox_.clear();
       if (std::exchange(reason_, reason) != reason) log_(LogLevel::warning, reason);
@@ -177,8 +179,10 @@ class Exporter::Core final : public CarrierHandler {
   void on_room() override {
     worker_->post([this] { pump(); });
   }
-  void on_refused(const std::string& what) override {
-    log_(LogLevel::error, "the broker has refused " + what);
+  void on_refused(const Refusal& refusal) override {
+    worker_->post([this, refusal] {
+      if (refusals_.insert(refusal.topic).second) log_(LogLevel::error, refusal.text());
+    });
   }
 
  private:
@@ -273,7 +277,8 @@ class Exporter::Core final : public CarrierHandler {
   std::unique_ptr<Worker> worker_;
   std::vector<std::shared_ptr<ServiceExporter>> services_;
   bool is_connected_ = false;
-  std::string reason_;  // why it is not connected, as was reported
+  std::set<std::string> refusals_;  // topics that were reported for this connection
+  std::string reason_;              // why it is not connected, as was reported
 };
 
 Exporter::Exporter(ExportFile file, Carrier& carrier, Log log, Refused refused)

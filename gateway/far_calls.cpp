@@ -79,6 +79,16 @@ void FarCalls::refuse(const Message& request) {
       {});
 }
 
+void FarCalls::deny(const Refusal& refusal) {
+  std::vector<Id> denied;
+  for (const auto& [id, pending] : pending_) {
+    if (pending.message.topic == refusal.topic) denied.push_back(id);
+  }
+  for (const Id& id : denied) {
+    finish(id, error_pointer(ErrorCode::permission_denied, refusal.text()), {});
+  }
+}
+
 void FarCalls::set_connected(bool is_connected) {
   is_connected_ = is_connected;
   for (auto& [id, pending] : pending_) pending.next = Clock::now();

@@ -57,6 +57,8 @@ class FarCalls : public std::enable_shared_from_this<FarCalls> {
   void take(const Message& answer);
   /// A request is too large for the broker.
   void refuse(const Message& request);
+  /// The broker does not allow requests to a topic.
+  void deny(const Refusal& refusal);
   /// Repeats what waits; without a connection nothing is sent, or kept to be sent later.
   void set_connected(bool is_connected);
   /// Repeats what has waited long enough, and gives up what is too late. `where` says why there may

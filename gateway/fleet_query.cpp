@@ -27,16 +27,17 @@ class FleetCollector final : public CarrierHandler {
     const std::scoped_lock lock(mutex_);
     is_connected_ = false;
     reason_ = reason;
+    has_failed_ = true;
+    changed_.notify_all();
   }
   void on_room() override {}
-  void on_refused(const std::string&) override {}
+  void on_refused(const Refusal&) override {}
 
   Fleet wait(std::chrono::milliseconds limit, std::chrono::milliseconds quiet) {
     std::unique_lock lock(mutex_);
     const auto end = std::chrono::steady_clock::now() + limit;
-    if (!changed_.wait_until(lock, end, [this] { return is_connected_; })) {
-      throw Error(ErrorCode::connection_error, reason_);
-    }
+    changed_.wait_until(lock, end, [this] { return is_connected_ || has_failed_; });
+    if (!is_connected_) throw Error(ErrorCode::connection_error, reason_);
     // What is retained comes at once. A fleet that never falls silent has been seen by then.
     std::size_t before = 0;
     do {
@@ -52,6 +53,7 @@ class FleetCollector final : public CarrierHandler {
   Fleet fleet_;
   std::size_t count_ = 0;
   bool is_connected_ = false;
+  bool has_failed_ = false;
   std::string reason_ = "the broker does not answer";
 };
 

@@ -9,7 +9,8 @@
 namespace rr::gateway {
 
 /// Asks a broker for the fleet: until nothing has come for `quiet`. Throws rr::Error
-/// (connection_error) with the reason when there is no connection within `limit`.
+/// (connection_error) with the reason when the first attempt to connect fails, or lasts longer than
+/// `limit`.
 Fleet ask_for_fleet(Carrier& carrier, std::chrono::milliseconds limit,
                     std::chrono::milliseconds quiet);
 

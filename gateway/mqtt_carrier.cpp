@@ -273,9 +273,10 @@ class MqttCarrier final : public Carrier {
   static void on_subscribe(mosquitto*, void* user, int, int count, const int* granted,
                            const mosquitto_property*) {
     auto& self = *static_cast<MqttCarrier*>(user);
-    if (std::any_of(granted, granted + count, [](int code) { return code >= refused_from; })) {
-      self.handler_->on_refused("a subscription");
-    }
+    const int* const end = granted + count;
+    const int* const refused =
+        std::find_if(granted, end, [](int code) { return code >= refused_from; });
+    if (refused != end) self.handler_->on_refused({"", mosquitto_reason_string(*refused)});
     if (self.subscribing_ > 0 && --self.subscribing_ == 0) self.become_connected();
   }
 
@@ -291,7 +292,7 @@ class MqttCarrier final : public Carrier {
     auto& self = *static_cast<MqttCarrier*>(user);
     const std::string topic = self.take_topic(id);
     if (code >= refused_from) {
-      self.handler_->on_refused("a message to `" + topic + "`: " + mosquitto_reason_string(code));
+      self.handler_->on_refused({topic, mosquitto_reason_string(code)});
     }
     const std::size_t left = --self.waiting_;
     if (left <= self.limits_.in_flight / 2 && self.wants_room_.exchange(false)) {

@@ -15,7 +15,7 @@ struct Listener final : CarrierHandler {
   void on_connected() override { connected.add(1); }
   void on_disconnected(const std::string& reason) override { reasons.add(reason); }
   void on_room() override { rooms.add(1); }
-  void on_refused(const std::string& what) override { refused.add(what); }
+  void on_refused(const Refusal& refusal) override { refused.add(refusal.text()); }
   Kept<Message> messages;
   Kept<int> connected;
   Kept<std::string> reasons;
