@@ -82,13 +82,14 @@ TEST(GatewayFleet, IsAskedForAtTheBroker) {
     const std::string text = ask_for_fleet(*carrier, milliseconds(5'000), milliseconds(50)).json();
     robot = nlohmann::json::parse(text)["hall/robot"];
     const auto& streams = robot["services"]["bench"]["streams"];
-    return streams.contains("samples") && streams["samples"]["readers"]["hub"]["lag"] == lag;
+    // The numbers of the first seconds may be of a stream that was empty.
+    return streams.contains("samples") && streams["samples"]["last"] > 0 &&
+           streams["samples"]["readers"]["hub"]["lag"] == lag;
   };
   EXPECT_TRUE(comes_true([&] { return lag_is(0); })) << robot.dump(2);
   EXPECT_EQ(robot["state"], "up");
   EXPECT_EQ(robot["version"], library_version());
   EXPECT_EQ(robot["services"]["bench"]["state"], "up");
-  EXPECT_GE(robot["services"]["bench"]["streams"]["samples"]["last"], 1);
   // A reader that is not there lacks what comes.
   rig.stop_server();
   for (int i = 0; i < 10; ++i) rig.robot.bench().pipe("samples").send(2);

@@ -12,6 +12,7 @@
 #include "gateway/testing/listener.hpp"
 #include "gateway/testing/memory_broker.hpp"
 #include "gateway/testing/rig.hpp"
+#include "rr/locks.hpp"
 
 namespace rr::gateway {
 namespace {
@@ -99,6 +100,27 @@ TEST(GatewayErrors, AGatewayTakesTheNodeOfOneThatHasGone) {
   rig.start_export();
   EXPECT_EQ(bench->call("count").as<int>(), 2);
   other->stop({});
+}
+
+// A lock that protected from nobody would be worse than none.
+TEST(GatewayErrors, LocksOfFarClientsAreRefusedAndThoseOfNearOnesHold) {
+  MemoryBroker broker;
+  Rig rig([&] { return broker.carrier(); });
+  const auto bench = rig.connect();
+  const Error refused = failure_of([&] { return lock(bench->stub()), 0; });
+  EXPECT_EQ(refused.code(), ErrorCode::invalid_operation);
+  EXPECT_EQ(bench->get("speed").as<double>(), 0.5);
+
+  Node near_node;
+  auto login = Rig::login();
+  login.username = "operator";
+  const auto near = dynamic::connect(near_node, rig.robot.url(), login);
+  lock(near->stub());
+  const Error locked = failure_of([&] { return bench->set("speed", 1.0), 0; });
+  EXPECT_EQ(locked.code(), ErrorCode::object_locked_error);
+  unlock(near->stub());
+  bench->set("speed", 1.0);
+  EXPECT_EQ(rig.robot.bench().stored("speed").as<double>(), 1.0);
 }
 
 /// A robot whose definition changes while both gateways run.

@@ -68,7 +68,7 @@ class TwoUsers final : public Users {
     const auto password = credentials.find("password");
     if ((name == "operator" || name == "gateway") && password != credentials.end() &&
         password->second.get<std::string>() == "open sesame") {
-      return {name};
+      return name == "operator" ? User{name, {"objectlock"}} : User{name};
     }
     throw Error(ErrorCode::authentication_error, "not this one");
   }
