@@ -63,16 +63,17 @@ CallWindow::CallWindow(const std::string& folder, const Limits& limits, std::int
       log_(folder, {.bytes = limits.bytes * 2, .age = limits.age, .file_bytes = limits.bytes / 8}) {
   std::uint64_t next = 1;
   while (const auto record = log_.read_from(next)) {
-    restore(*record);
+    restore(*record, now);
     next = record->number + 1;
   }
   forget_old(now);
 }
 
-void CallWindow::restore(const Record& record) {
+// Its age begins anew: the clock may have been set since.
+void CallWindow::restore(const Record& record, std::int64_t now) {
   const auto known = calls_.find(record.label);
   if (record.kind == begun && known == calls_.end()) {
-    remember(record.label, {State::interrupted, record.time, {}});
+    remember(record.label, {State::interrupted, now, {}});
   } else if (record.kind == ended && known != calls_.end()) {
     known->second.state = State::answered;
     known->second.answer = answer_of(record.body);
@@ -120,6 +121,11 @@ void CallWindow::end(const std::string& id, const Message& answer, std::int64_t 
 }
 
 const Message& CallWindow::answer(const std::string& id) const { return calls_.at(id).answer; }
+
+void CallWindow::clock_was_set(std::int64_t by) {
+  for (auto& [id, call] : calls_) call.begun += by;
+  log_.clock_was_set(by);
+}
 
 void CallWindow::forget_old(std::int64_t now) {
   const auto oldest = now - std::chrono::nanoseconds(limits_.age).count();

@@ -48,6 +48,8 @@ class CallWindow {
   [[nodiscard]] const Message& answer(const std::string& id) const;
   /// Forgets what is too old at this time (nanoseconds since 1970).
   void forget_old(std::int64_t now);
+  /// The system's clock was set, by so many nanoseconds.
+  void clock_was_set(std::int64_t by);
 
  private:
   struct Call {
@@ -55,7 +57,7 @@ class CallWindow {
     std::int64_t begun = 0;
     Message answer;
   };
-  void restore(const Record& record);
+  void restore(const Record& record, std::int64_t now);
   void remember(const std::string& id, Call call);
   void forget_first();
 

@@ -16,16 +16,19 @@ namespace rr::gateway {
 /// Owned bytes.
 using Bytes = std::vector<std::byte>;
 
+/// Texts of UTF-8 by name, in any order; names are lower case letters and `-`.
+using Properties = std::vector<std::pair<std::string, std::string>>;
+
 /// What is published, and what arrives.
 struct Message {
   std::string topic;  ///< levels with `/` between them (gateway/topics.hpp), no wildcards
   Bytes payload;
-  /// Texts of UTF-8 by name, in any order; names are lower case letters and `-`.
-  std::vector<std::pair<std::string, std::string>> properties{};
+  Properties properties{};
   std::string response_topic{};  ///< of a request: where the answer goes; empty: no answer
   Bytes correlation{};           ///< of a request: what its answer repeats
   std::optional<std::chrono::seconds> expiry{};  ///< after this the broker drops it; nothing: never
-  bool retained = false;  ///< kept by the broker for those that subscribe later
+  /// To be kept by the broker for those that subscribe later; of what arrives: it was kept.
+  bool retained = false;
 
   /// The value of a property; nothing for none.
   [[nodiscard]] std::optional<std::string_view> find(std::string_view name) const {
@@ -43,6 +46,18 @@ enum class Published {
   refused,  ///< this broker can not carry it, now or later: it is too large
 };
 
+/// What a broker does not allow.
+struct Refusal {
+  std::string topic;   ///< of the message; empty: a subscription
+  std::string reason;  ///< as `Not authorized`
+
+  /// For the log.
+  [[nodiscard]] std::string text() const {
+    return "the broker has refused " +
+           (topic.empty() ? "a subscription" : "a message to `" + topic + "`") + ": " + reason;
+  }
+};
+
 /// Notified by a carrier, on any thread, one call at a time. Must not block, nor call stop().
 class CarrierHandler {
  public:
@@ -55,8 +70,8 @@ class CarrierHandler {
   virtual void on_disconnected(const std::string& reason) = 0;
   /// publish() takes messages again.
   virtual void on_room() = 0;
-  /// The broker has refused a message or a subscription: a name and a reason for the log.
-  virtual void on_refused(const std::string& what) = 0;
+  /// The broker has refused a message or a subscription.
+  virtual void on_refused(const Refusal& refusal) = 0;
 
  protected:
   ~CarrierHandler() = default;
@@ -74,7 +89,7 @@ class Carrier {
   virtual ~Carrier() = default;
 
   /// Connects, again and again, until stop(). `life` is published by the broker when it loses this
-  /// side without a stop(). Once. Does not wait.
+  /// side without a stop(); nothing for an empty topic. Once. Does not wait.
   virtual void start(CarrierHandler& handler, Message life) = 0;
   /// Publishes `farewell`, ends the connection, and returns when the handler is not called any
   /// more. Takes at most some seconds.

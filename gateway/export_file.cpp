@@ -37,8 +37,8 @@ constexpr Unit rates[] = {{"/s", 1}, {"/min", 1.0 / 60}, {"Hz", 1}};
 
 class FileReader {
  public:
-  FileReader(const std::string& name, std::string text)
-      : folder_(std::filesystem::path(name).parent_path()) {
+  FileReader(const std::string& name, std::string text, Secrets secrets)
+      : folder_(std::filesystem::path(name).parent_path()), secrets_(secrets) {
     const robdef::SourceId id = sources_.add(name, std::move(text));
     robdef::Report report;
     root_ = robdef::project::parse_toml(sources_[id], id, report);
@@ -111,10 +111,13 @@ class FileReader {
     return 1;
   }
 
+  std::string file_name(const Toml& value) { return (folder_ / text(value)).string(); }
+
   std::string secret(const Toml& value) {
-    const std::string name = text(value);
+    const std::string name = file_name(value);
+    if (secrets_ == Secrets::ignored) return {};
     try {
-      return read_secret((folder_ / name).string());
+      return read_secret(name);
     } catch (const Error& error) {
       mistake(value.span, error.message());
       return {};
@@ -129,6 +132,12 @@ class FileReader {
         file_.broker.user = text(entry.value);
       } else if (entry.key == "password_file") {
         file_.broker.password = secret(entry.value);
+      } else if (entry.key == "authority") {
+        file_.broker.authority = file_name(entry.value);
+      } else if (entry.key == "certificate") {
+        file_.broker.certificate = file_name(entry.value);
+      } else if (entry.key == "key") {
+        file_.broker.key = file_name(entry.value);
       } else {
         unknown(entry, "[broker]");
       }
@@ -156,12 +165,32 @@ class FileReader {
 
   std::string path(const Toml& value) {
     std::string pattern = text(value);
-    if (pattern.find('*') != std::string::npos) return pattern;
+    if (pattern.find('*') != std::string::npos) {
+      if (pattern.find_first_of("/+#$ ") != std::string::npos) {
+        mistake(value.span, "`" + pattern + "` is no path of objects");
+      }
+      return pattern;
+    }
     try {
-      static_cast<void>(path_steps(pattern));
+      // As topics have it: percent signs with capital letters.
+      std::string path;
+      for (const PathStep& step : path_steps(pattern)) path = path_below(path, step);
+      return path;
     } catch (const Error& error) {
       mistake(value.span, error.message());
     }
+    return pattern;
+  }
+
+  std::string member(const Toml& value) {
+    std::string pattern = text(value);
+    std::string name = pattern;
+    std::erase(name, '*');
+    if (value.kind == Kind::text && pattern.find_first_of("-") == std::string::npos &&
+        (name.empty() ? !pattern.empty() : is_level_name(name))) {
+      return pattern;
+    }
+    if (value.kind == Kind::text) mistake(value.span, "`" + pattern + "` is no name of a member");
     return pattern;
   }
 
@@ -169,7 +198,7 @@ class FileReader {
     if (entry.key == "path") {
       rule.path = path(entry.value);
     } else if (entry.key == "members") {
-      rule.members = list(entry.value, [this](const Toml& item) { return text(item); });
+      rule.members = list(entry.value, [this](const Toml& item) { return member(item); });
     } else if (entry.key == "access") {
       rule.access = access(entry.value);
     } else if (entry.key == "users") {
@@ -268,7 +297,7 @@ class FileReader {
     } else if (entry.key == "node") {
       file_.node = level(entry.value);
     } else if (entry.key == "state") {
-      file_.state_folder = (folder_ / text(entry.value)).string();
+      file_.state_folder = file_name(entry.value);
     } else if (entry.key == "broker") {
       read_broker(entry.value);
     } else if (entry.key == "service") {
@@ -292,6 +321,7 @@ class FileReader {
   }
 
   std::filesystem::path folder_;
+  Secrets secrets_;
   robdef::Sources sources_;
   Toml root_;
   ExportFile file_;
@@ -316,12 +346,12 @@ std::string read_secret(const std::string& path) {
   return text;
 }
 
-ExportFile parse_export_file(const std::string& name, std::string text) {
-  return FileReader(name, std::move(text)).read();
+ExportFile parse_export_file(const std::string& name, std::string text, Secrets secrets) {
+  return FileReader(name, std::move(text), secrets).read();
 }
 
-ExportFile read_export_file(const std::string& path) {
-  return parse_export_file(path, read_file(path));
+ExportFile read_export_file(const std::string& path, Secrets secrets) {
+  return parse_export_file(path, read_file(path), secrets);
 }
 
 }  // namespace rr::gateway

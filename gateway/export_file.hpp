@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "gateway/broker_options.hpp"
+
 /// What of which service goes out to a broker: a file in TOML (docs/howto/fleet.md). What it does
 /// not list stays inside.
 namespace rr::gateway {
@@ -22,7 +24,7 @@ enum Allowed : std::uint8_t {
 
 /// An entry of the allow list: `[[service.allow]]`.
 struct ExportRule {
-  std::string path;                  ///< of objects, with `*` for any part of it; empty: the root
+  std::string path;                  ///< of objects, with `*` for any part of a step; empty: root
   std::vector<std::string> members;  ///< names, with `*` for any part of them
   std::uint8_t access = 0;           ///< Allowed, added up
   std::vector<std::string> users;    ///< of the broker; empty: all
@@ -50,13 +52,6 @@ struct ExportedServiceOptions {
   std::map<std::string, MappedUser> users;  ///< by the broker's user; for the others: login
 };
 
-/// How a broker is reached: `[broker]`.
-struct BrokerOptions {
-  std::string url;       ///< `mqtt://host:port`
-  std::string user;      ///< empty: none
-  std::string password;  ///< from the file that the export file names
-};
-
 /// A whole export file.
 struct ExportFile {
   std::string site;
@@ -66,15 +61,22 @@ struct ExportFile {
   std::vector<ExportedServiceOptions> services;
 };
 
+/// Whether the files of passwords are read: their users need them, lists of rights do not.
+enum class Secrets { read, ignored };
+
 /// Reads an export file. Throws rr::Error (invalid_configuration) with a line
 /// `file:line:column: what is wrong` for each mistake, and resource_not_found for a file that
 /// cannot be read. Paths in it are relative to its folder.
-ExportFile read_export_file(const std::string& path);
+ExportFile read_export_file(const std::string& path, Secrets secrets = Secrets::read);
 /// The same for a text; `name` stands for the file in errors.
-ExportFile parse_export_file(const std::string& name, std::string text);
+ExportFile parse_export_file(const std::string& name, std::string text,
+                             Secrets secrets = Secrets::read);
 
 /// Whether `text` fits `pattern`, in which `*` stands for any letters.
 bool fits(std::string_view pattern, std::string_view text);
+/// The same for paths of objects, where `*` stands for letters of one step: `tools[*]` is no object
+/// below a tool.
+bool path_fits(std::string_view pattern, std::string_view path);
 /// The first rule that allows it; null when none does. `user` is empty for what is published to
 /// all: then rules for single users do not count.
 const ExportRule* find_rule(const ExportedServiceOptions& service, std::string_view user,

@@ -16,8 +16,11 @@ node = "robot1"
 state = "state"
 
 [broker]
-url = "mqtt://hub:1883"
+url = "mqtts://hub:8883"
 user = "robot1"
+authority = "ca.pem"
+certificate = "/etc/robot1.pem"
+key = "robot1.key"
 
 [[service]]
 name = "arm"
@@ -63,7 +66,10 @@ TEST(GatewayExportFile, IsRead) {
   const ExportFile file = parse_export_file("folder/x.toml", good);
   EXPECT_EQ(file.site, "hall");
   EXPECT_EQ(file.state_folder, "folder/state");
-  EXPECT_EQ(file.broker.url, "mqtt://hub:1883");
+  EXPECT_EQ(file.broker.url, "mqtts://hub:8883");
+  EXPECT_EQ(file.broker.authority, "folder/ca.pem");
+  EXPECT_EQ(file.broker.certificate, "/etc/robot1.pem");
+  EXPECT_EQ(file.broker.key, "folder/robot1.key");
   ASSERT_EQ(file.services.size(), 1U);
   const ExportedServiceOptions& arm = file.services[0];
   EXPECT_EQ(arm.readers, std::vector<std::string>{"hub"});
@@ -80,14 +86,14 @@ TEST(GatewayExportFile, MistakesHaveTheirPlaces) {
   EXPECT_EQ(mistakes(changed("site = \"hall\"", "site = \"a/b\"")),
             "x.toml:2:8: a name has 1 to 64 letters, digits, `_` or `-`");
   EXPECT_EQ(mistakes(changed("readers", "raeders")),
-            "x.toml:13:1: `raeders` is no key of [[service]]");
-  EXPECT_EQ(mistakes(changed("\"20/s\"", "\"20\"")), "x.toml:20:8: not such as `20/s`");
+            "x.toml:16:1: `raeders` is no key of [[service]]");
+  EXPECT_EQ(mistakes(changed("\"20/s\"", "\"20\"")), "x.toml:23:8: not such as `20/s`");
   EXPECT_EQ(mistakes(changed("[\"read\"]", "[\"read\", \"raed\"]")),
-            "x.toml:19:19: access is `read`, `write` or `call`");
+            "x.toml:22:19: access is `read`, `write` or `call`");
   EXPECT_EQ(mistakes(changed("tools[*]", "tools[")),
-            "x.toml:24:8: `tools[` is no path of an object");
+            "x.toml:27:8: `tools[` is no path of an object");
   EXPECT_EQ(mistakes(changed("log_size = \"64 MiB\"", "log_size = 64")),
-            "x.toml:14:12: a text is expected");
+            "x.toml:17:12: a text is expected");
   EXPECT_TRUE(mistakes(changed("= \"hall\"", "=")).starts_with("x.toml:2:"))
       << mistakes(changed("= \"hall\"", "="));
 }
@@ -98,6 +104,12 @@ TEST(GatewayExportFile, AllMistakesAreReported) {
             "x.toml:1:1: `site` is missing\nx.toml:1:1: `node` is missing\n"
             "x.toml:1:1: `state` is missing\nx.toml:1:1: `broker.url` is missing\n"
             "x.toml:1:1: `[[service]]` is missing");
+}
+
+TEST(GatewayExportFile, NamesOfMembersArePlain) {
+  EXPECT_EQ(mistakes(changed("\"pose\"", "\"a/b\"")), "x.toml:21:12: `a/b` is no name of a member");
+  EXPECT_EQ(mistakes(changed("tools[*]", "tools/*")),
+            "x.toml:27:8: `tools/*` is no path of objects");
 }
 
 TEST(GatewayExportFile, AMissingPasswordFileIsReportedAtItsPlace) {
@@ -112,6 +124,16 @@ TEST(GatewayExportRules, StarsFitAnyLetters) {
   EXPECT_FALSE(fits("a*c", "abcd"));
   EXPECT_FALSE(fits("", "a"));
   EXPECT_TRUE(fits("", ""));
+}
+
+TEST(GatewayExportRules, AStarInAPathIsOfOneStep) {
+  EXPECT_TRUE(path_fits("", ""));
+  EXPECT_TRUE(path_fits("tools[*]", "tools[left]"));
+  EXPECT_TRUE(path_fits("*.axis", "tools[left].axis"));
+  EXPECT_FALSE(path_fits("tools[*]", "tools[left].axis[2]"));
+  EXPECT_FALSE(path_fits("*", "a.b"));
+  EXPECT_FALSE(path_fits("*.*", "a"));
+  EXPECT_FALSE(path_fits("*", ""));
 }
 
 TEST(GatewayExportRules, WhatIsNotListedIsNotAllowed) {

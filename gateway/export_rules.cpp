@@ -10,7 +10,7 @@ bool allows(const ExportRule& rule, std::string_view user, std::string_view path
             std::string_view member, Allowed access) {
   if ((rule.access & access) == 0) return false;
   if (!rule.users.empty() && std::ranges::find(rule.users, user) == rule.users.end()) return false;
-  return fits(rule.path, path) && std::ranges::any_of(rule.members, [&](const auto& pattern) {
+  return path_fits(rule.path, path) && std::ranges::any_of(rule.members, [&](const auto& pattern) {
            return fits(pattern, member);
          });
 }
@@ -38,6 +38,18 @@ bool fits(std::string_view pattern, std::string_view text) {
     }
   }
   return pattern.find_first_not_of('*', p) == std::string_view::npos;
+}
+
+bool path_fits(std::string_view pattern, std::string_view path) {
+  if (pattern.empty() || path.empty()) return pattern == path;
+  for (;;) {
+    const std::size_t wanted = pattern.find('.');
+    const std::size_t step = path.find('.');
+    if (!fits(pattern.substr(0, wanted), path.substr(0, step))) return false;
+    if (wanted == std::string_view::npos || step == std::string_view::npos) return wanted == step;
+    pattern.remove_prefix(wanted + 1);
+    path.remove_prefix(step + 1);
+  }
 }
 
 const ExportRule* find_rule(const ExportedServiceOptions& service, std::string_view user,

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/exporter.hpp"
 
+#include <unistd.h>
+
+#include <array>
+#include <future>
+#include <set>
 #include <utility>
 
+#include "gateway/clock_watch.hpp"
 #include "gateway/elements.hpp"
+#include "gateway/node_claim.hpp"
 #include "gateway/properties.hpp"
 #include "gateway/service_exporter.hpp"
 #include "rr/error.hpp"
@@ -13,11 +20,13 @@ namespace {
 
 constexpr std::chrono::milliseconds export_tick{20};
 constexpr std::chrono::seconds stream_tick{1};
+constexpr std::chrono::seconds status_period{2};
+constexpr std::chrono::minutes left_idle{10};
 
-Message life(const ExportFile& file, std::string_view state) {
-  Message message{node_topic(file.site, file.node) + "/$life", bytes_of(state)};
-  message.retained = true;
-  return message;
+std::string host_name() {
+  std::array<char, 256> name{};
+  ::gethostname(name.data(), name.size() - 1);
+  return name.data();
 }
 
 }  // namespace
@@ -60,14 +69,25 @@ void ServiceExporter::connect(Node& node) {
 
 std::vector<std::string> ServiceExporter::filters() const {
   std::vector<std::string> all;
-  for (const Verb verb :
-       {Verb::get, Verb::set, Verb::call, Verb::poke, Verb::object, Verb::stream, Verb::confirm}) {
-    all.push_back(request_filter(address_, verb));
-  }
+  for (const Verb verb : all_verbs) all.push_back(request_filter(address_, verb));
   return all;
 }
 
+bool ServiceExporter::pump_retained(Carrier& carrier) {
+  while (!unpublished_.empty()) {
+    const Message& message = retained_.at(*unpublished_.begin());
+    const Published result = carrier.publish(message);
+    if (result == Published::later) return false;
+    if (result == Published::refused) {
+      shared_.log(LogLevel::error, message.topic + ": too large for the broker");
+    }
+    unpublished_.erase(unpublished_.begin());
+  }
+  return true;
+}
+
 bool ServiceExporter::pump(Carrier& carrier) {
+  if (!pump_retained(carrier)) return false;
   for (const auto& [topic, wire] : wires_) {
     if (!pump_wire(*wire, carrier)) return false;
   }
@@ -81,23 +101,36 @@ bool ServiceExporter::pump(Carrier& carrier) {
   return true;
 }
 
+void ServiceExporter::clock_was_set(std::int64_t by) {
+  window_.clock_was_set(by);
+  for (auto& [topic, stream] : streams_) stream.writer->clock_was_set(by);
+}
+
 void ServiceExporter::tick() {
   const auto now = std::chrono::steady_clock::now();
   window_.forget_old(wall_time());
+  generators_.end_idle(now, left_idle);
+  endpoints_.close_idle(now, left_idle);
   for (auto& [topic, stream] : streams_) {
+    stream.writer->flush(now);
     if (now - stream.ticked < stream_tick) continue;
     stream.ticked = now;
     stream.writer->tick(now, wall_time());
   }
+  if (now - status_told_ < status_period) return;
+  status_told_ = now;
+  publish_status();
 }
 
 /// All of it, behind a pointer so that the handler's address stays.
 class Exporter::Core final : public CarrierHandler {
  public:
-  Core(ExportFile file, Carrier& carrier, Log log)
+  Core(ExportFile file, Carrier& carrier, Log log, Refused refused)
       : file_(std::move(file)),
         carrier_(carrier),
         log_(std::move(log)),
+        refused_(std::move(refused)),
+        claim_(node_topic(file_.site, file_.node), wall_time(), host_name()),
         worker_(std::make_unique<Worker>(export_tick, [this] { tick(); })) {
     for (ExportedServiceOptions& options : file_.services) add(options);
   }
@@ -105,39 +138,40 @@ class Exporter::Core final : public CarrierHandler {
   void start() {
     worker_->start();
     worker_->post([this] {
-      outbox_.add(life(file_, "up"));
       for (const auto& service : services_) service->connect(node_);
     });
-    carrier_.start(*this, life(file_, "lost"));
+    carrier_.subscribe(claim_.life_topic());
+    carrier_.subscribe(claim_.claim_topic());
+    carrier_.start(*this, claim_.life("lost"));
   }
 
   void stop() {
-    carrier_.stop(life(file_, "ended"));
+    // Of a node that is not this gateway's there is nothing to say.
+    std::promise<bool> has_node;
+    worker_->post([&] { has_node.set_value(holds_node()); });
+    carrier_.stop(has_node.get_future().get() ? claim_.life("ended") : Message());
     worker_->stop();
     services_.clear();
   }
 
   void on_message(Message message) override {
     if (!worker_->has_room()) return;
-    worker_->post([this, message = std::move(message)] {
-      for (const auto& service : services_) {
-        if (service->take(message)) return;
-      }
-    });
+    worker_->post([this, message = std::move(message)] { take(message); });
   }
   void on_connected() override {
     worker_->post([this] {
       is_connected_ = true;
       reason_.clear();
       log_(LogLevel::info, "connected to " + carrier_.url());
-      outbox_.add(life(file_, "up"));
-      for (const auto& service : services_) service->broker_connected();
-      pump();
+      claim_.connected();
+      pump_claim();
     });
   }
   void on_disconnected(const std::string& reason) override {
     worker_->post([this, reason] {
       is_connected_ = false;
+      refusals_.clear();
+      claim_.disconnected();
       outbox_.clear();
       if (std::exchange(reason_, reason) != reason) log_(LogLevel::warning, reason);
     });
@@ -145,8 +179,10 @@ class Exporter::Core final : public CarrierHandler {
   void on_room() override {
     worker_->post([this] { pump(); });
   }
-  void on_refused(const std::string& what) override {
-    log_(LogLevel::error, "the broker has refused " + what);
+  void on_refused(const Refusal& refusal) override {
+    worker_->post([this, refusal] {
+      if (refusals_.insert(refusal.topic).second) log_(LogLevel::error, refusal.text());
+    });
   }
 
  private:
@@ -159,9 +195,48 @@ class Exporter::Core final : public CarrierHandler {
     for (const std::string& filter : services_.back()->filters()) carrier_.subscribe(filter);
   }
 
+  [[nodiscard]] bool holds_node() const {
+    return is_connected_ && claim_.state() == NodeClaim::State::holding;
+  }
+
+  void take(const Message& message) {
+    if (message.topic == claim_.life_topic() || message.topic == claim_.claim_topic()) {
+      const bool was_refused = claim_.state() == NodeClaim::State::refused;
+      claim_.take(message, std::chrono::steady_clock::now());
+      if (claim_.state() == NodeClaim::State::refused && !was_refused) report_refusal();
+      pump_claim();
+      return;
+    }
+    if (!holds_node()) return;
+    for (const auto& service : services_) {
+      if (service->take(message)) return;
+    }
+  }
+
+  void report_refusal() {
+    const std::string reason = "another gateway serves " + file_.site + "/" + file_.node + " at " +
+                               carrier_.url() + ": " + claim_.holder();
+    log_(LogLevel::error, reason);
+    if (refused_) refused_(reason);
+  }
+
+  /// The claim first: while it is not decided nothing else is published.
+  void pump_claim() {
+    if (!is_connected_) return;
+    const bool had_node = holds_node();
+    while (const auto message = claim_.next(std::chrono::steady_clock::now())) {
+      outbox_.add(*message);
+    }
+    if (!had_node && holds_node()) {
+      for (const auto& service : services_) service->broker_connected();
+    }
+    pump();
+  }
+
   void pump() {
     if (!is_connected_) return;
     if (!outbox_.pump(carrier_, [this](const Message& message) { refuse(message); })) return;
+    if (!holds_node()) return;
     for (const auto& service : services_) {
       if (!service->pump(carrier_)) return;
     }
@@ -181,23 +256,33 @@ class Exporter::Core final : public CarrierHandler {
   }
 
   void tick() {
+    const std::int64_t jump = watch_.take_jump(std::chrono::steady_clock::now(), wall_time());
+    if (jump != 0) {
+      log_(LogLevel::warning,
+           "the system's clock was set by " + std::to_string(jump / 1'000'000) + " ms");
+      for (const auto& service : services_) service->clock_was_set(jump);
+    }
     for (const auto& service : services_) service->tick();
-    pump();
+    pump_claim();
   }
 
   ExportFile file_;
   Carrier& carrier_;
   Log log_;
+  Refused refused_;
+  NodeClaim claim_;
+  ClockWatch watch_{std::chrono::steady_clock::now(), wall_time()};
   Node node_;
   Outbox outbox_;
   std::unique_ptr<Worker> worker_;
   std::vector<std::shared_ptr<ServiceExporter>> services_;
   bool is_connected_ = false;
-  std::string reason_;  // why it is not connected, as was reported
+  std::set<std::string> refusals_;  // topics that were reported for this connection
+  std::string reason_;              // why it is not connected, as was reported
 };
 
-Exporter::Exporter(ExportFile file, Carrier& carrier, Log log)
-    : core_(std::make_unique<Core>(std::move(file), carrier, std::move(log))) {
+Exporter::Exporter(ExportFile file, Carrier& carrier, Log log, Refused refused)
+    : core_(std::make_unique<Core>(std::move(file), carrier, std::move(log), std::move(refused))) {
   core_->start();
 }
 

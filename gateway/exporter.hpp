@@ -26,9 +26,13 @@ using Log = Function<void(LogLevel, const std::string&)>;
 /// It lives until it is destroyed, whatever becomes of the broker and the robot.
 class Exporter {
  public:
+  /// Called once, on a thread of the exporter, when another gateway has the node: this one does
+  /// nothing any more, and should be destroyed, on another thread.
+  using Refused = Function<void(const std::string& reason)>;
+
   /// Starts the carrier, which must outlive it. Throws rr::Error for the state folder
   /// (gateway/stream_log.hpp) and for URLs of services.
-  Exporter(ExportFile file, Carrier& carrier, Log log);
+  Exporter(ExportFile file, Carrier& carrier, Log log, Refused refused = {});
   /// Says farewell to the broker.
   ~Exporter();
   Exporter(const Exporter&) = delete;

@@ -18,13 +18,14 @@ FarCalls::FarCalls(Worker& worker, Outbox& outbox, Options options, Function<voi
       instance_(random_hex()),
       reply_topic_(gateway::reply_topic(options_.user, instance_)) {}
 
-void FarCalls::request(const ServiceAddress& address, Verb verb, std::string path,
-                       std::string member, Bytes payload, Done done) {
+void FarCalls::request(FarRequest request, Done done) {
   Pending pending;
-  pending.address = address;
-  pending.message.topic =
-      request_topic(address, {verb, options_.user, std::move(path), std::move(member)});
-  pending.message.payload = std::move(payload);
+  pending.message.topic = request_topic(
+      request.address,
+      {request.verb, options_.user, std::move(request.path), std::move(request.member)});
+  pending.address = std::move(request.address);
+  pending.message.payload = std::move(request.payload);
+  pending.message.properties = std::move(request.properties);
   pending.message.response_topic = reply_topic_;
   pending.done = std::move(done);
   worker_.post([self = shared_from_this(), pending = std::move(pending)]() mutable {
@@ -32,18 +33,16 @@ void FarCalls::request(const ServiceAddress& address, Verb verb, std::string pat
   });
 }
 
-Message FarCalls::wait(const ServiceAddress& address, Verb verb, std::string path,
-                       std::string member, Bytes payload) {
+Message FarCalls::wait(FarRequest wanted) {
   const auto promise = std::make_shared<std::promise<Message>>();
   auto future = promise->get_future();
-  request(address, verb, std::move(path), std::move(member), std::move(payload),
-          [promise](const std::exception_ptr& error, Message answer) {
-            if (error) {
-              promise->set_exception(error);
-            } else {
-              promise->set_value(std::move(answer));
-            }
-          });
+  request(std::move(wanted), [promise](const std::exception_ptr& error, Message answer) {
+    if (error) {
+      promise->set_exception(error);
+    } else {
+      promise->set_value(std::move(answer));
+    }
+  });
   return future.get();
 }
 
@@ -78,6 +77,16 @@ void FarCalls::refuse(const Message& request) {
       request.correlation,
       error_pointer(ErrorCode::buffer_limit_violation, "the request is too large for the broker"),
       {});
+}
+
+void FarCalls::deny(const Refusal& refusal) {
+  std::vector<Id> denied;
+  for (const auto& [id, pending] : pending_) {
+    if (pending.message.topic == refusal.topic) denied.push_back(id);
+  }
+  for (const Id& id : denied) {
+    finish(id, error_pointer(ErrorCode::permission_denied, refusal.text()), {});
+  }
 }
 
 void FarCalls::set_connected(bool is_connected) {

@@ -17,6 +17,16 @@
 
 namespace rr::gateway {
 
+/// What is asked of a robot.
+struct FarRequest {
+  ServiceAddress address;
+  Verb verb = Verb::get;
+  std::string path;    ///< of the object
+  std::string member;  ///< empty for Verb::object
+  Bytes payload{};
+  Properties properties{};
+};
+
 /// Requests to a robot over a broker: repeated until there is an answer or the time is over. All
 /// repetitions of a request have the same id, so that the robot's gateway executes it once.
 class FarCalls : public std::enable_shared_from_this<FarCalls> {
@@ -35,11 +45,9 @@ class FarCalls : public std::enable_shared_from_this<FarCalls> {
   FarCalls(Worker& worker, Outbox& outbox, Options options, Function<void()> pump);
 
   /// Any thread.
-  void request(const ServiceAddress& address, Verb verb, std::string path, std::string member,
-               Bytes payload, Done done);
+  void request(FarRequest request, Done done);
   /// Waits for the answer. Throws rr::Error. Not on the worker's thread.
-  Message wait(const ServiceAddress& address, Verb verb, std::string path, std::string member,
-               Bytes payload);
+  Message wait(FarRequest request);
 
   // The rest on the worker's thread.
 
@@ -49,6 +57,8 @@ class FarCalls : public std::enable_shared_from_this<FarCalls> {
   void take(const Message& answer);
   /// A request is too large for the broker.
   void refuse(const Message& request);
+  /// The broker does not allow requests to a topic.
+  void deny(const Refusal& refusal);
   /// Repeats what waits; without a connection nothing is sent, or kept to be sent later.
   void set_connected(bool is_connected);
   /// Repeats what has waited long enough, and gives up what is too late. `where` says why there may

@@ -30,6 +30,12 @@ FarCalls::Done reply_with(dynamic::Definitions definitions, dynamic::ValueType t
   };
 }
 
+/// The request that ends a generator whose steps are asked for by `next`.
+FarRequest end_of(FarRequest next, bool aborts) {
+  next.properties.emplace_back("end", aborts ? "abort" : "close");
+  return next;
+}
+
 std::optional<std::string> index_text(const Value& index) {
   if (index.is_null()) return std::nullopt;
   if (index.kind() == dynamic::Kind::text) return index.text();
@@ -60,9 +66,11 @@ dynamic::ServedObject FarService::make_object(const std::string& path, const std
       case MemberKind::event:
         serve_event(object, path, member);
         break;
+      case MemberKind::memory:
+        serve_memory(object, path, member);
+        break;
       // Not implemented for clients, as any member without a function.
       case MemberKind::callback:
-      case MemberKind::memory:
         break;
     }
   }
@@ -76,28 +84,93 @@ void FarService::serve_property(const dynamic::ServedObject& object, const std::
     object.on_get_later(
         member.name, [calls, address = address_, path, name = member.name, type = member.type,
                       definitions = *definitions_](const Reply& reply) {
-          calls->request(address, Verb::get, path, name, {}, reply_with(definitions, type, reply));
+          calls->request({address, Verb::get, path, name}, reply_with(definitions, type, reply));
         });
   }
   if ((member.access & readonly) != 0) return;
-  object.on_set_later(member.name,
-                      [calls, address = address_, path, name = member.name, type = member.type,
-                       definitions = *definitions_](const Value& value, const Reply& reply) {
-                        calls->request(address, Verb::set, path, name, encode_element(type, value),
-                                       reply_with(definitions, {}, reply));
-                      });
+  object.on_set_later(
+      member.name, [calls, address = address_, path, name = member.name, type = member.type,
+                    definitions = *definitions_](const Value& value, const Reply& reply) {
+        calls->request({address, Verb::set, path, name, encode_element(type, value)},
+                       reply_with(definitions, {}, reply));
+      });
 }
 
 void FarService::serve_function(const dynamic::ServedObject& object, const std::string& path,
                                 const dynamic::MemberDescription& member) {
-  if (member.generator != GeneratorForm::none) return;
+  if (member.generator != GeneratorForm::none) {
+    serve_generator(object, path, member);
+    return;
+  }
   object.on_call_later(member.name, [calls = shared_.calls, address = address_, path, member,
                                      definitions = *definitions_](const dynamic::List& arguments,
                                                                   const Reply& reply) {
-    calls->request(address, Verb::call, path, member.name,
-                   encode_arguments(member.parameters, arguments),
-                   reply_with(definitions, member.type, reply));
+    calls->request(
+        {address, Verb::call, path, member.name, encode_arguments(member.parameters, arguments)},
+        reply_with(definitions, member.type, reply));
   });
+}
+
+// Opening it and each step wait for the robot on a thread of the node.
+void FarService::serve_generator(const dynamic::ServedObject& object, const std::string& path,
+                                 const dynamic::MemberDescription& member) {
+  object.on_generate(member.name, [calls = shared_.calls, address = address_, path, member,
+                                   definitions = *definitions_](const dynamic::List& arguments) {
+    const Message opened = calls->wait(
+        {address, Verb::call, path, member.name, encode_arguments(member.parameters, arguments)});
+    FarRequest next{address, Verb::next, path, member.name};
+    next.properties = {{"generator", std::string(opened.find("generator").value_or(""))}};
+    return dynamic::Steps(
+        [calls, next, member, definitions](const Value& parameter) -> std::optional<Value> {
+          FarRequest step = next;
+          step.payload = encode_element(member.generator_parameter, parameter);
+          try {
+            const Message answer = calls->wait(std::move(step));
+            if (answer.find("end")) return std::nullopt;
+            return decode_element(definitions, member.type, answer.payload);
+          } catch (...) {
+            // It has ended here, perhaps without the robot's notice.
+            calls->request(end_of(next, true), [](const std::exception_ptr&, const Message&) {});
+            throw;
+          }
+        },
+        [calls, next](bool aborts) { calls->wait(end_of(next, aborts)); });
+  });
+}
+
+// Each request asks the robot for the dimensions as well, which it may change.
+void FarService::serve_memory(const dynamic::ServedObject& object, const std::string& path,
+                              const dynamic::MemberDescription& member) {
+  using Numbers = dynamic::MemoryFunctions::Numbers;
+  const FarRequest get{address_, Verb::get, path, member.name};
+  const auto part = [](const Numbers& position, const Numbers& count) {
+    return Properties{{"position", list_text(position)}, {"count", list_text(count)}};
+  };
+  dynamic::MemoryFunctions functions;
+  functions.dims = [calls = shared_.calls, get] {
+    const auto dims = numbers_property(calls->wait(get), "dims");
+    if (dims) return *dims;
+    throw Error(ErrorCode::internal_error, "the robot's gateway does not say the dimensions");
+  };
+  if ((member.access & writeonly) == 0) {
+    functions.read = [calls = shared_.calls, get, part, type = member.type,
+                      definitions = *definitions_](const Numbers& position, const Numbers& count) {
+      FarRequest request = get;
+      request.properties = part(position, count);
+      return decode_element(definitions, type, calls->wait(std::move(request)).payload);
+    };
+  }
+  if ((member.access & readonly) == 0) {
+    functions.write = [calls = shared_.calls, get, type = member.type](const Numbers& position,
+                                                                       const Value& items) {
+      FarRequest request = get;
+      request.verb = Verb::set;
+      request.properties = {{"position", list_text(position)}};
+      request.payload = encode_element(type, items);
+      calls->wait(std::move(request));
+    };
+  }
+  object.serve_memory(member.name, std::move(functions));
 }
 
 // The client's request waits for the robot, which knows whether there is such an object, and of
@@ -109,7 +182,7 @@ void FarService::serve_objref(const dynamic::ServedObject& object, const std::st
       [weak = Weak(shared_from_this()), calls = shared_.calls, address = address_, path,
        name = member.name](const Value& index) -> std::shared_ptr<Skeleton> {
         const std::string below = path_below(path, {name, index_text(index)});
-        const Message answer = calls->wait(address, Verb::object, below, "", {});
+        const Message answer = calls->wait({address, Verb::object, below, ""});
         const Self self = weak.lock();
         if (!self) return nullptr;
         // Streams and wires of the object belong to the worker's thread.
@@ -134,7 +207,7 @@ void FarService::serve_wire(const dynamic::ServedObject& object, const std::stri
     object.wire(member.name)
         .on_out([calls = shared_.calls, address = address_, path, name = member.name,
                  type = member.type](const Value& value, const TimeSpec&, std::uint32_t) {
-          calls->request(address, Verb::poke, path, name, encode_element(type, value),
+          calls->request({address, Verb::poke, path, name, encode_element(type, value)},
                          [](const std::exception_ptr&, const Message&) {});
         });
   }
@@ -163,12 +236,7 @@ void FarService::take_wire(FarWire& wire, const Message& message) {
 void FarService::serve_pipe(const dynamic::ServedObject& object, const std::string& path,
                             const dynamic::MemberDescription& member) {
   const auto pipe = object.pipe(member.name);
-  // Packets of clients would be lost: an endpoint that sends one is closed.
-  pipe.on_connect([](dynamic::PipeEndpoint end) {
-    const auto kept = std::make_shared<Subscription>();
-    *kept = end.on_packet([end](const Value&) mutable { end.close(); });
-    end.on_closed([kept] { *kept = Subscription(); });
-  });
+  take_packets(pipe, path, member);
   if ((member.access & writeonly) != 0) return;
   StreamReader::Sink sink;
   sink.record = [this, pipe, member](const Message& message) {
@@ -188,6 +256,28 @@ void FarService::serve_pipe(const dynamic::ServedObject& object, const std::stri
       if (end.is_open() && !end.wait_sent(std::chrono::milliseconds(0), most_unsent)) return false;
     }
     return true;
+  });
+}
+
+/// Packets of clients, each of whose endpoints has one at the robot.
+void FarService::take_packets(const dynamic::PipeServer& pipe, const std::string& path,
+                              const dynamic::MemberDescription& member) {
+  if ((member.access & readonly) != 0) return;
+  const FarRequest request{address_, Verb::send, path, member.name};
+  pipe.on_connect([calls = shared_.calls, log = shared_.log, topic = topic_, request,
+                   type = member.type](dynamic::PipeEndpoint end) {
+    const auto packets = std::make_shared<FarPackets>(
+        calls, request, type, FarPackets::Limits(),
+        [log, topic, end, name = request.member](const std::string& reason) mutable {
+          log(LogLevel::warning, topic + ": packets for `" + name + "` are lost: " + reason);
+          end.close();
+        });
+    const auto kept = std::make_shared<Subscription>();
+    *kept = end.on_packet([packets](const Value& packet) { packets->add(packet); });
+    end.on_closed([kept, packets] {
+      packets->end();
+      *kept = Subscription();
+    });
   });
 }
 

@@ -10,6 +10,7 @@
 
 #include "gateway/exporter.hpp"
 #include "gateway/far_calls.hpp"
+#include "gateway/far_packets.hpp"
 #include "gateway/far_stream.hpp"
 #include "rr/dynamic_service.hpp"
 
@@ -67,12 +68,18 @@ class FarService : public std::enable_shared_from_this<FarService> {
                       const dynamic::MemberDescription& member);
   void serve_function(const dynamic::ServedObject& object, const std::string& path,
                       const dynamic::MemberDescription& member);
+  void serve_generator(const dynamic::ServedObject& object, const std::string& path,
+                       const dynamic::MemberDescription& member);
+  void serve_memory(const dynamic::ServedObject& object, const std::string& path,
+                    const dynamic::MemberDescription& member);
   void serve_objref(const dynamic::ServedObject& object, const std::string& path,
                     const dynamic::MemberDescription& member);
   void serve_wire(const dynamic::ServedObject& object, const std::string& path,
                   const dynamic::MemberDescription& member);
   void serve_pipe(const dynamic::ServedObject& object, const std::string& path,
                   const dynamic::MemberDescription& member);
+  void take_packets(const dynamic::PipeServer& pipe, const std::string& path,
+                    const dynamic::MemberDescription& member);
   void serve_event(const dynamic::ServedObject& object, const std::string& path,
                    const dynamic::MemberDescription& member);
   void add_stream(const std::string& path, const std::string& member, StreamReader::Sink sink,

@@ -7,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include "gateway/testing/listener.hpp"
 #include "gateway/testing/memory_broker.hpp"
 #include "gateway/testing/rig.hpp"
 
@@ -104,6 +105,46 @@ TEST_F(Gateways, WiresHaveTheNewestValue) {
   ASSERT_TRUE(retained.has_value());
   EXPECT_EQ(retained->find("type"), "double");
   EXPECT_EQ(retained->payload.size(), 19U);
+}
+
+TEST_F(Gateways, AWireHasItsNewestValueWhenTheLinkIsUpAgain) {
+  const auto bench = rig.connect();
+  auto force = bench->wire("force").connect();
+  const auto newest = [&] {
+    const auto value = force.try_in();
+    return value ? value->value.as<double>() : -1;
+  };
+  rig.robot.bench().wire("force").set_in(1);
+  ASSERT_TRUE(comes_true([&] { return newest() == 1; }));
+  broker.set_links(false);
+  for (int i = 2; i <= 50; ++i) rig.robot.bench().wire("force").set_in(i);
+  const std::size_t before = broker.published("rr/hall/robot/bench/force");
+  EXPECT_EQ(newest(), 1);
+  broker.set_links(true);
+  EXPECT_TRUE(comes_true([&] { return newest() == 50; }));
+  // The older values have not travelled. The last ones may still have been on their way to the
+  // gateway when the link came up.
+  EXPECT_LE(broker.published("rr/hall/robot/bench/force"), before + 10);
+}
+
+TEST_F(Gateways, AWireHasItsNewestValueAfterTheServingGatewayWasRestarted) {
+  const auto newest_is = [&](double wanted) {
+    const auto bench = rig.connect();
+    auto force = bench->wire("force").connect();
+    return comes_true([&] {
+      const auto value = force.try_in();
+      return value && value->value.as<double>() == wanted;
+    });
+  };
+  rig.robot.bench().wire("force").set_in(4);
+  ASSERT_TRUE(newest_is(4));
+  rig.stop_server();
+  rig.start_server();
+  EXPECT_TRUE(newest_is(4));
+  rig.stop_server();
+  rig.robot.bench().wire("force").set_in(5);
+  rig.start_server();
+  EXPECT_TRUE(newest_is(5));
 }
 
 TEST(GatewayWires, AreHeldToTheirRate) {
@@ -231,14 +272,7 @@ TEST_F(Gateways, TheExportingGatewayIsRestarted) {
 
 TEST_F(Gateways, AnswersGoNowhereElse) {
   rig.connect();
-  struct Handler final : CarrierHandler {
-    void on_message(Message) override {}
-    void on_connected() override { connected.add(1); }
-    void on_disconnected(const std::string&) override {}
-    void on_room() override {}
-    void on_refused(const std::string&) override {}
-    Kept<int> connected;
-  } handler;
+  testing::Listener handler;
   const auto carrier = broker.carrier();
   carrier->start(handler, {});
   ASSERT_TRUE(handler.connected.wait_for(1));

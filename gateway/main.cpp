@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <atomic>
 #include <iostream>
 #include <utility>
 
 #include "cli/end_signals.hpp"
+#include "gateway/access_list.hpp"
 #include "gateway/exporter.hpp"
+#include "gateway/fleet_query.hpp"
 #include "gateway/mqtt_carrier.hpp"
 #include "gateway/program_options.hpp"
 #include "gateway/server.hpp"
@@ -29,21 +32,38 @@ void wait_for(const robdef::EndSignals& signals) {
   }
 }
 
-std::unique_ptr<Carrier> carrier_to(const BrokerOptions& broker) {
-  return make_mqtt_carrier({broker.url, broker.user, broker.password});
-}
-
 void run_export(const std::string& path, const robdef::EndSignals& signals) {
   ExportFile file = read_export_file(path);
-  const auto carrier = carrier_to(file.broker);
-  const Exporter exporter(std::move(file), *carrier, log);
-  wait_for(signals);
+  const auto carrier = make_mqtt_carrier(file.broker);
+  std::atomic<bool> is_refused{false};
+  const Exporter exporter(std::move(file), *carrier, log,
+                          [&](const std::string&) { is_refused = true; });
+  while (!is_refused) {
+    if (signals.wait()) return;
+  }
+  throw Error(ErrorCode::invalid_state, "this gateway ends: the robot has another one");
+}
+
+void print_access_list(const ProgramOptions& options) {
+  std::vector<ExportFile> files;
+  for (const std::string& path : options.export_files) {
+    files.push_back(read_export_file(path, Secrets::ignored));
+  }
+  std::cout << mosquitto_acl(access_list(files));
+}
+
+void print_fleet(const ProgramOptions& options) {
+  constexpr std::chrono::seconds limit{10};
+  constexpr std::chrono::seconds quiet{1};
+  const auto carrier = make_mqtt_carrier(options.broker);
+  const Fleet fleet = ask_for_fleet(*carrier, limit, quiet);
+  std::cout << (options.is_json ? fleet.json() : fleet.text());
 }
 
 void run_serve(const ProgramOptions& options, SetupOptions setup,
                const robdef::EndSignals& signals) {
   const NodeSetup node(std::move(setup));
-  const auto carrier = carrier_to(options.broker);
+  const auto carrier = make_mqtt_carrier(options.broker);
   const Server server(options.server, node.node(), *carrier, log);
   wait_for(signals);
 }
@@ -60,7 +80,13 @@ int run(int count, char** words) {
       std::cout << "robdef-gateway " << library_version() << "\n";
       break;
     case ProgramOptions::Task::export_file:
-      run_export(options.export_file, signals);
+      run_export(options.export_files[0], signals);
+      break;
+    case ProgramOptions::Task::fleet:
+      print_fleet(options);
+      break;
+    case ProgramOptions::Task::access_list:
+      print_access_list(options);
       break;
     case ProgramOptions::Task::serve:
       run_serve(options, std::move(setup), signals);

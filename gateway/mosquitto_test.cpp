@@ -10,6 +10,7 @@
 
 #include "gateway/mqtt_carrier.hpp"
 #include "gateway/properties.hpp"
+#include "gateway/testing/listener.hpp"
 #include "gateway/testing/mosquitto_broker.hpp"
 #include "gateway/testing/rig.hpp"
 
@@ -20,23 +21,10 @@ using std::chrono::milliseconds;
 using testing::comes_true;
 using testing::Folder;
 using testing::Kept;
+using testing::Listener;
 using testing::MosquittoBroker;
-using testing::Process;
+using testing::Program;
 using testing::Rig;
-
-/// Keeps what a carrier says.
-struct Listener final : CarrierHandler {
-  void on_message(Message message) override { messages.add(std::move(message)); }
-  void on_connected() override { connected.add(1); }
-  void on_disconnected(const std::string& reason) override { reasons.add(reason); }
-  void on_room() override { rooms.add(1); }
-  void on_refused(const std::string& what) override { refused.add(what); }
-  Kept<Message> messages;
-  Kept<int> connected;
-  Kept<std::string> reasons;
-  Kept<int> rooms;
-  Kept<std::string> refused;
-};
 
 class Mosquitto : public ::testing::Test {
  protected:
@@ -46,6 +34,18 @@ class Mosquitto : public ::testing::Test {
   }
   Rig& make_rig() {
     return rig.emplace([this] { return make_mqtt_carrier({broker->url()}); });
+  }
+  /// An export file of the robot, all of whose members may be read and called.
+  [[nodiscard]] std::string write_export(const Folder& folder,
+                                         const testing::BenchService& robot) const {
+    std::ofstream(folder.path() + "/login") << "open sesame\n";
+    const std::string path = folder.path() + "/robot.toml";
+    std::ofstream(path) << "site = \"hall\"\nnode = \"robot\"\nstate = \"state\"\n[broker]\n"
+                        << "url = \"" << broker->url() << "\"\n[[service]]\nname = \"bench\"\n"
+                        << "url = \"" << robot.url() << "\"\nlogin = \"gateway\"\n"
+                        << "password_file = \"login\"\nreaders = [\"hub\"]\n"
+                        << "[[service.allow]]\nmembers = [\"*\"]\naccess = [\"read\", \"call\"]\n";
+    return path;
   }
   void restart() {
     broker->kill();
@@ -87,7 +87,7 @@ TEST_F(Mosquitto, CarriesMessagesAsTheyAre) {
 
 TEST_F(Mosquitto, TakesNoMoreThanTheBrokerAcknowledges) {
   Listener listener;
-  const auto carrier = make_mqtt_carrier({.url = broker->url(), .in_flight = 10});
+  const auto carrier = make_mqtt_carrier({broker->url()}, {.in_flight = 10});
   carrier->start(listener, {"life", {}});
   ASSERT_TRUE(listener.connected.wait_for(1));
   int taken = 0;
@@ -231,61 +231,37 @@ TEST_F(Mosquitto, WiresHaveTheNewestValueAfterTheBrokerWasKilled) {
   EXPECT_TRUE(newest_is(2));
 }
 
-// The lists of docs/howto/fleet.md.
-TEST_F(Mosquitto, AUserCannotAskInTheNameOfAnother) {
-  const Folder folder;
-  std::ofstream(folder.path() + "/acl") << "user robot\ntopic readwrite rr/hall/robot/#\n"
-                                           "topic write rr/$reply/#\n\n"
-                                           "user hub\ntopic read rr/hall/#\n\n"
-                                           "pattern write rr/+/+/+/$get/%u/#\n"
-                                           "pattern write rr/+/+/+/$set/%u/#\n"
-                                           "pattern write rr/+/+/+/$call/%u/#\n"
-                                           "pattern write rr/+/+/+/$poke/%u/#\n"
-                                           "pattern write rr/+/+/+/$object/%u/#\n"
-                                           "pattern write rr/+/+/+/$stream/%u/#\n"
-                                           "pattern write rr/+/+/+/$confirm/%u/#\n"
-                                           "pattern read rr/$reply/%u/#\n";
-  const std::string words = folder.path() + "/words";
-  std::ofstream(words) << "robot:one\nhub:two\neve:three\n";
-  Process hashing({"/usr/bin/mosquitto_passwd", "-U", words});
-  ASSERT_EQ(hashing.wait(), 0);
-  const MosquittoBroker strict("allow_anonymous false\npassword_file " + words + "\nacl_file " +
-                               folder.path() + "/acl\n");
-  int made = 0;
-  Rig all([&] {
-    return ++made == 1 ? make_mqtt_carrier({strict.url(), "robot", "one"})
-                       : make_mqtt_carrier({strict.url(), "hub", "two"});
-  });
-  const auto bench = all.connect();
-  EXPECT_EQ(bench->call("count").as<int>(), 1);
+/// A serving gateway, and a client of it.
+struct FarBench {
+  explicit FarBench(const MosquittoBroker& broker) : carrier(make_mqtt_carrier({broker.url()})) {
+    const std::string url =
+        "rr+tcp://localhost:" + std::to_string(server_node.listen_tcp(0)) + "/?service=far";
+    ServerOptions options;
+    options.services = {{{"hall", "robot", "bench"}, "far"}};
+    options.reader = "hub";
+    server.emplace(options, server_node, *carrier, [](LogLevel, const std::string&) {});
+    EXPECT_TRUE(comes_true([&] {
+      try {
+        bench = dynamic::connect(client_node, url);
+        return true;
+      } catch (const Error&) {
+        return false;
+      }
+    }));
+  }
 
-  Listener listener;
-  const auto eve = make_mqtt_carrier({strict.url(), "eve", "three"});
-  eve->subscribe("rr/$reply/hub/#");
-  eve->start(listener, {"life", {}});
-  ASSERT_TRUE(listener.connected.wait_for(1));
-  Message request{"rr/hall/robot/bench/$call/hub/count", {}};
-  request.correlation = Bytes(4);
-  request.response_topic = "rr/$reply/hub/1";
-  ASSERT_EQ(eve->publish(request), Published::taken);
-  EXPECT_TRUE(listener.refused.wait_for(1));
-  EXPECT_EQ(bench->call("count").as<int>(), 2);
-  EXPECT_EQ(listener.messages.size(), 0U);
-  eve->stop({});
-}
+  Node server_node;
+  std::unique_ptr<Carrier> carrier;
+  std::optional<Server> server;
+  Node client_node;
+  dynamic::Client bench;
+};
 
 // The programs themselves; the one beside the robot is killed.
 TEST_F(Mosquitto, TheProgramGoesOnAfterItWasKilled) {
   const testing::BenchService robot;
   const Folder folder;
-  const std::string path = folder.path() + "/robot.toml";
-  std::ofstream(path) << "site = \"hall\"\nnode = \"robot\"\nstate = \"state\"\n[broker]\nurl = \""
-                      << broker->url() << "\"\n[[service]]\nname = \"bench\"\nurl = \""
-                      << robot.url()
-                      << "\"\nlogin = \"gateway\"\npassword_file = \"login\"\nreaders = "
-                         "[\"hub\"]\n[[service.allow]]\nmembers = [\"*\"]\n"
-                         "access = [\"read\", \"call\"]\n";
-  std::ofstream(folder.path() + "/login") << "open sesame\n";
+  const std::string path = write_export(folder, robot);
   Listener life;
   const auto watcher = make_mqtt_carrier({broker->url()});
   watcher->subscribe("rr/hall/robot/$life");
@@ -294,35 +270,106 @@ TEST_F(Mosquitto, TheProgramGoesOnAfterItWasKilled) {
     const auto all = life.messages.items();
     return all.empty() ? std::string() : text_of(all.back().payload);
   };
-  auto gateway = std::make_unique<Process>(std::vector<std::string>{ROBDEF_GATEWAY, path});
+  std::optional<Program> gateway;
+  gateway.emplace(std::vector<std::string>{ROBDEF_GATEWAY, path});
   ASSERT_TRUE(comes_true([&] { return newest_life() == "up"; }));
 
-  Node server_node;
-  const auto port = server_node.listen_tcp(0);
-  const auto carrier = make_mqtt_carrier({broker->url()});
-  ServerOptions options;
-  options.services = {{{"hall", "robot", "bench"}, "far"}};
-  options.reader = "hub";
-  const Server server(options, server_node, *carrier, [](LogLevel, const std::string&) {});
-  Node client_node;
-  dynamic::Client bench;
-  ASSERT_TRUE(comes_true([&] {
-    try {
-      bench = dynamic::connect(client_node,
-                               "rr+tcp://localhost:" + std::to_string(port) + "/?service=far");
-      return true;
-    } catch (const Error&) {
-      return false;
-    }
-  }));
+  FarBench far(*broker);
+  const auto& bench = far.bench;
   EXPECT_EQ(bench->call("count").as<int>(), 1);
   gateway->end(SIGKILL);
   EXPECT_TRUE(comes_true([&] { return newest_life() == "lost"; }));
-  gateway = std::make_unique<Process>(std::vector<std::string>{ROBDEF_GATEWAY, path});
+  gateway.emplace(std::vector<std::string>{ROBDEF_GATEWAY, path});
   EXPECT_EQ(bench->call("count").as<int>(), 2);
-  const int status = gateway->end(SIGTERM);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_TRUE(testing::exited_with(gateway->end(SIGTERM), 0));
   EXPECT_TRUE(comes_true([&] { return newest_life() == "ended"; }));
+  watcher->stop({});
+}
+
+// The broker is started again with another password of the serving gateway.
+TEST_F(Mosquitto, ACallSaysThatTheBrokerRefusesTheGateway) {
+  const Folder folder;
+  const std::string users = testing::make_passwords(folder, "robot:one\nhub:two\n");
+  MosquittoBroker strict("allow_anonymous false\npassword_file " + users + "\n");
+  int made = 0;
+  Rig all(
+      [&] {
+        return ++made == 1 ? make_mqtt_carrier({strict.url(), "robot", "one"})
+                           : make_mqtt_carrier({strict.url(), "hub", "two"});
+      },
+      milliseconds(1'000));
+  const auto bench = all.connect();
+  EXPECT_EQ(bench->call("count").as<int>(), 1);
+  strict.kill();
+  testing::make_passwords(folder, "robot:one\nhub:three\n");
+  strict.start();
+  std::string text;
+  EXPECT_TRUE(comes_true([&] {
+    try {
+      static_cast<void>(bench->get("speed"));
+    } catch (const Error& error) {
+      text = error.message();
+    }
+    return text.find("no connection to the broker: " + strict.url() +
+                     ": the broker refuses user `hub` or the password: Not authorized") !=
+           std::string::npos;
+  })) << text;
+}
+
+// A limit of the process on the size of files stands for a disk that is full.
+TEST_F(Mosquitto, AFullDiskLosesPacketsAsAGapAndRefusesCalls) {
+  const testing::BenchService robot;
+  const Folder folder;
+  const std::string path = write_export(folder, robot);
+  // Of dash in blocks of 512 bytes, of bash in kilobytes: some hundred records at most.
+  Program gateway(
+      {"sh", "-c", "trap '' XFSZ; ulimit -f 16; exec \"$0\" \"$1\"", ROBDEF_GATEWAY, path});
+  FarBench far(*broker);
+  const auto& bench = far.bench;
+  auto samples = bench->pipe("samples").connect();
+  ASSERT_TRUE(comes_true([&] {
+    robot.bench().pipe("samples").send(1);
+    return samples.try_receive().has_value();
+  }));
+  for (int i = 0; i < 1'000; ++i) robot.bench().pipe("samples").send(2);
+  EXPECT_TRUE(comes_true([&] {
+    // What was logged has arrived, and one more shows the gap.
+    robot.bench().pipe("samples").send(3);
+    return !samples.is_open();
+  }));
+  int calls = 0;
+  std::optional<Error> refused;
+  while (!refused && calls < 1'000) {
+    try {
+      EXPECT_EQ(bench->call("count").as<int>(), calls + 1);
+      ++calls;
+    } catch (const Error& error) {
+      refused = error;
+    }
+  }
+  ASSERT_TRUE(refused.has_value());
+  EXPECT_EQ(refused->code(), ErrorCode::io_error);
+  EXPECT_THAT(refused->message(), ::testing::HasSubstr("cannot be written: "));
+  EXPECT_EQ(robot.counted(), calls);
+  EXPECT_EQ(bench->get("speed").as<double>(), 0.5);
+  EXPECT_TRUE(testing::exited_with(gateway.end(SIGTERM), 0));
+}
+
+TEST_F(Mosquitto, ASecondProgramForARobotEnds) {
+  const testing::BenchService robot;
+  const Folder one;
+  const Folder two;
+  Listener life;
+  const auto watcher = make_mqtt_carrier({broker->url()});
+  watcher->subscribe("rr/hall/robot/$life");
+  watcher->start(life, {"other", {}});
+  Program first({ROBDEF_GATEWAY, write_export(one, robot)});
+  ASSERT_TRUE(life.messages.wait_for(1));
+  Program second({ROBDEF_GATEWAY, write_export(two, robot)});
+  EXPECT_TRUE(testing::exited_with(second.wait(), 1));
+  EXPECT_TRUE(first.is_running());
+  EXPECT_EQ(text_of(life.messages.items().back().payload), "up");
+  EXPECT_TRUE(testing::exited_with(first.end(SIGTERM), 0));
   watcher->stop({});
 }
 

@@ -3,15 +3,20 @@
 
 #include <mosquitto.h>
 #include <mqtt_protocol.h>
+#include <poll.h>
+#include <sys/socket.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
-#include <charconv>
 #include <cstdlib>
+#include <cstring>
+#include <map>
 #include <thread>
 #include <utility>
 
 #include "gateway/mqtt_properties.hpp"
+#include "gateway/mqtt_tls.hpp"
 #include "rr/error.hpp"
 #include "rr/mutex.hpp"
 
@@ -23,31 +28,10 @@ constexpr int refused_from = 0x80;  // reason codes of MQTT 5
 constexpr auto farewell_time = std::chrono::seconds(2);
 constexpr int loop_time_ms = 100;
 
-struct Place {
-  std::string host;
-  int port = 1883;
-};
+constexpr std::array<BrokerScheme, 2> schemes{{{"mqtt", false, 1883}, {"mqtts", true, 8883}}};
 
-Place place_of(const std::string& url) {
-  constexpr std::string_view scheme = "mqtt://";
-  Place place;
-  std::string_view rest = url;
-  if (rest.starts_with(scheme)) {
-    rest.remove_prefix(scheme.size());
-    const std::size_t colon = rest.rfind(':');
-    place.host = rest.substr(0, colon);
-    if (colon == std::string_view::npos) {
-      if (!place.host.empty()) return place;
-    } else {
-      const std::string_view port = rest.substr(colon + 1);
-      const char* const end = port.data() + port.size();
-      const auto result = std::from_chars(port.data(), end, place.port);
-      const bool is_port =
-          result.ec == std::errc() && result.ptr == end && place.port > 0 && place.port < 65'536;
-      if (!place.host.empty() && is_port) return place;
-    }
-  }
-  throw Error(ErrorCode::invalid_argument, "`" + url + "` is not of the form mqtt://host:port");
+bool is_about_user(int code) {
+  return code == MQTT_RC_BAD_USERNAME_OR_PASSWORD || code == MQTT_RC_NOT_AUTHORIZED;
 }
 
 struct Destroyed {
@@ -58,10 +42,12 @@ using Client = std::unique_ptr<mosquitto, Destroyed>;
 // Callbacks of the library never take mutex_, which publish() holds while it is in the library.
 class MqttCarrier final : public Carrier {
  public:
-  explicit MqttCarrier(MqttOptions options)
-      : options_(std::move(options)), place_(place_of(options_.url)) {
+  MqttCarrier(BrokerOptions broker, const MqttLimits& limits)
+      : broker_(std::move(broker)), limits_(limits), place_(place_of(broker_, schemes)) {
     static const int initialized = mosquitto_lib_init();
     static_cast<void>(initialized);
+    // A file that cannot be used is reported at once.
+    if (place_.is_encrypted) tls_ = std::make_unique<MqttTls>(broker_, place_.host);
   }
   ~MqttCarrier() override { stop({}); }
 
@@ -84,10 +70,10 @@ class MqttCarrier final : public Carrier {
   Published publish(const Message& message) override {
     const MutexLock lock(mutex_);
     if (!is_connected_ || ends_) return Published::later;
-    if (waiting_ >= options_.in_flight) {
+    if (waiting_ >= limits_.in_flight) {
       wants_room_ = true;
       // It may have been acknowledged since.
-      if (waiting_ >= options_.in_flight) return Published::later;
+      if (waiting_ >= limits_.in_flight) return Published::later;
     }
     return send(message);
   }
@@ -102,24 +88,29 @@ class MqttCarrier final : public Carrier {
     if (is_accepted_ && client_) mosquitto_subscribe(client_.get(), nullptr, filter.c_str(), qos);
   }
 
-  [[nodiscard]] std::string url() const override { return options_.url; }
+  [[nodiscard]] std::string url() const override { return broker_.url; }
 
  private:
   Published send(const Message& message) {
     const MqttProperties properties(message);
     // Before it is acknowledged, which the other thread may see at once.
     ++waiting_;
+    int id = 0;
     const int result = mosquitto_publish_v5(
-        client_.get(), nullptr, message.topic.c_str(), static_cast<int>(message.payload.size()),
+        client_.get(), &id, message.topic.c_str(), static_cast<int>(message.payload.size()),
         message.payload.data(), qos, message.retained, properties.get());
-    if (result == MOSQ_ERR_SUCCESS) return Published::taken;
+    if (result == MOSQ_ERR_SUCCESS) {
+      const MutexLock lock(topics_mutex_);
+      topics_[id] = message.topic;
+      return Published::taken;
+    }
     --waiting_;
     const bool is_large = result == MOSQ_ERR_PAYLOAD_SIZE || result == MOSQ_ERR_OVERSIZE_PACKET;
     return is_large ? Published::refused : Published::later;
   }
 
   void run() {
-    auto delay = options_.retry;
+    auto delay = limits_.retry;
     while (!ends_) {
       reason_ = "the broker does not answer";
       was_connected_ = false;
@@ -130,10 +121,12 @@ class MqttCarrier final : public Carrier {
         is_accepted_ = false;
         client_.reset();
         waiting_ = 0;
+        const MutexLock topics_lock(topics_mutex_);
+        topics_.clear();
       }
       if (ends_) return;
-      handler_->on_disconnected(options_.url + ": " + reason_);
-      delay = was_connected_ ? options_.retry : std::min(delay * 2, options_.max_retry);
+      handler_->on_disconnected(broker_.url + ": " + reason_);
+      delay = was_connected_ ? limits_.retry : std::min(delay * 2, limits_.max_retry);
       const MutexLock lock(mutex_);
       changed_.wait_until(mutex_, std::chrono::steady_clock::now() + delay,
                           [this] { return ends_.load(); });
@@ -144,26 +137,56 @@ class MqttCarrier final : public Carrier {
   void converse() {
     if (!make_client()) return;
     int result = mosquitto_connect_async(client_.get(), place_.host.c_str(), place_.port,
-                                         static_cast<int>(options_.keep_alive.count()));
+                                         static_cast<int>(limits_.keep_alive.count()));
+    if (result == MOSQ_ERR_SUCCESS && !reach_broker()) return;
     while (result == MOSQ_ERR_SUCCESS && !ends_) {
       result = mosquitto_loop(client_.get(), loop_time_ms, 1);
     }
-    if (result != MOSQ_ERR_SUCCESS && !is_refused_) reason_ = mosquitto_strerror(result);
+    if (result != MOSQ_ERR_SUCCESS && !is_refused_) reason_ = reason_of(result);
     if (ends_ && is_connected_) say_farewell();
+  }
+
+  /// Until TCP is connected: with TLS the library would not notice that it cannot be.
+  bool reach_broker() {
+    const auto end = std::chrono::steady_clock::now() + limits_.keep_alive;
+    while (!ends_ && std::chrono::steady_clock::now() < end) {
+      pollfd wanted{mosquitto_socket(client_.get()), POLLOUT, 0};
+      if (::poll(&wanted, 1, loop_time_ms) <= 0) continue;
+      int error = 0;
+      socklen_t size = sizeof error;
+      ::getsockopt(wanted.fd, SOL_SOCKET, SO_ERROR, &error, &size);
+      // TLS may have taken the error already.
+      sockaddr_storage peer{};
+      size = sizeof peer;
+      if (error == 0 && ::getpeername(wanted.fd, reinterpret_cast<sockaddr*>(&peer), &size) == 0) {
+        return true;
+      }
+      reason_ = error != 0 ? std::strerror(error) : "no server at its port, or it speaks no TLS";
+      return false;
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::string reason_of(int result) const {
+    if (tls_ && !tls_->trouble().empty()) return tls_->trouble();
+    if (!tls_reason_.empty()) return tls_reason_;
+    if (result == MOSQ_ERR_TLS && !is_accepted_) {
+      return "the broker has ended the connection while TLS began: perhaps it speaks no TLS";
+    }
+    return mosquitto_strerror(result);
   }
 
   bool make_client() {
     Client client(mosquitto_new(nullptr, true, this));
-    if (!client) return false;
+    if (!client || !prepare_tls(client.get())) return false;
     is_refused_ = false;
     mosquitto_int_option(client.get(), MOSQ_OPT_PROTOCOL_VERSION, MQTT_PROTOCOL_V5);
     mosquitto_int_option(client.get(), MOSQ_OPT_TCP_NODELAY, 1);
     mosquitto_threaded_set(client.get(), true);
-    if (!options_.user.empty()) {
-      mosquitto_username_pw_set(client.get(), options_.user.c_str(), options_.password.c_str());
+    if (!broker_.user.empty()) {
+      mosquitto_username_pw_set(client.get(), broker_.user.c_str(), broker_.password.c_str());
     }
-    mosquitto_will_set_v5(client.get(), life_.topic.c_str(), static_cast<int>(life_.payload.size()),
-                          life_.payload.data(), qos, life_.retained, nullptr);
+    if (!life_.topic.empty()) set_life(client.get());
     mosquitto_connect_v5_callback_set(client.get(), on_connect);
     mosquitto_disconnect_v5_callback_set(client.get(), on_disconnect);
     mosquitto_subscribe_v5_callback_set(client.get(), on_subscribe);
@@ -171,6 +194,29 @@ class MqttCarrier final : public Carrier {
     mosquitto_message_v5_callback_set(client.get(), on_message);
     const MutexLock lock(mutex_);
     client_ = std::move(client);
+    return true;
+  }
+
+  void set_life(mosquitto* client) const {
+    MqttProperties properties(life_);
+    const int result =
+        mosquitto_will_set_v5(client, life_.topic.c_str(), static_cast<int>(life_.payload.size()),
+                              life_.payload.data(), qos, life_.retained, properties.get());
+    if (result == MOSQ_ERR_SUCCESS) properties.release();  // the library has taken them over
+  }
+
+  /// Anew for each connection: certificates run out, and are replaced while this runs.
+  bool prepare_tls(mosquitto* client) {
+    tls_reason_.clear();
+    if (!place_.is_encrypted) return true;
+    try {
+      tls_ = std::make_unique<MqttTls>(broker_, place_.host);
+    } catch (const Error& error) {
+      reason_ = error.message();
+      return false;
+    }
+    tls_->use_in(client);
+    mosquitto_log_callback_set(client, on_log);
     return true;
   }
 
@@ -190,7 +236,7 @@ class MqttCarrier final : public Carrier {
     auto& self = *static_cast<MqttCarrier*>(user);
     if (code != 0) {
       self.is_refused_ = true;
-      self.reason_ = mosquitto_reason_string(code);
+      self.reason_ = self.refusal(code);
       return;
     }
     self.is_accepted_ = true;
@@ -206,6 +252,18 @@ class MqttCarrier final : public Carrier {
     if (filters.empty()) self.become_connected();
   }
 
+  [[nodiscard]] std::string refusal(int code) const {
+    const std::string reason = mosquitto_reason_string(code);
+    if (!is_about_user(code)) return "the broker refuses the connection: " + reason;
+    if (broker_.user.empty()) return "the broker refuses a connection without a user: " + reason;
+    return "the broker refuses user `" + broker_.user + "` or the password: " + reason;
+  }
+
+  static void on_log(mosquitto*, void* user, int level, const char* text) {
+    auto& self = *static_cast<MqttCarrier*>(user);
+    if (level == MOSQ_LOG_ERR && self.tls_reason_.empty()) self.tls_reason_ = tls_reason(text);
+  }
+
   void become_connected() {
     was_connected_ = true;
     is_connected_ = true;
@@ -215,19 +273,29 @@ class MqttCarrier final : public Carrier {
   static void on_subscribe(mosquitto*, void* user, int, int count, const int* granted,
                            const mosquitto_property*) {
     auto& self = *static_cast<MqttCarrier*>(user);
-    if (std::any_of(granted, granted + count, [](int code) { return code >= refused_from; })) {
-      self.handler_->on_refused("a subscription");
-    }
+    const int* const end = granted + count;
+    const int* const refused =
+        std::find_if(granted, end, [](int code) { return code >= refused_from; });
+    if (refused != end) self.handler_->on_refused({"", mosquitto_reason_string(*refused)});
     if (self.subscribing_ > 0 && --self.subscribing_ == 0) self.become_connected();
   }
 
-  static void on_publish(mosquitto*, void* user, int, int code, const mosquitto_property*) {
+  /// Where a message that is acknowledged went; empty when the acknowledgement was faster than the
+  /// publisher's thread.
+  std::string take_topic(int id) {
+    const MutexLock lock(topics_mutex_);
+    const auto node = topics_.extract(id);
+    return node.empty() ? std::string() : node.mapped();
+  }
+
+  static void on_publish(mosquitto*, void* user, int id, int code, const mosquitto_property*) {
     auto& self = *static_cast<MqttCarrier*>(user);
+    const std::string topic = self.take_topic(id);
     if (code >= refused_from) {
-      self.handler_->on_refused(std::string("a message: ") + mosquitto_reason_string(code));
+      self.handler_->on_refused({topic, mosquitto_reason_string(code)});
     }
     const std::size_t left = --self.waiting_;
-    if (left <= self.options_.in_flight / 2 && self.wants_room_.exchange(false)) {
+    if (left <= self.limits_.in_flight / 2 && self.wants_room_.exchange(false)) {
       self.handler_->on_room();
     }
   }
@@ -253,23 +321,29 @@ class MqttCarrier final : public Carrier {
     self.handler_->on_message(std::move(result));
   }
 
-  const MqttOptions options_;
-  const Place place_;
+  const BrokerOptions broker_;
+  const MqttLimits limits_;
+  const BrokerPlace place_;
   CarrierHandler* handler_ = nullptr;
   Message life_;
   Message farewell_;  // written before ends_ is set, read after
   Mutex mutex_ RR_ACQUIRED_BEFORE(filters_mutex_);
   Condition changed_;
   std::atomic<bool> ends_{false};
+  std::unique_ptr<MqttTls> tls_;  // of the carrier's thread; outlives the client
   Client client_;  // written by the carrier's thread, with mutex_; others read it with mutex_
   std::atomic<bool> is_accepted_{false};   // by the broker
   std::atomic<bool> is_connected_{false};  // and it knows the subscriptions
   std::atomic<bool> wants_room_{false};
   std::atomic<std::size_t> waiting_{0};  // messages that are not acknowledged
+  Mutex topics_mutex_;
+  // Of messages that are not acknowledged, by their ids.
+  std::map<int, std::string> topics_ RR_GUARDED_BY(topics_mutex_);
   Mutex filters_mutex_;
   std::vector<std::string> filters_ RR_GUARDED_BY(filters_mutex_);
   // Of the carrier's thread.
   std::string reason_;
+  std::string tls_reason_;
   bool is_refused_ = false;
   bool was_connected_ = false;
   int subscribing_ = 0;
@@ -278,8 +352,8 @@ class MqttCarrier final : public Carrier {
 
 }  // namespace
 
-std::unique_ptr<Carrier> make_mqtt_carrier(MqttOptions options) {
-  return std::make_unique<MqttCarrier>(std::move(options));
+std::unique_ptr<Carrier> make_mqtt_carrier(BrokerOptions broker, const MqttLimits& limits) {
+  return std::make_unique<MqttCarrier>(std::move(broker), limits);
 }
 
 }  // namespace rr::gateway

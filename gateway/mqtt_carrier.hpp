@@ -4,17 +4,14 @@
 #include <chrono>
 #include <cstddef>
 #include <memory>
-#include <string>
 
+#include "gateway/broker_options.hpp"
 #include "gateway/carrier.hpp"
 
 namespace rr::gateway {
 
 /// How a broker of MQTT 5 is used.
-struct MqttOptions {
-  std::string url;             ///< `mqtt://host` or `mqtt://host:port`; the port is 1883 by default
-  std::string user{};          ///< empty: none
-  std::string password{};      ///< of the user
+struct MqttLimits {
   std::size_t in_flight = 64;  ///< messages that the broker has not acknowledged, at most
   /// To the next attempt to connect, at first; it doubles up to `max_retry`.
   std::chrono::milliseconds retry{100};
@@ -22,9 +19,10 @@ struct MqttOptions {
   std::chrono::seconds keep_alive{10};  ///< after this without an answer the link has failed
 };
 
-/// A carrier to a broker of MQTT 5. Messages are published with QoS 1, by one thread of the
-/// carrier; each connection begins a new session at the broker. Throws rr::Error (invalid_argument)
-/// for a URL.
-std::unique_ptr<Carrier> make_mqtt_carrier(MqttOptions options);
+/// A carrier to a broker of MQTT 5: `mqtt://host`, port 1883, or `mqtts://host`, port 8883, with
+/// TLS. Messages are published with QoS 1, by one thread of the carrier; each connection begins a
+/// new session at the broker, and reads the files of TLS anew. Throws rr::Error: invalid_argument
+/// for a URL, invalid_configuration for a file.
+std::unique_ptr<Carrier> make_mqtt_carrier(BrokerOptions broker, const MqttLimits& limits = {});
 
 }  // namespace rr::gateway

@@ -37,7 +37,9 @@ class MqttProperties {
   MqttProperties(const MqttProperties&) = delete;
   MqttProperties& operator=(const MqttProperties&) = delete;
 
-  [[nodiscard]] const mosquitto_property* get() const { return list_; }
+  [[nodiscard]] mosquitto_property* get() const { return list_; }
+  /// They belong to another one now.
+  void release() { list_ = nullptr; }
 
  private:
   /// Texts of MQTT are UTF-8 without zeros, and of limited length; those of errors need not be.

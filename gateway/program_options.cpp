@@ -39,7 +39,14 @@ class Words {
 
   ProgramOptions read() {
     while (at_ < words_.size()) take(words_[at_++]);
-    if (options_.task == ProgramOptions::Task::serve) check_serve();
+    if (options_.task == Task::serve) check_serve();
+    if (options_.task == Task::fleet && options_.broker.url.empty()) {
+      refuse_word("`--fleet` needs `--broker`");
+    }
+    if (options_.is_json && options_.task != Task::fleet) refuse_word("`--json` is for `--fleet`");
+    if (options_.task == Task::access_list && options_.export_files.empty()) {
+      refuse_word("`--acl` needs export files");
+    }
     return std::move(options_);
   }
 
@@ -66,17 +73,37 @@ class Words {
       options_.broker.user = value(word);
     } else if (word == "--password-file") {
       options_.broker.password = read_secret(value(word));
-    } else if (word.starts_with("-") || !options_.export_file.empty()) {
-      refuse_word("`" + word + "` is not expected");
+    } else if (word == "--authority") {
+      options_.broker.authority = value(word);
+    } else if (word == "--certificate") {
+      options_.broker.certificate = value(word);
+    } else if (word == "--key") {
+      options_.broker.key = value(word);
+    } else if (word == "--fleet") {
+      options_.task = Task::fleet;
+    } else if (word == "--json") {
+      options_.is_json = true;
+    } else if (word == "--acl") {
+      options_.task = Task::access_list;
+      options_.list_form = value(word);
+      if (options_.list_form != "mosquitto") {
+        refuse_word("`" + options_.list_form + "` is no form of access lists");
+      }
     } else {
-      options_.task = Task::export_file;
-      options_.export_file = word;
+      take_file(word);
     }
   }
 
+  void take_file(const std::string& word) {
+    const bool is_more = !options_.export_files.empty() && options_.task != Task::access_list;
+    if (word.starts_with("-") || is_more) refuse_word("`" + word + "` is not expected");
+    if (options_.task == Task::help) options_.task = Task::export_file;
+    options_.export_files.push_back(word);
+  }
+
   void check_serve() {
-    if (!options_.export_file.empty())
-      refuse_word("`" + options_.export_file + "` is not expected");
+    if (!options_.export_files.empty())
+      refuse_word("`" + options_.export_files[0] + "` is not expected");
     if (options_.broker.url.empty()) refuse_word("`--serve` needs `--broker`");
     if (!is_level_name(options_.server.reader))
       refuse_word("`--serve` needs `--reader` with a name");
@@ -97,11 +124,18 @@ const char* const program_help =
       Exports services of a robot to a broker, as the export file says.
   robdef-gateway --serve SITE/NODE/SERVICE[=NAME] --broker URL --reader NAME
       Offers services of robots at a broker as ordinary services. Several --serve are allowed.
+  robdef-gateway --acl mosquitto FILE...
+      Prints the access list that the broker needs for these export files.
+  robdef-gateway --fleet --broker URL [--json]
+      Prints which robots are alive, and how far their streams and readers are.
 
-  --broker URL           mqtt://host or mqtt://host:port
+  --broker URL           mqtt://host:port, or mqtts://host:port for TLS
   --reader NAME          the name by which export files declare this reader
   --user NAME            user of the broker; without it the reader's name stands in topics
   --password-file FILE   that user's password
+  --authority FILE       certificate authorities of the broker (mqtts); without it those of the system
+  --certificate FILE     certificate of this side, where the broker asks for one
+  --key FILE             its key, where that is not in the same file
   --robotraconteur-...   flags of the node that serves, as --robotraconteur-tcp-port=2355
 
 It ends with SIGINT or SIGTERM.

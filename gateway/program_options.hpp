@@ -11,11 +11,14 @@ namespace rr::gateway {
 
 /// What the command line of robdef-gateway asks for.
 struct ProgramOptions {
-  enum class Task { help, version, export_file, serve };
+  enum class Task { help, version, export_file, access_list, fleet, serve };
   Task task = Task::help;
-  std::string export_file;  ///< with Task::export_file
-  BrokerOptions broker;     ///< with Task::serve
-  ServerOptions server;     ///< with Task::serve
+  /// With Task::export_file one, with Task::access_list one or more.
+  std::vector<std::string> export_files;
+  std::string list_form;  ///< with Task::access_list: `mosquitto`
+  bool is_json = false;   ///< with Task::fleet
+  BrokerOptions broker;   ///< with Task::serve and Task::fleet
+  ServerOptions server;   ///< with Task::serve
 };
 
 /// The text of `robdef-gateway --help`.

@@ -13,18 +13,37 @@ using Task = ProgramOptions::Task;
 TEST(GatewayOptions, AFileIsExported) {
   const auto options = read_options({"robot.toml"});
   EXPECT_EQ(options.task, Task::export_file);
-  EXPECT_EQ(options.export_file, "robot.toml");
+  EXPECT_EQ(options.export_files, std::vector<std::string>{"robot.toml"});
 }
 
 TEST(GatewayOptions, ServicesAreServed) {
   const auto options = read_options({"--serve", "hall/r1/arm", "--serve", "hall/r2/arm=arm2",
-                                     "--broker", "mqtt://hub", "--reader", "desk"});
+                                     "--broker", "mqtts://hub", "--reader", "desk", "--authority",
+                                     "ca.pem", "--certificate", "desk.pem", "--key", "desk.key"});
   ASSERT_EQ(options.task, Task::serve);
   ASSERT_EQ(options.server.services.size(), 2U);
   EXPECT_EQ(options.server.services[0].address, (ServiceAddress{"hall", "r1", "arm"}));
   EXPECT_EQ(options.server.services[0].name, "arm");
   EXPECT_EQ(options.server.services[1].name, "arm2");
   EXPECT_EQ(options.server.reader, "desk");
+  EXPECT_EQ(options.broker.url, "mqtts://hub");
+  EXPECT_EQ(options.broker.authority, "ca.pem");
+  EXPECT_EQ(options.broker.certificate, "desk.pem");
+  EXPECT_EQ(options.broker.key, "desk.key");
+}
+
+TEST(GatewayOptions, AccessListsAreMadeOfFiles) {
+  const auto options = read_options({"--acl", "mosquitto", "one", "two"});
+  EXPECT_EQ(options.task, Task::access_list);
+  EXPECT_EQ(options.list_form, "mosquitto");
+  EXPECT_EQ(options.export_files, (std::vector<std::string>{"one", "two"}));
+}
+
+TEST(GatewayOptions, FleetsAreShown) {
+  const auto options = read_options({"--fleet", "--broker", "mqtt://hub", "--json"});
+  EXPECT_EQ(options.task, Task::fleet);
+  EXPECT_TRUE(options.is_json);
+  EXPECT_EQ(options.broker.url, "mqtt://hub");
 }
 
 TEST(GatewayOptions, WhatIsMissingOrUnknownIsRefused) {
@@ -35,6 +54,11 @@ TEST(GatewayOptions, WhatIsMissingOrUnknownIsRefused) {
         {"--serve", "hall/r1/arm", "--broker", "x"},
         {"--what"},
         {"one", "two"},
+        {"--fleet"},
+        {"--json", "one"},
+        {"--acl"},
+        {"--acl", "mosquitto"},
+        {"--acl", "nats", "one"},
         {"one", "--serve", "a/b/c", "--broker", "x", "--reader", "y"}}) {
     EXPECT_THROW(static_cast<void>(read_options(words)), Error) << words[0];
   }

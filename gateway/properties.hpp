@@ -4,10 +4,12 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
+#include <ctime>
 #include <optional>
 #include <random>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gateway/carrier.hpp"
 
@@ -49,6 +51,43 @@ inline std::optional<std::uint64_t> number_property(const Message& message, std:
   const auto result = std::from_chars(text->data(), end, number, base);
   if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
   return number;
+}
+
+/// `2026-11-27T11:44:16Z` of nanoseconds since 1970.
+inline std::string date_text(std::uint64_t nanoseconds) {
+  const auto seconds = static_cast<std::time_t>(nanoseconds / 1'000'000'000);
+  std::tm parts{};
+  ::gmtime_r(&seconds, &parts);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text.data();
+}
+
+/// `1,2,3`.
+inline std::string list_text(const std::vector<std::uint64_t>& numbers) {
+  std::string text;
+  for (const std::uint64_t number : numbers) {
+    if (!text.empty()) text += ',';
+    text += std::to_string(number);
+  }
+  return text;
+}
+
+/// A property as such a list; nothing for what is none.
+inline std::optional<std::vector<std::uint64_t>> numbers_property(const Message& message,
+                                                                  std::string_view name) {
+  const auto text = message.find(name);
+  if (!text) return std::nullopt;
+  std::vector<std::uint64_t> numbers;
+  const char* at = text->data();
+  const char* const end = at + text->size();
+  for (;;) {
+    const auto result = std::from_chars(at, end, numbers.emplace_back());
+    if (result.ec != std::errc()) return std::nullopt;
+    if (result.ptr == end) return numbers;
+    if (*result.ptr != ',') return std::nullopt;
+    at = result.ptr + 1;
+  }
 }
 
 }  // namespace rr::gateway

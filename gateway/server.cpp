@@ -2,6 +2,7 @@
 #include "gateway/server.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "gateway/far_service.hpp"
@@ -74,6 +75,7 @@ class Server::Core final : public CarrierHandler {
   void on_disconnected(const std::string& reason) override {
     worker_.post([this, reason] {
       is_connected_ = false;
+      refusals_.clear();
       calls_->set_connected(false);
       outbox_.clear();
       if (std::exchange(reason_, reason) != reason) log_(LogLevel::warning, reason);
@@ -82,8 +84,11 @@ class Server::Core final : public CarrierHandler {
   void on_room() override {
     worker_.post([this] { pump(); });
   }
-  void on_refused(const std::string& what) override {
-    log_(LogLevel::error, "the broker has refused " + what);
+  void on_refused(const Refusal& refusal) override {
+    worker_.post([this, refusal] {
+      if (refusals_.insert(refusal.topic).second) log_(LogLevel::error, refusal.text());
+      calls_->deny(refusal);
+    });
   }
 
  private:
@@ -123,6 +128,7 @@ class Server::Core final : public CarrierHandler {
   std::vector<std::shared_ptr<FarService>> services_;
   Message life_;
   bool is_connected_ = false;
+  std::set<std::string> refusals_;  // topics that were reported for this connection
   std::string reason_ = "not connected yet";
 };
 

@@ -5,10 +5,13 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "gateway/call_window.hpp"
+#include "gateway/exported_endpoints.hpp"
+#include "gateway/exported_generators.hpp"
 #include "gateway/exporter.hpp"
 #include "gateway/outbox.hpp"
 #include "gateway/properties.hpp"
@@ -51,6 +54,8 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   bool pump(Carrier& carrier);
   /// To be called often.
   void tick();
+  /// The system's clock was set, by so many nanoseconds.
+  void clock_was_set(std::int64_t by);
 
  private:
   /// The newest value of a wire. Filled on threads of the node.
@@ -79,6 +84,7 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   void robot_disconnected(const std::string& reason);
   void publish_definitions(const dynamic::Object& root);
   void publish_life(std::string_view life, const std::string& reason);
+  void publish_status();
   void retain(Message message);
   void attach_path(const std::string& path);
   void attach_members(const std::string& path, const dynamic::Object& object);
@@ -90,6 +96,7 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
                     const dynamic::MemberDescription& member);
   void take_value(const std::shared_ptr<WireExport>& wire, const dynamic::Value& value,
                   const TimeSpec& time);
+  bool pump_retained(Carrier& carrier);
   bool pump_wire(WireExport& wire, Carrier& carrier);
   StreamExport* stream(const std::string& path, const std::string& member, bool makes);
   StreamExport* begin_stream(const std::string& path, const std::string& member);
@@ -104,14 +111,22 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   void handle(const RequestTopic& request, const Message& message);
   bool is_reachable(const RequestTopic& request, const Message& message);
   void handle_stream(const RequestTopic& request, const Message& message);
-  void execute(const RequestTopic& request, const Message& message);
   void execute_once(const RequestTopic& request, const Message& message);
-  void perform(const RequestTopic& request, const Message& message, const dynamic::Object& object,
-               const Function<void(std::exception_ptr, Bytes, std::string)>& done);
   void answer(const RequestTopic& request, const Message& message, Message result);
   void answer_error(const RequestTopic& request, const Message& message,
                     const std::exception_ptr& error, std::string_view at);
   std::shared_ptr<RobotSession> session_of(const std::string& user);
+
+  // service_execution.cpp
+  using Executed = Function<void(std::exception_ptr, Message)>;
+  void execute(const RequestTopic& request, const Message& message);
+  void perform(const RequestTopic& request, const Message& message, const dynamic::Object& object,
+               const Executed& done);
+  void send_packets(const RequestTopic& request, const Message& message,
+                    const dynamic::Object& object, const Executed& done);
+  void open_generator(const RequestTopic& request, const dynamic::Object& object,
+                      const dynamic::List& arguments, const Executed& done);
+  void step(const RequestTopic& request, const Message& message, const Executed& done);
 
   ServiceAddress address_;
   ExportedServiceOptions options_;
@@ -123,8 +138,12 @@ class ServiceExporter : public std::enable_shared_from_this<ServiceExporter> {
   std::shared_ptr<RobotSession> session_;
   std::map<std::string, std::shared_ptr<RobotSession>> user_sessions_;  // by user of the broker
   std::map<std::string, Message> retained_;                             // by topic
+  std::set<std::string> unpublished_;                                   // topics of retained_
   std::map<std::string, std::shared_ptr<WireExport>> wires_;            // by topic
   std::map<std::string, StreamExport> streams_;                         // by topic
+  std::chrono::steady_clock::time_point status_told_{};
+  ExportedGenerators generators_;
+  ExportedEndpoints endpoints_;
   std::string trouble_;           // why the robot is not connected, as was reported
   std::uint64_t connection_ = 0;  // counts connections to the robot
   // Their handlers last as long. Kept until the robot is connected again: what it had sent before

@@ -13,12 +13,14 @@ namespace {
 constexpr std::size_t longest_id = 128;
 
 Allowed access_of(Verb verb) {
-  if (verb == Verb::call) return calling;
-  return verb == Verb::set || verb == Verb::poke ? writing : reading;
+  if (verb == Verb::call || verb == Verb::next) return calling;
+  return verb == Verb::set || verb == Verb::poke || verb == Verb::send ? writing : reading;
 }
 
 /// Whether asking twice makes a difference.
-bool has_effect(Verb verb) { return verb == Verb::set || verb == Verb::call; }
+bool has_effect(Verb verb) {
+  return verb == Verb::set || verb == Verb::call || verb == Verb::next || verb == Verb::send;
+}
 
 /// `id` of a user in the window.
 std::string id_of(const RequestTopic& request, const Message& message) {
@@ -120,74 +122,6 @@ void ServiceExporter::execute_once(const RequestTopic& request, const Message& m
     return;
   }
   execute(request, message);
-}
-
-void ServiceExporter::execute(const RequestTopic& request, const Message& message) {
-  const auto done = [weak = Weak(shared_from_this()), request, message](
-                        const std::exception_ptr& error, const Bytes& payload,
-                        const std::string& type) {
-    const Self self = weak.lock();
-    if (!self) return;
-    self->shared_.worker.post([weak, request, message, error, payload, type] {
-      const Self exporter = weak.lock();
-      if (!exporter) return;
-      if (error) {
-        exporter->answer_error(request, message, error, "robot");
-      } else {
-        exporter->answer(request, message, {"", payload, {{"type", type}}});
-      }
-    });
-  };
-  session_of(request.user)
-      ->find(request.path, [weak = Weak(shared_from_this()), request, message, done](
-                               const std::exception_ptr& error, const dynamic::Object& object) {
-        const Self self = weak.lock();
-        if (!self) return;
-        try {
-          if (error) std::rethrow_exception(error);
-          self->perform(request, message, object, done);
-        } catch (...) {
-          done(std::current_exception(), {}, {});
-        }
-      });
-}
-
-// On a thread of the node. Uses nothing that changes.
-void ServiceExporter::perform(const RequestTopic& request, const Message& message,
-                              const dynamic::Object& object,
-                              const Function<void(std::exception_ptr, Bytes, std::string)>& done) {
-  const dynamic::Definitions definitions = object.types();
-  const auto give = [done](const dynamic::ValueType& type) {
-    return [done, type](const std::exception_ptr& error, const dynamic::Value& value) {
-      if (error) {
-        done(error, {}, {});
-        return;
-      }
-      try {
-        done(nullptr, encode_element(type, value), type.text());
-      } catch (...) {
-        done(std::current_exception(), {}, {});
-      }
-    };
-  };
-  const auto end = [done](const std::exception_ptr& error) { done(error, {}, {}); };
-  if (request.verb == Verb::object) {
-    done(nullptr, {}, object.type_name());
-    return;
-  }
-  const dynamic::MemberDescription member = object.member(request.member);
-  if (request.verb == Verb::get) {
-    object.async_get(member.name, give(member.type));
-  } else if (request.verb == Verb::set) {
-    object.async_set(member.name, decode_element(definitions, member.type, message.payload), end);
-  } else if (request.verb == Verb::poke) {
-    object.wire(member.name)
-        .async_poke_out(decode_element(definitions, member.type, message.payload), end);
-  } else {
-    object.async_call(member.name,
-                      decode_arguments(definitions, member.parameters, message.payload),
-                      give(member.type));
-  }
 }
 
 std::shared_ptr<RobotSession> ServiceExporter::session_of(const std::string& user) {

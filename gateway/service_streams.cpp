@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "gateway/elements.hpp"
+#include "gateway/fleet.hpp"
 #include "gateway/properties.hpp"
 #include "gateway/service_exporter.hpp"
 #include "rr/error.hpp"
@@ -70,15 +71,30 @@ void ServiceExporter::publish_definitions(const dynamic::Object& root) {
   retain(std::move(message));
 }
 
+// For people and their tools (gateway/fleet.hpp).
+void ServiceExporter::publish_status() {
+  std::map<std::string, StreamStatus> streams;
+  const std::string base = service_topic(address_) + "/";
+  for (const auto& [topic, stream] : streams_) {
+    streams[topic.substr(base.size())] = stream.writer->status();
+  }
+  const std::string topic = base + "$streams";
+  const auto known = retained_.find(topic);
+  Message message{topic, bytes_of(status_text(streams))};
+  if (known != retained_.end() ? known->second.payload != message.payload : !streams.empty()) {
+    retain(std::move(message));
+  }
+}
+
 void ServiceExporter::retain(Message message) {
   message.retained = true;
-  shared_.outbox.add(message);
+  unpublished_.insert(message.topic);
   retained_[message.topic] = std::move(message);
   shared_.pump();
 }
 
 void ServiceExporter::broker_connected() {
-  for (const auto& [topic, message] : retained_) shared_.outbox.add(message);
+  for (const auto& [topic, message] : retained_) unpublished_.insert(topic);
   for (const auto& [topic, wire] : wires_) {
     if (!wire->message && !wire->last.topic.empty()) wire->message = wire->last;
   }

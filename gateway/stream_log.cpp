@@ -24,6 +24,7 @@ constexpr std::array<char, 8> magic{'R', 'R', 'G', 'A', 'T', 'E', '\x1a', '\n'};
 constexpr std::uint64_t file_header_size = 32;
 constexpr std::size_t record_header_size = 32;
 constexpr std::uint64_t records_per_mark = 64;
+constexpr std::int64_t first_set_time = 1'577'836'800'000'000'000;  // 2020-01-01
 constexpr std::uint32_t largest_record = std::uint32_t{1} << 30U;
 
 /// What a file begins with. Numbers are little endian, as on all machines that this runs on.
@@ -253,8 +254,17 @@ void StreamLog::discard_through(std::uint64_t number) {
 
 void StreamLog::discard_old(std::int64_t now) {
   const auto oldest = now - std::chrono::nanoseconds(limits_.age).count();
-  if (files_.back().count > 0 && files_.back().newest < oldest) begin_file(last_ + 1);
-  while (files_.size() > 1 && files_.front().newest < oldest) remove_first();
+  const auto is_old = [&](const File& file) {
+    return file.newest >= first_set_time && file.newest < oldest;
+  };
+  if (files_.back().count > 0 && is_old(files_.back())) begin_file(last_ + 1);
+  while (files_.size() > 1 && is_old(files_.front())) remove_first();
+}
+
+void StreamLog::clock_was_set(std::int64_t by) {
+  for (File& file : files_) {
+    if (file.count > 0) file.newest += by;
+  }
 }
 
 std::uint64_t StreamLog::offset_of(const File& file, std::uint64_t number) const {

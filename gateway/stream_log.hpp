@@ -65,8 +65,12 @@ class StreamLog {
   [[nodiscard]] std::optional<Record> read_from(std::uint64_t number);
   /// Records up to this number are not needed any more: files without others are removed.
   void discard_through(std::uint64_t number);
-  /// Removes what is too old at this time.
+  /// Removes what is too old at this time. Records of a clock that was not set, before 2020, have
+  /// no age.
   void discard_old(std::int64_t now);
+  /// The system's clock was set, by so many nanoseconds: the records of this process get no older,
+  /// or younger, by that.
+  void clock_was_set(std::int64_t by);
 
  private:
   /// Where a record is.

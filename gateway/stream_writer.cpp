@@ -14,6 +14,7 @@ namespace rr::gateway {
 namespace {
 
 constexpr auto announced_after_append = std::chrono::seconds(3);
+constexpr std::chrono::milliseconds between_saves{200};
 constexpr std::uint64_t largest_count = 1024;
 constexpr std::size_t most_replays = 64;
 
@@ -48,15 +49,26 @@ void StreamWriter::confirm(const std::string& reader, std::uint64_t epoch, std::
   if (epoch != log_.epoch() || known == confirmed_.end()) return;
   if (number <= known->second || number > log_.last()) return;
   known->second = number;
-  save_readers();
-  discard();
+  readers_are_saved_ = false;
 }
 
-void StreamWriter::discard() {
-  if (confirmed_.empty()) return;
+/// The number that all declared readers have confirmed.
+std::uint64_t StreamWriter::least_confirmed() const {
   std::uint64_t least = log_.last();
   for (const auto& [reader, number] : confirmed_) least = std::min(least, number);
-  log_.discard_through(least);
+  return least;
+}
+
+void StreamWriter::flush(Clock::time_point now) {
+  if (readers_are_saved_ || now - saved_ < between_saves) return;
+  saved_ = now;
+  save_readers();
+  log_.discard_through(least_confirmed());
+}
+
+StreamStatus StreamWriter::status() const {
+  return {log_.last(), log_.last() + 1 - std::min(cursor_, log_.last() + 1), log_.size(),
+          confirmed_};
 }
 
 Message StreamWriter::message_of(Record record, const std::string& topic) const {
@@ -87,9 +99,7 @@ Message StreamWriter::head(const std::string& topic, std::uint64_t confirmed) co
 std::optional<Message> StreamWriter::next() {
   if (head_is_due_) {
     source_ = Source::head;
-    std::uint64_t least = log_.last();
-    for (const auto& [reader, number] : confirmed_) least = std::min(least, number);
-    return head(topic_, least);
+    return head(topic_, least_confirmed());
   }
   if (auto message = next_replay()) return message;
   return next_live();
@@ -171,6 +181,7 @@ void StreamWriter::load_readers(const std::vector<std::string>& declared) {
 
 // Losing this file, or its newest state, means that readers get again what they drop as duplicates.
 void StreamWriter::save_readers() {
+  if (std::exchange(readers_are_saved_, true)) return;
   const std::string path = folder_ + "/readers";
   std::ofstream file(path + ".new", std::ios::trunc);
   file << hex_text(log_.epoch()) << "\n";

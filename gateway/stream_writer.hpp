@@ -21,6 +21,14 @@ enum class RecordKind : std::uint16_t {
   broken = 2  ///< the gateway was not connected to the service: records may be missing here
 };
 
+/// How far a stream and its declared readers are.
+struct StreamStatus {
+  std::uint64_t last = 0;                          ///< number of the newest record
+  std::uint64_t waiting = 0;                       ///< records that the broker has not taken yet
+  std::uint64_t bytes = 0;                         ///< of the log on disk
+  std::map<std::string, std::uint64_t> confirmed;  ///< numbers, by reader
+};
+
 /// Logs the records of a stream and publishes them: each once to all readers as soon as the broker
 /// takes it, and again to a reader that asks. What all declared readers have confirmed is
 /// discarded. No threads, no clock: who owns it gives the time and asks for messages.
@@ -38,6 +46,9 @@ class StreamWriter {
   /// `topic` is where all readers listen. Throws as StreamLog.
   StreamWriter(std::string topic, std::string folder, const LogLimits& limits,
                const std::vector<std::string>& readers);
+  ~StreamWriter() { save_readers(); }
+  StreamWriter(const StreamWriter&) = delete;
+  StreamWriter& operator=(const StreamWriter&) = delete;
 
   /// Logs a record. Throws as StreamLog::append; the number is then a gap.
   void append(RecordKind kind, std::string_view type, const Bytes& body, std::int64_t time,
@@ -53,9 +64,15 @@ class StreamWriter {
   /// The message of next() was taken, or cannot be: then it is published as `broken`, without its
   /// payload.
   void done(Published result);
+  /// To be called often: some times in a second, what readers have confirmed is written down, and
+  /// only then discarded. Records are given twice when the process is killed in between and the
+  /// reader is started again, too.
+  void flush(Clock::time_point now);
   /// To be called every second or so: removes what is too old at `wall` (nanoseconds since 1970),
   /// and announces the newest number while a reader has not confirmed it.
   void tick(Clock::time_point now, std::int64_t wall);
+  /// The system's clock was set, by so many nanoseconds.
+  void clock_was_set(std::int64_t by) { log_.clock_was_set(by); }
   /// Connected to the broker again: the newest number is announced.
   void announce() { head_is_due_ = true; }
 
@@ -63,8 +80,8 @@ class StreamWriter {
   [[nodiscard]] std::uint64_t epoch() const { return log_.epoch(); }
   /// Number of the newest record.
   [[nodiscard]] std::uint64_t last() const { return log_.last(); }
-  /// What it takes on the disk.
-  [[nodiscard]] std::uint64_t log_bytes() const { return log_.size(); }
+  /// For people.
+  [[nodiscard]] StreamStatus status() const;
 
  private:
   struct Replay {
@@ -79,7 +96,7 @@ class StreamWriter {
   Message head(const std::string& topic, std::uint64_t confirmed) const;
   std::optional<Message> next_replay();
   std::optional<Message> next_live();
-  void discard();
+  [[nodiscard]] std::uint64_t least_confirmed() const;
   void load_readers(const std::vector<std::string>& declared);
   void save_readers();
 
@@ -96,6 +113,8 @@ class StreamWriter {
   std::uint64_t refused_ = 0;  // number of a record that is too large for the broker
   bool head_is_due_ = false;
   Clock::time_point appended_{};
+  bool readers_are_saved_ = true;
+  Clock::time_point saved_{};
 };
 
 }  // namespace rr::gateway

@@ -21,6 +21,8 @@ namespace {
 using std::chrono::milliseconds;
 using testing::Folder;
 
+constexpr std::int64_t today = 1'795'779'856'000'000'000;  // nanoseconds since 1970
+
 Bytes bytes(std::uint64_t number) {
   Bytes result(sizeof number);
   std::memcpy(result.data(), &number, sizeof number);
@@ -61,13 +63,14 @@ class Link {
   }
 
   void append(std::uint64_t number) {
-    writer_->append(RecordKind::data, "uint64", bytes(number), 5, now_);
+    writer_->append(RecordKind::data, "uint64", bytes(number), today, now_);
   }
 
   /// 10 ms of both ends.
   void step() {
     now_ += milliseconds(10);
     if (++steps_ % 100 == 0) writer_->tick(now_, 0);
+    writer_->flush(now_);
     for (int i = 0; i < 20 && is_up; ++i) {
       auto message = writer_->next();
       if (!message) break;
@@ -215,7 +218,37 @@ TEST(GatewayStreams, ConfirmedRecordsLeaveTheDisk) {
     link.step();
   }
   ASSERT_TRUE(link.settle());
-  EXPECT_LE(link.writer().log_bytes(), 2'100U);
+  for (int i = 0; i < 30; ++i) link.step();
+  EXPECT_LE(link.writer().status().bytes, 2'100U);
+}
+
+// Else a reader would miss what it has confirmed.
+TEST(GatewayStreams, NothingIsDiscardedBeforeItIsWrittenDownThatReadersHaveIt) {
+  const Folder folder;
+  const Folder copy;
+  const auto now = StreamWriter::Clock::now();
+  StreamWriter writer("topic", folder.path(), {.file_bytes = 100}, {"hub"});
+  for (std::uint64_t i = 1; i <= 20; ++i) writer.append(RecordKind::data, "", bytes(i), today, now);
+  writer.confirm("hub", writer.epoch(), 5);
+  writer.flush(now);
+  const std::uint64_t before = writer.status().bytes;
+  writer.confirm("hub", writer.epoch(), 20);
+  writer.flush(now + milliseconds(10));
+  EXPECT_EQ(writer.status().bytes, before);
+  // As a process that is killed leaves it.
+  std::filesystem::copy(folder.path(), copy.path(), std::filesystem::copy_options::recursive);
+  StreamWriter again("topic", copy.path(), {.file_bytes = 100}, {"hub"});
+  EXPECT_EQ(again.status().confirmed.at("hub"), 5U);
+  again.ask("hub", 0, 10, "reply");
+  std::optional<std::string> first;
+  while (auto message = again.next()) {
+    again.done(Published::taken);
+    if (message->topic == "reply" && !first) first = message->find("next");
+  }
+  EXPECT_EQ(first, "6");
+  writer.flush(now + milliseconds(300));
+  EXPECT_LT(writer.status().bytes, before);
+  EXPECT_EQ(writer.status().last, 20U);
 }
 
 TEST(GatewayStreams, WhatTheLimitsDropIsReportedAsAGap) {
@@ -241,7 +274,7 @@ TEST(GatewayStreams, ALostEndIsReportedWithoutAnotherRecord) {
   for (std::uint64_t i = 1; i <= 10; ++i) link.append(i);
   ASSERT_TRUE(link.settle());
   for (std::uint64_t i = 11; i <= 20; ++i) link.append(i);
-  link.writer().tick(StreamWriter::Clock::now(), 10'000'000'000);
+  link.writer().tick(StreamWriter::Clock::now(), today + 10'000'000'000);
   ASSERT_TRUE(link.settle());
   ASSERT_EQ(link.gaps.size(), 1U);
   EXPECT_EQ(link.gaps[0].first, 11U);

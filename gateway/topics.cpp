@@ -10,10 +10,12 @@
 namespace rr::gateway {
 namespace {
 
-constexpr std::array<std::pair<Verb, std::string_view>, 7> verbs{{{Verb::get, "get"},
+constexpr std::array<std::pair<Verb, std::string_view>, 9> verbs{{{Verb::get, "get"},
                                                                   {Verb::set, "set"},
                                                                   {Verb::call, "call"},
                                                                   {Verb::poke, "poke"},
+                                                                  {Verb::send, "send"},
+                                                                  {Verb::next, "next"},
                                                                   {Verb::object, "object"},
                                                                   {Verb::stream, "stream"},
                                                                   {Verb::confirm, "confirm"}}};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -40,14 +41,20 @@ bool is_level_name(std::string_view text);
 
 /// What a request asks for, and the level in its topic. Names are those of `verb_name`.
 enum class Verb : std::uint8_t {
-  get,      ///< the value of a property
-  set,      ///< a property gets a value
+  get,      ///< the value of a property, or a part of a memory
+  set,      ///< a property or a part of a memory gets a value
   call,     ///< a function
   poke,     ///< a value for a wire
+  send,     ///< packets for a pipe
+  next,     ///< a step of a generator, or its end
   object,   ///< the type of the object at a path
   stream,   ///< records of a stream from a number on
   confirm,  ///< a reader has a stream up to a number
 };
+/// All of them.
+inline constexpr std::array all_verbs{Verb::get,    Verb::set,    Verb::call,
+                                      Verb::poke,   Verb::send,   Verb::next,
+                                      Verb::object, Verb::stream, Verb::confirm};
 /// `get` for Verb::get.
 std::string_view verb_name(Verb verb);
 

@@ -102,6 +102,15 @@ void MemoryBroker::cut() {
   disconnect(lock, true);
 }
 
+void MemoryBroker::set_links(bool are_up) {
+  {
+    const std::scoped_lock lock(mutex_);
+    links_are_up_ = are_up;
+    changed_.notify_all();
+  }
+  if (!are_up) cut();
+}
+
 void MemoryBroker::disconnect(std::unique_lock<std::mutex>& lock, bool publishes_life) {
   const auto clients = clients_;
   for (const auto& client : clients) {
@@ -139,13 +148,15 @@ void MemoryBroker::route(const Message& message) {
   if (!is_up_ || message.topic.empty()) return;
   ++counts_[message.topic];
   if (message.retained) retained_[message.topic] = message;
+  Message live = message;
+  live.retained = false;
   for (const auto& client : clients_) {
     const bool fits = std::ranges::any_of(client->filters, [&](const std::string& filter) {
       return topic_matches(filter, message.topic);
     });
     if (!fits || !client->is_connected) continue;
-    enqueue(client, message);
-    if (happens(faults_.twice)) enqueue(client, message);
+    enqueue(client, live);
+    if (happens(faults_.twice)) enqueue(client, live);
   }
 }
 
@@ -159,7 +170,9 @@ void MemoryBroker::enqueue(const std::shared_ptr<Client>& client, Message messag
 void MemoryBroker::connect_all(std::unique_lock<std::mutex>& lock) {
   const auto clients = clients_;
   for (const auto& client : clients) {
-    if (!is_up_ || client->is_connected || client->is_stopped || client->is_called) continue;
+    if (!is_up_ || !links_are_up_ || client->is_connected || client->is_stopped ||
+        client->is_called)
+      continue;
     client->is_connected = true;
     client->is_called = true;
     for (const auto& [topic, message] : retained_) {

@@ -45,6 +45,8 @@ class MemoryBroker {
   void restart();
   /// Ends all connections as if their links had failed.
   void cut();
+  /// cut(), and no connection is made until links are up again.
+  void set_links(bool are_up);
   /// What is retained at a topic.
   [[nodiscard]] std::optional<Message> retained(const std::string& topic) const;
   /// Messages that were published to topics that fit the filter.
@@ -72,6 +74,7 @@ class MemoryBroker {
   std::mt19937 random_;
   Faults faults_;
   bool is_up_ = true;
+  bool links_are_up_ = true;
   bool ends_ = false;
   std::vector<std::shared_ptr<Client>> clients_;
   std::map<std::string, Message> retained_;

@@ -31,17 +31,22 @@ class Rig {
   }
 
   void start_export() {
-    const std::string text = "site = \"hall\"\nnode = \"robot\"\nstate = \"" + folder_.path() +
+    export_carrier_ = make_carrier_();
+    exporter_.emplace(export_file(folder_.path()), *export_carrier_, logger());
+  }
+  /// The export file, with its state in another folder.
+  [[nodiscard]] ExportFile export_file(const std::string& state) const {
+    const std::string text = "site = \"hall\"\nnode = \"robot\"\nstate = \"" + state +
                              "\"\n[broker]\nurl = \"mqtt://test\"\n[[service]]\nname = \"bench\"\n"
                              "url = \"" +
                              robot.url() +
                              "\"\nreaders = [\"hub\"]\nlogin = "
                              "\"gateway\"\npassword_file = \"login\"\n" +
                              rules;
-    export_carrier_ = make_carrier_();
-    exporter_.emplace(parse_export_file(folder_.path() + "/test.toml", text), *export_carrier_,
-                      logger());
+    return parse_export_file(folder_.path() + "/test.toml", text);
   }
+  /// Of the gateway that start_export() starts.
+  [[nodiscard]] const std::string& state_folder() const { return folder_.path(); }
   void stop_export() { exporter_.reset(); }
   void start_server() {
     server_node_ = std::make_unique<Node>();
@@ -75,12 +80,21 @@ class Rig {
     return client;
   }
 
+  /// The user of the gateway, for clients of the robot itself.
+  static ConnectOptions login() {
+    ConnectOptions options;
+    options.username = "gateway";
+    options.credentials["password"] = VarValue(std::string("open sesame"));
+    return options;
+  }
+
   BenchService robot;
   Kept<std::string> log;
   std::string rules =
       "[[service.allow]]\nmembers = [\"speed\", \"pose\", \"mode\", \"add\", \"describe\", "
       "\"fail\", "
-      "\"count\", \"whoami\", \"stopped\", \"samples\", \"force\", \"target\"]\n"
+      "\"count\", \"whoami\", \"stopped\", \"samples\", \"force\", \"target\", "
+      "\"count_to\", \"collect\", \"sums\", \"commands\", \"both\", \"trace\", \"grid\"]\n"
       "access = [\"read\", \"write\", \"call\"]\n"
       "[[service.allow]]\npath = \"tools[left%20hand]\"\nmembers = [\"*\"]\n"
       "access = [\"read\", \"write\", \"call\"]\n";

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+// A real broker with the access list that the program prints.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gateway/mqtt_carrier.hpp"
+#include "gateway/testing/listener.hpp"
+#include "gateway/testing/mosquitto_broker.hpp"
+#include "gateway/testing/rig.hpp"
+
+namespace rr::gateway {
+namespace {
+
+using testing::comes_true;
+using testing::Folder;
+using testing::Listener;
+using testing::MosquittoBroker;
+using testing::Program;
+using testing::Rig;
+using ::testing::UnorderedElementsAre;
+
+/// A connection of a user that subscribes to everything.
+struct Person {
+  Person(const MosquittoBroker& broker, const std::string& name)
+      : carrier(make_mqtt_carrier({broker.url(), name, "secret-" + name})) {
+    carrier->subscribe("#");
+    carrier->start(listener, {"life/" + name, {}});
+    EXPECT_TRUE(listener.connected.wait_for(1)) << name;
+  }
+  ~Person() { carrier->stop({}); }
+  [[nodiscard]] std::set<std::string> topics() const {
+    std::set<std::string> all;
+    for (const Message& message : listener.messages.items()) all.insert(message.topic);
+    return all;
+  }
+
+  Listener listener;
+  std::unique_ptr<Carrier> carrier;
+};
+
+class MosquittoAccess : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (MosquittoBroker::program().empty()) GTEST_SKIP() << "mosquitto is not installed";
+  }
+
+  /// `more` are lines of the export file of robot `r1`.
+  void start(const std::string& rules) {
+    write("r1.toml", "robot1", "r1", rules);
+    write("r2.toml", "robot2", "r2", rules);
+    std::string lines;
+    for (const char* name : {"robot1", "robot2", "hub", "alice", "eve", "admin"}) {
+      lines += std::string(name) + ":secret-" + name + "\n";
+    }
+    const std::string users = testing::make_passwords(folder, lines);
+    Program program({ROBDEF_GATEWAY, "--acl", "mosquitto", folder.path() + "/r1.toml",
+                     folder.path() + "/r2.toml"});
+    ASSERT_TRUE(testing::exited_with(program.wait(), 0));
+    std::ofstream list(folder.path() + "/acl");
+    for (const std::string& line : program.lines()) list << line << "\n";
+    // The test looks at everything.
+    list << "user admin\ntopic readwrite #\n";
+    list.close();
+    broker.emplace("allow_anonymous false\npassword_file " + users + "\nacl_file " + folder.path() +
+                   "/acl\n");
+  }
+  void write(const std::string& name, const std::string& user, const std::string& node,
+             const std::string& rules) {
+    std::ofstream(folder.path() + "/" + name)
+        << "site = \"hall\"\nnode = \"" << node << "\"\nstate = \"state\"\n[broker]\nurl = "
+        << "\"mqtt://hub\"\nuser = \"" << user << "\"\n[[service]]\nname = \"bench\"\nurl = \"x\"\n"
+        << rules;
+  }
+
+  Folder folder;
+  std::optional<MosquittoBroker> broker;
+};
+
+constexpr const char* some_rules =
+    "[[service.allow]]\nmembers = [\"speed\", \"force\"]\naccess = [\"read\"]\n"
+    "[[service.allow]]\npath = \"tools[*]\"\nmembers = [\"open\"]\naccess = [\"call\"]\n"
+    "users = [\"alice\"]\n";
+
+TEST_F(MosquittoAccess, LetsRequestsPassThatTheExportLists) {
+  start(some_rules);
+  Person admin(*broker, "admin");
+  const std::string r1 = "rr/hall/r1/bench/";
+  const std::vector<std::pair<std::string, std::string>> requests{
+      {"eve", r1 + "$get/eve/speed"},
+      {"eve", r1 + "$stream/eve/force"},
+      {"alice", r1 + "$call/alice/tools[left]/open"},
+      {"alice", r1 + "$object/alice/tools[left]"},
+      {"alice", r1 + "$get/alice/speed"},
+      {"robot1", r1 + "force"},
+      {"robot1", "rr/hall/r1/$life"},
+      {"robot1", "rr/$reply/eve/1"},
+      // Not these.
+      {"eve", r1 + "$get/alice/speed"},                  // the name of another user
+      {"eve", r1 + "$get/eve/secret"},                   // is in no rule
+      {"eve", r1 + "$set/eve/speed"},                    // is for reading
+      {"eve", r1 + "$call/eve/tools[left]/open"},        // is for alice
+      {"alice", r1 + "$call/alice/tools[left]/close"},   // is in no rule
+      {"alice", r1 + "$call/alice/tools[left]/a/open"},  // another object
+      {"eve", r1 + "force"},                             // a value of a robot
+      {"eve", "rr/hall/r1/$life"},
+      {"eve", "rr/$reply/alice/1"},
+      {"robot1", "rr/hall/r2/bench/force"},  // another robot
+      {"robot1", "rr/hall/r2/bench/$get/robot1/secret"},
+      {"robot2", "rr/hall/r1/$life"}};
+  constexpr std::size_t passing = 8;
+  std::map<std::string, std::unique_ptr<Person>> people;
+  for (const auto& [user, topic] : requests) {
+    auto& person = people[user];
+    if (!person) person = std::make_unique<Person>(*broker, user);
+    ASSERT_EQ(person->carrier->publish({topic, {}}), Published::taken);
+  }
+  // What was refused is acknowledged as well, with that.
+  std::size_t refused = 0;
+  EXPECT_TRUE(comes_true([&] {
+    refused = 0;
+    for (const auto& [user, person] : people) {
+      for (const auto& what : person->listener.refused.items()) {
+        refused += what.find("a message to") != std::string::npos ? 1 : 0;
+      }
+    }
+    return refused >= requests.size() - passing;
+  })) << refused;
+  ASSERT_TRUE(admin.listener.messages.wait_for(passing));
+  std::set<std::string> expected;
+  for (std::size_t i = 0; i < passing; ++i) expected.insert(requests[i].second);
+  EXPECT_EQ(admin.topics(), expected);
+  EXPECT_EQ(refused, requests.size() - passing);
+}
+
+TEST_F(MosquittoAccess, GivesUsersWhatTheExportLists) {
+  start(some_rules);
+  Person eve(*broker, "eve");
+  Person alice(*broker, "alice");
+  Person robot(*broker, "robot1");
+  Person admin(*broker, "admin");
+  for (const char* topic :
+       {"rr/hall/r1/bench/force", "rr/hall/r1/bench/secret", "rr/hall/r1/bench/tools[a]/open",
+        "rr/hall/r1/$life", "rr/hall/r2/bench/$def/x", "rr/$reply/eve/1", "rr/$reply/alice/1",
+        "rr/hall/r1/bench/$get/eve/speed", "rr/hall/r2/bench/$get/eve/speed", "other"}) {
+    ASSERT_EQ(admin.carrier->publish({topic, {}}), Published::taken);
+  }
+  ASSERT_TRUE(admin.listener.messages.wait_for(10));
+  // The last that each may have.
+  ASSERT_TRUE(comes_true([&] {
+    return eve.topics().size() >= 4 && alice.topics().size() >= 4 && robot.topics().size() >= 4;
+  }));
+  EXPECT_THAT(eve.topics(), UnorderedElementsAre("rr/hall/r1/bench/force", "rr/hall/r1/$life",
+                                                 "rr/hall/r2/bench/$def/x", "rr/$reply/eve/1"));
+  EXPECT_THAT(alice.topics(), UnorderedElementsAre("rr/hall/r1/bench/force", "rr/hall/r1/$life",
+                                                   "rr/hall/r2/bench/$def/x", "rr/$reply/alice/1"));
+  // As any user, and the requests to itself.
+  EXPECT_THAT(robot.topics(),
+              UnorderedElementsAre("rr/hall/r1/bench/force", "rr/hall/r1/$life",
+                                   "rr/hall/r2/bench/$def/x", "rr/hall/r1/bench/$get/eve/speed"));
+}
+
+TEST_F(MosquittoAccess, BothGatewaysWorkWithIt) {
+  start(
+      "[[service.allow]]\nmembers = [\"*\"]\naccess = [\"read\", \"write\", \"call\"]\n"
+      "[[service.allow]]\npath = \"tools[*]\"\nmembers = [\"width\"]\naccess = [\"read\"]\n");
+  int made = 0;
+  // The bench of the test is hall/robot; its list is that of r1 with another name.
+  std::ofstream list(folder.path() + "/acl", std::ios::app);
+  write("robot.toml", "robot1", "robot",
+        "[[service.allow]]\nmembers = [\"*\"]\naccess = [\"read\", \"write\", \"call\"]\n"
+        "[[service.allow]]\npath = \"tools[*]\"\nmembers = [\"width\"]\naccess = [\"read\"]\n");
+  Program program({ROBDEF_GATEWAY, "--acl", "mosquitto", folder.path() + "/robot.toml"});
+  ASSERT_TRUE(testing::exited_with(program.wait(), 0));
+  for (const std::string& line : program.lines()) list << line << "\n";
+  list.close();
+  broker->kill();
+  broker->start();
+  Rig rig([&] {
+    const std::string user = ++made == 1 ? "robot1" : "hub";
+    return make_mqtt_carrier({broker->url(), user, "secret-" + user});
+  });
+  const auto bench = rig.connect();
+  EXPECT_EQ(bench->call("count").as<int>(), 1);
+  // What the list does not allow is refused at once, by the broker.
+  try {
+    bench->object("tools", "left hand").call("open");
+    ADD_FAILURE() << "it was executed";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::permission_denied);
+    EXPECT_EQ(error.message(),
+              "the broker has refused a message to "
+              "`rr/hall/robot/bench/$call/hub/tools[left%20hand]/open`: Not authorized");
+  }
+  bench->set("speed", 0.25);
+  EXPECT_EQ(bench->get("speed").as<double>(), 0.25);
+  EXPECT_EQ(bench->object("tools", "left hand").get("width").as<double>(), 2.5);
+  auto samples = bench->pipe("samples").connect();
+  EXPECT_TRUE(comes_true([&] {
+    rig.robot.bench().pipe("samples").send(1);
+    return samples.try_receive().has_value();
+  }));
+}
+
+// A user that asks in the name of another one.
+TEST_F(MosquittoAccess, AForgedUserIsDenied) {
+  start(some_rules);
+  Person admin(*broker, "admin");
+  Person eve(*broker, "eve");
+  Message request{"rr/hall/r1/bench/$call/alice/tools[left]/open", {}};
+  request.correlation = Bytes(4);
+  request.response_topic = "rr/$reply/alice/1";
+  ASSERT_EQ(eve.carrier->publish(request), Published::taken);
+  ASSERT_TRUE(comes_true([&] {
+    const auto refused = eve.listener.refused.items();
+    return std::ranges::find(refused, "the broker has refused a message to `" + request.topic +
+                                          "`: Not authorized") != refused.end();
+  }));
+  Person alice(*broker, "alice");
+  ASSERT_EQ(alice.carrier->publish(request), Published::taken);
+  ASSERT_TRUE(admin.listener.messages.wait_for(1));
+  EXPECT_EQ(admin.listener.messages.size(), 1U);
+}
+
+}  // namespace
+}  // namespace rr::gateway

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "gateway/far_calls.hpp"
+#include "rr/dynamic.hpp"
+
+namespace rr::gateway {
+
+/// Packets that a client sends to a robot, from one endpoint: each once, in order. As many as wait
+/// travel in one request, and the next request goes when that one is answered. Any thread.
+class FarPackets : public std::enable_shared_from_this<FarPackets> {
+ public:
+  /// What may wait for the robot.
+  struct Limits {
+    std::size_t waiting_bytes = std::size_t{4} * 1024 * 1024;
+    std::size_t request_bytes = std::size_t{256} * 1024;
+    std::size_t request_packets = 256;
+  };
+  /// Called once when packets are lost, with the reason. The endpoint is of no use any more then.
+  using Failed = Function<void(const std::string&)>;
+
+  /// `pipe` is a request for the pipe, whose verb does not matter.
+  FarPackets(std::shared_ptr<FarCalls> calls, FarRequest pipe, dynamic::ValueType type,
+             const Limits& limits, Failed failed);
+
+  /// The next packet.
+  void add(const dynamic::Value& packet);
+  /// There will be no more: the robot's endpoint is closed when it has all of them.
+  void end();
+
+ private:
+  void send_next();
+  void take_answer(const std::exception_ptr& error);
+  void fail(const std::string& reason);
+  FarRequest next_request();
+
+  const std::shared_ptr<FarCalls> calls_;
+  const FarRequest pipe_;
+  const dynamic::ValueType type_;
+  const Limits limits_;
+  Failed failed_;
+  std::mutex mutex_;
+  std::deque<Bytes> waiting_;
+  std::size_t bytes_ = 0;
+  bool is_asking_ = false;
+  bool is_closing_ = false;  // the robot's endpoint
+  bool has_ended_ = false;   // nothing is added any more
+  bool has_failed_ = false;  // nor sent
+};
+
+}  // namespace rr::gateway
