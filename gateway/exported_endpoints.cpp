@@ -9,7 +9,7 @@ namespace rr::gateway {
 void ExportedEndpoints::add(const std::string& name, dynamic::PipeEndpoint end,
                             Clock::time_point now) {
   end.on_packet([](const dynamic::Value&) {}).detach();
-  const std::scoped_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   open_[name] = {std::move(end), now};
 }
 
@@ -17,7 +17,7 @@ bool ExportedEndpoints::send(const std::string& name, const dynamic::List& packe
                              Clock::time_point now) {
   dynamic::PipeEndpoint end;
   {
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto found = open_.find(name);
     if (found == open_.end()) return false;
     if (!found->second.end.is_open()) {
@@ -33,7 +33,7 @@ bool ExportedEndpoints::send(const std::string& name, const dynamic::List& packe
 
 void ExportedEndpoints::close(const std::string& name) {
   auto node = [&] {
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     return open_.extract(name);
   }();
   // Waits for the robot.
@@ -43,7 +43,7 @@ void ExportedEndpoints::close(const std::string& name) {
 void ExportedEndpoints::close_idle(Clock::time_point now, Clock::duration idle) {
   std::vector<dynamic::PipeEndpoint> ended;
   {
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     std::erase_if(open_, [&](auto& entry) {
       const bool is_idle = now - entry.second.used >= idle || !entry.second.end.is_open();
       if (is_idle) ended.push_back(std::move(entry.second.end));

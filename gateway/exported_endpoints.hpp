@@ -3,10 +3,10 @@
 
 #include <chrono>
 #include <map>
-#include <mutex>
 #include <string>
 
 #include "rr/dynamic.hpp"
+#include "rr/mutex.hpp"
 
 namespace rr::gateway {
 
@@ -30,8 +30,8 @@ class ExportedEndpoints {
     dynamic::PipeEndpoint end;
     Clock::time_point used;
   };
-  std::mutex mutex_;
-  std::map<std::string, Open> open_;
+  Mutex mutex_;
+  std::map<std::string, Open> open_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::gateway

@@ -11,7 +11,7 @@ namespace rr::gateway {
 std::string ExportedGenerators::add(const std::string& user, ExportedGenerator generator,
                                     Clock::time_point now) {
   std::string name = random_hex();
-  const std::scoped_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   open_[name] = {user, std::move(generator), now};
   return name;
 }
@@ -19,7 +19,7 @@ std::string ExportedGenerators::add(const std::string& user, ExportedGenerator g
 std::optional<ExportedGenerator> ExportedGenerators::find(const std::string& user,
                                                           const std::string& name,
                                                           Clock::time_point now) {
-  const std::scoped_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = open_.find(name);
   if (found == open_.end() || found->second.user != user) return std::nullopt;
   found->second.used = now;
@@ -27,9 +27,9 @@ std::optional<ExportedGenerator> ExportedGenerators::find(const std::string& use
 }
 
 void ExportedGenerators::remove(const std::string& name) {
-  // A handle says farewell to the service when it goes; not under the lock.
+  // A handle sends a request to the service when it is destroyed; not under the lock.
   const auto removed = [&] {
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     return open_.extract(name);
   }();
 }
@@ -37,7 +37,7 @@ void ExportedGenerators::remove(const std::string& name) {
 void ExportedGenerators::end_idle(Clock::time_point now, Clock::duration idle) {
   std::vector<dynamic::Generator> ended;
   {
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     std::erase_if(open_, [&](auto& entry) {
       if (now - entry.second.used < idle) return false;
       ended.push_back(std::move(entry.second.generator.generator));

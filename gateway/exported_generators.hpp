@@ -3,11 +3,11 @@
 
 #include <chrono>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <string>
 
 #include "rr/dynamic.hpp"
+#include "rr/mutex.hpp"
 
 namespace rr::gateway {
 
@@ -39,8 +39,8 @@ class ExportedGenerators {
     ExportedGenerator generator;
     Clock::time_point used;
   };
-  std::mutex mutex_;
-  std::map<std::string, Open> open_;
+  Mutex mutex_;
+  std::map<std::string, Open> open_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::gateway

@@ -25,7 +25,7 @@ void FarPackets::add(const dynamic::Value& packet) {
   Bytes bytes = encode_element(type_, packet);
   bool is_full = false;
   {
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     if (has_ended_ || has_failed_) return;
     bytes_ += bytes.size();
     waiting_.push_back(std::move(bytes));
@@ -41,7 +41,7 @@ void FarPackets::add(const dynamic::Value& packet) {
 
 void FarPackets::end() {
   {
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     if (std::exchange(has_ended_, true) || has_failed_) return;
     if (std::exchange(is_asking_, true)) return;
   }
@@ -71,7 +71,7 @@ FarRequest FarPackets::next_request() {
 void FarPackets::send_next() {
   FarRequest request;
   {
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     if (has_failed_) return;
     request = next_request();
   }
@@ -91,7 +91,7 @@ void FarPackets::take_answer(const std::exception_ptr& error) {
     return;
   }
   {
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     // The last request of all has neither packets nor successors.
     if (waiting_.empty() && (!has_ended_ || is_closing_)) {
       is_asking_ = false;
@@ -103,7 +103,7 @@ void FarPackets::take_answer(const std::exception_ptr& error) {
 
 void FarPackets::fail(const std::string& reason) {
   {
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     if (std::exchange(has_failed_, true)) return;
     waiting_.clear();
   }

@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <deque>
 #include <memory>
-#include <mutex>
 #include <string>
 
 #include "gateway/far_calls.hpp"
 #include "rr/dynamic.hpp"
+#include "rr/mutex.hpp"
 
 namespace rr::gateway {
 
@@ -38,20 +38,20 @@ class FarPackets : public std::enable_shared_from_this<FarPackets> {
   void send_next();
   void take_answer(const std::exception_ptr& error);
   void fail(const std::string& reason);
-  FarRequest next_request();
+  FarRequest next_request() RR_REQUIRES(mutex_);
 
   const std::shared_ptr<FarCalls> calls_;
   const FarRequest pipe_;
   const dynamic::ValueType type_;
   const Limits limits_;
-  Failed failed_;
-  std::mutex mutex_;
-  std::deque<Bytes> waiting_;
-  std::size_t bytes_ = 0;
-  bool is_asking_ = false;
-  bool is_closing_ = false;  // the robot's endpoint
-  bool has_ended_ = false;   // nothing is added any more
-  bool has_failed_ = false;  // nor sent
+  const Failed failed_;  // called by the one that sets has_failed_
+  Mutex mutex_;
+  std::deque<Bytes> waiting_ RR_GUARDED_BY(mutex_);
+  std::size_t bytes_ RR_GUARDED_BY(mutex_) = 0;
+  bool is_asking_ RR_GUARDED_BY(mutex_) = false;
+  bool is_closing_ RR_GUARDED_BY(mutex_) = false;  // the robot's endpoint
+  bool has_ended_ RR_GUARDED_BY(mutex_) = false;   // nothing is added any more
+  bool has_failed_ RR_GUARDED_BY(mutex_) = false;  // nor sent
 };
 
 }  // namespace rr::gateway

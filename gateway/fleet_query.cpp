@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/fleet_query.hpp"
 
-#include <condition_variable>
-#include <mutex>
 #include <string>
 
 #include "rr/error.hpp"
+#include "rr/mutex.hpp"
 
 namespace rr::gateway {
 namespace {
@@ -13,18 +12,18 @@ namespace {
 class FleetCollector final : public CarrierHandler {
  public:
   void on_message(Message message) override {
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     fleet_.take(message);
     ++count_;
     changed_.notify_all();
   }
   void on_connected() override {
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     is_connected_ = true;
     changed_.notify_all();
   }
   void on_disconnected(const std::string& reason) override {
-    const std::scoped_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     is_connected_ = false;
     reason_ = reason;
     has_failed_ = true;
@@ -34,27 +33,29 @@ class FleetCollector final : public CarrierHandler {
   void on_refused(const Refusal&) override {}
 
   Fleet wait(std::chrono::milliseconds limit, std::chrono::milliseconds quiet) {
-    std::unique_lock lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto end = std::chrono::steady_clock::now() + limit;
-    changed_.wait_until(lock, end, [this] { return is_connected_ || has_failed_; });
+    changed_.wait_until(mutex_, end,
+                        [this]() RR_REQUIRES(mutex_) { return is_connected_ || has_failed_; });
     if (!is_connected_) throw Error(ErrorCode::connection_error, reason_);
     // What is retained comes at once. A fleet that never falls silent has been seen by then.
     std::size_t before = 0;
     do {
       before = count_;
-      changed_.wait_for(lock, quiet, [&] { return count_ != before; });
+      changed_.wait_until(mutex_, std::chrono::steady_clock::now() + quiet,
+                          [&]() RR_REQUIRES(mutex_) { return count_ != before; });
     } while (count_ != before && std::chrono::steady_clock::now() < end);
     return fleet_;
   }
 
  private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  Fleet fleet_;
-  std::size_t count_ = 0;
-  bool is_connected_ = false;
-  bool has_failed_ = false;
-  std::string reason_ = "the broker does not answer";
+  Mutex mutex_;
+  Condition changed_;
+  Fleet fleet_ RR_GUARDED_BY(mutex_);
+  std::size_t count_ RR_GUARDED_BY(mutex_) = 0;
+  bool is_connected_ RR_GUARDED_BY(mutex_) = false;
+  bool has_failed_ RR_GUARDED_BY(mutex_) = false;
+  std::string reason_ RR_GUARDED_BY(mutex_) = "the broker does not answer";
 };
 
 }  // namespace
