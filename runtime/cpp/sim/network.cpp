@@ -10,7 +10,6 @@ namespace {
 
 // Above all descriptors of the system.
 constexpr int first_descriptor = 1'000'000;
-constexpr std::size_t largest_queue = 1'048'576;
 
 constexpr std::size_t most_datagrams = 200;
 

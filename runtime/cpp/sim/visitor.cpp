@@ -125,9 +125,12 @@ void Visitor::connect_streams() {
         return stress::answered(value);
       });
   subscriptions_.clear();
-  subscriptions_.push_back(bench->ticked().connect([streams](std::uint64_t number) {
+  // One that takes long keeps what comes after it waiting.
+  const milliseconds pause(!holds_ && random_.once_in(3) ? random_.below(60) : 0);
+  subscriptions_.push_back(bench->ticked().connect([streams, pause](std::uint64_t number) {
     expect_no_lock("an event");
     streams->ticks.take(number);
+    if (pause.count() != 0) std::this_thread::sleep_for(pause);
   }));
   attempt(
       "connect a pipe", [&] { echo_ = bench->echo().connect(); }, call_limit);
@@ -262,7 +265,7 @@ void Visitor::use_generator() {
 
 // One that nobody uses for a while is there still.
 void Visitor::keep_generator() {
-  if (!terms_.generators_stay || !random_.once_in(4)) return;
+  if (!terms_.generators_stay) return;
   attempt(
       "a generator that waits",
       [&] {
