@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <map>
@@ -28,6 +29,9 @@ constexpr int refused_from = 0x80;  // reason codes of MQTT 5
 constexpr auto farewell_time = std::chrono::seconds(2);
 constexpr int loop_time_ms = 100;
 
+constexpr const char* ended_while_tls_began =
+    "the broker has ended the connection while TLS began: perhaps it speaks no TLS, or wants a "
+    "certificate";
 constexpr std::array<BrokerScheme, 2> schemes{{{"mqtt", false, 1883}, {"mqtts", true, 8883}}};
 
 bool is_about_user(int code) {
@@ -161,7 +165,13 @@ class MqttCarrier final : public Carrier {
       if (error == 0 && ::getpeername(wanted.fd, reinterpret_cast<sockaddr*>(&peer), &size) == 0) {
         return true;
       }
-      reason_ = error != 0 ? std::strerror(error) : "no server at its port, or it speaks no TLS";
+      // A broker without TLS may end the connection before it is looked at.
+      const bool is_reset = error == ECONNRESET && place_.is_encrypted;
+      if (is_reset) {
+        reason_ = ended_while_tls_began;
+      } else {
+        reason_ = error != 0 ? std::strerror(error) : "no server at its port, or it speaks no TLS";
+      }
       return false;
     }
     return false;
@@ -171,7 +181,7 @@ class MqttCarrier final : public Carrier {
     if (tls_ && !tls_->trouble().empty()) return tls_->trouble();
     if (!tls_reason_.empty()) return tls_reason_;
     if (result == MOSQ_ERR_TLS && !is_accepted_) {
-      return "the broker has ended the connection while TLS began: perhaps it speaks no TLS";
+      return ended_while_tls_began;
     }
     return mosquitto_strerror(result);
   }
