@@ -195,7 +195,9 @@ void Visitor::settle_calls() {
 
 void Visitor::act() {
   const auto bench = client_.stub();
-  switch (random_.below(16)) {
+  switch (random_.below(17)) {
+    case 16:
+      return connect_while_released();
     case 14:
       return replace_part();
     case 15:
@@ -292,7 +294,8 @@ void Visitor::replace_part() {
         const auto bench = client_.stub();
         const auto first = bench->get_parts(terms_.own_part);
         const auto old_end = first->samples().connect();
-        const auto old_wire = first->level().connect();
+        auto old_wire = first->level().connect();
+        old_wire.close();
         bench->release(terms_.own_part);
         const auto second = bench->get_parts(terms_.own_part);
         auto end = second->samples().connect();
@@ -303,6 +306,36 @@ void Visitor::replace_part() {
           fault("the end of an object that was released ends those of the next one");
         }
         end.close();
+        wire.close();
+      },
+      8 * call_limit);
+}
+
+// A wire that is connected while its object is released belongs to the object that is there then.
+void Visitor::connect_while_released() {
+  attempt(
+      "a wire of an object that is released",
+      [&] {
+        const auto bench = client_.stub();
+        const auto part = bench->get_parts(terms_.own_part);
+        std::thread other([this, bench] {
+          Faults::spare_this_thread();
+          attempt(
+              "a release", [&] { bench->release(terms_.own_part); }, call_limit);
+        });
+        WireConnection<std::uint64_t> wire;
+        attempt(
+            "connect a wire", [&] { wire = part->level().connect(); }, call_limit);
+        other.join();
+        const std::uint64_t value = random_.next() | 1U;
+        bench->get_parts(terms_.own_part)->set_value(value);
+        std::this_thread::sleep_for(milliseconds(500));
+        if (!wire.is_open()) return;
+        const auto received = wire.try_in();
+        if (terms_.links_hold && longest_delay().count() == 0 &&
+            (!received || received->value != value)) {
+          fault("a wire is connected to an object that is gone");
+        }
         wire.close();
       },
       8 * call_limit);
@@ -344,12 +377,26 @@ void Visitor::be_asked() {
   }
 }
 
-// Two threads want an object whose getter asks this client first.
+// Two threads use an object that has to be found anew, whose getter asks this client first.
 void Visitor::reach_part_twice() {
   const auto index = static_cast<std::int32_t>(4 + random_.below(8));
-  const auto reach = [this, index, bench = client_.stub()] {
+  std::shared_ptr<test::stress::PartStub> part;
+  attempt(
+      "an object that asks back",
+      [&] {
+        part = client_.stub()->get_asking(index);
+        try {
+          client_.stub()->release_asking(index);
+        } catch (const Error& error) {
+          if (error.code() != ErrorCode::service_error) throw;  // another visitor was faster
+        }
+      },
+      3 * call_limit);
+  if (!part) return;
+  const auto reach = [this, part] {
     attempt(
-        "an object that asks back", [&] { bench->get_asking(index)->get_value(); }, 2 * call_limit);
+        "a member of an object that asks back", [&] { part->get_value(); },
+        terms_.links_hold ? milliseconds(2'000) : call_limit);
   };
   std::thread other([reach] {
     Faults::spare_this_thread();

@@ -49,6 +49,7 @@ class Visitor {
   void use_generator();
   void keep_generator();
   void replace_part();
+  void connect_while_released();
   void send_much();
   void be_asked();
   void reach_part_twice();

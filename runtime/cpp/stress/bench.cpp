@@ -167,9 +167,15 @@ void Bench::send_away() {
   }
 }
 
-void Bench::release(std::int32_t part) {
+void Bench::release(std::int32_t part) { release_object("parts[" + std::to_string(part) + "]"); }
+
+void Bench::release_asking(std::int32_t part) {
+  release_object("asking[" + std::to_string(part) + "]");
+}
+
+void Bench::release_object(const std::string& path) {
   if (ServiceContext* const context = context_) {
-    context->release_path(context->name() + ".parts[" + std::to_string(part) + "]");
+    context->release_path(context->name() + '.' + path);
   }
 }
 

@@ -88,6 +88,7 @@ class Bench final : public test::stress::BenchDefault {
   void rest(std::uint32_t duration) override;
   void send_away() override;
   void release(std::int32_t part) override;
+  void release_asking(std::int32_t part) override;
   rr::Sequence<std::uint64_t> count(std::uint64_t first, std::uint32_t steps) override;
   rr::Sequence<void, std::uint64_t> collect(std::uint64_t first) override;
   rr::Sequence<std::uint64_t, std::uint64_t> sum() override;
@@ -106,6 +107,7 @@ class Bench final : public test::stress::BenchDefault {
  private:
   struct Client;
   void serve_streams();
+  void release_object(const std::string& path);
   [[nodiscard]] std::shared_ptr<Client> client(std::uint32_t endpoint) const;
   void answer_later();
 
