@@ -20,8 +20,6 @@ struct Faults {
   std::size_t largest_window = 262'144;
   std::uint64_t lost_datagrams = 0;
   std::uint64_t doubled_datagrams = 0;
-  std::uint64_t refused_connections = 0;
-  std::uint64_t silent_connections = 0;  ///< nothing arrives, after some bytes
 
   /// Those of the run; none outside of one.
   static Faults& current();

@@ -105,13 +105,11 @@ Stream::Stream(Scheduler& run) : File(run) {
   const Faults& faults = Faults::current();
   window_ = faults.smallest_window +
             run.random().below(faults.largest_window - faults.smallest_window + 1);
-  if (run.random().once_in(faults.silent_connections)) silent_after_ = run.random().below(20'000);
 }
 
 void Stream::join(const std::shared_ptr<Stream>& first, const std::shared_ptr<Stream>& second) {
   first->peer_ = second;
   second->peer_ = first;
-  second->silent_after_ = SIZE_MAX;
 }
 
 std::size_t Stream::room() const {
@@ -152,9 +150,7 @@ std::ptrdiff_t Stream::send(std::span<const std::byte> bytes) {
   // Sockets take a part only when they are full.
   const std::size_t size = std::min(bytes.size(), room());
   if (size == 0 && !bytes.empty()) return -EAGAIN;
-  sent_ += size;
   under_way_ += size;
-  if (sent_ > silent_after_) fall_silent();
   if (is_silent_) return static_cast<std::ptrdiff_t>(size);
   for (std::size_t done = 0; done < size;) {
     std::size_t length = size - done;
@@ -381,13 +377,12 @@ int Network::connect(int descriptor, std::uint16_t port) {
   client->remote_port = port;
   client->begin();
   replace(descriptor, client);
-  const bool is_refused = run_.random().once_in(Faults::current().refused_connections);
   const auto delay = static_cast<Nanoseconds>(
       run_.random().below(static_cast<std::uint64_t>(Faults::current().longest_delay) + 1));
-  run_.at(run_.now() + delay, [this, client, is_refused] {
+  run_.at(run_.now() + delay, [this, client] {
     if (running != this) return;
     const auto place = listeners_.find({client->family, client->remote_port});
-    if (is_refused || place == listeners_.end()) return client->finish(ECONNREFUSED);
+    if (place == listeners_.end()) return client->finish(ECONNREFUSED);
     auto accepted = std::make_shared<Stream>(run_);
     accepted->family = client->family;
     accepted->local_port = client->remote_port;

@@ -138,8 +138,6 @@ class Stream final : public File {
   std::size_t under_way_ = 0;     // from here to the peer, not yet in its queue
   std::size_t window_ = 65'536;   // of what this end sends
   Nanoseconds last_arrival_ = 0;  // at the peer, of what this end sent
-  std::size_t silent_after_ = SIZE_MAX;
-  std::size_t sent_ = 0;
   int error_ = 0;
   bool is_connecting_ = false;
   bool is_silent_ = false;
