@@ -8,7 +8,7 @@
 
 namespace rr::sim {
 
-/// What goes wrong in a run, drawn from its seed. Numbers are "once in so many times"; 0: never.
+/// The faults of a run, drawn from its seed. A number N means once in N times; 0: never.
 struct Faults {
   std::uint64_t spurious_wake_ups = 0;  ///< of conditions
   std::uint64_t refused_threads = 0;

@@ -20,9 +20,9 @@ void ServiceInfos::check_open() const {
 
 void ServiceInfos::close() {
   {
-    const MutexLock lock(told_mutex_);
+    const MutexLock lock(mutex_);
     if (std::exchange(is_closed_, true)) return;
-    told_.clear();
+    notified_.clear();
     on_detected_.end(*notifier_);
     on_changed_.end(*notifier_);
     on_lost_.end(*notifier_);
@@ -31,56 +31,56 @@ void ServiceInfos::close() {
 }
 
 bool ServiceInfos::is_open() const {
-  const MutexLock lock(told_mutex_);
+  const MutexLock lock(mutex_);
   return !is_closed_;
 }
 
 std::vector<FoundService> ServiceInfos::services() const {
   std::vector<FoundService> result;
-  const MutexLock lock(told_mutex_);
-  for (const auto& [key, service] : told_) result.push_back(service);
+  const MutexLock lock(mutex_);
+  for (const auto& [key, service] : notified_) result.push_back(service);
   return result;
 }
 
 Subscription ServiceInfos::on_detected(Function<void(const FoundService&)> function) {
-  const MutexLock lock(told_mutex_);
+  const MutexLock lock(mutex_);
   check_open();
   const auto listener = on_detected_.add(std::move(function));
-  for (const auto& [key, service] : told_) {
+  for (const auto& [key, service] : notified_) {
     notifier_->add([listener, told = service] { listener->call(told); });
   }
   return Subscription(listener);
 }
 
 Subscription ServiceInfos::on_changed(Function<void(const FoundService&)> function) {
-  const MutexLock lock(told_mutex_);
+  const MutexLock lock(mutex_);
   check_open();
   return Subscription(on_changed_.add(std::move(function)));
 }
 
 Subscription ServiceInfos::on_lost(Function<void(const FoundService&)> function) {
-  const MutexLock lock(told_mutex_);
+  const MutexLock lock(mutex_);
   check_open();
   return Subscription(on_lost_.add(std::move(function)));
 }
 
 void ServiceInfos::came(const std::string& key, const FoundService& service) {
-  const MutexLock lock(told_mutex_);
+  const MutexLock lock(mutex_);
   if (is_closed_) return;
-  told_[key] = service;
+  notified_[key] = service;
   on_detected_.notify(*notifier_, service);
 }
 
 void ServiceInfos::changed(const std::string& key, const FoundService& service) {
-  const MutexLock lock(told_mutex_);
+  const MutexLock lock(mutex_);
   if (is_closed_) return;
-  told_[key] = service;
+  notified_[key] = service;
   on_changed_.notify(*notifier_, service);
 }
 
 void ServiceInfos::went(const std::string& key, const FoundService& service, bool /*is_silent*/) {
-  const MutexLock lock(told_mutex_);
-  if (told_.erase(key) != 0) on_lost_.notify(*notifier_, service);
+  const MutexLock lock(mutex_);
+  if (notified_.erase(key) != 0) on_lost_.notify(*notifier_, service);
 }
 
 }  // namespace rr::discovery

@@ -31,16 +31,16 @@ class ServiceInfos final : public MatchingServices {
   void changed(const std::string& key, const FoundService& service) override;
   void went(const std::string& key, const FoundService& service, bool is_silent) override;
   void watch_ended() override { close(); }
-  void check_open() const RR_REQUIRES(told_mutex_);
+  void check_open() const RR_REQUIRES(mutex_);
 
   const std::shared_ptr<ServiceWatch> watch_;
   const std::shared_ptr<subscription::Notifier> notifier_;
-  mutable Mutex told_mutex_;
-  bool is_closed_ RR_GUARDED_BY(told_mutex_) = false;
-  std::map<std::string, FoundService> told_ RR_GUARDED_BY(told_mutex_);  // those that were told of
-  subscription::Listeners<const FoundService&> on_detected_ RR_GUARDED_BY(told_mutex_);
-  subscription::Listeners<const FoundService&> on_changed_ RR_GUARDED_BY(told_mutex_);
-  subscription::Listeners<const FoundService&> on_lost_ RR_GUARDED_BY(told_mutex_);
+  mutable Mutex mutex_;
+  bool is_closed_ RR_GUARDED_BY(mutex_) = false;
+  std::map<std::string, FoundService> notified_ RR_GUARDED_BY(mutex_);  // listeners know these
+  subscription::Listeners<const FoundService&> on_detected_ RR_GUARDED_BY(mutex_);
+  subscription::Listeners<const FoundService&> on_changed_ RR_GUARDED_BY(mutex_);
+  subscription::Listeners<const FoundService&> on_lost_ RR_GUARDED_BY(mutex_);
 };
 
 }  // namespace rr::discovery
