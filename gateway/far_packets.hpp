@@ -20,7 +20,7 @@ class FarPackets : public std::enable_shared_from_this<FarPackets> {
   struct Limits {
     std::size_t waiting_bytes = std::size_t{4} * 1024 * 1024;
     std::size_t request_bytes = std::size_t{256} * 1024;
-    std::size_t request_packets = 256;
+    std::size_t request_packets = most_packets;
   };
   /// Called once when packets are lost, with the reason. The endpoint is of no use any more then.
   using Failed = Function<void(const std::string&)>;

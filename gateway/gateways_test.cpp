@@ -287,6 +287,24 @@ TEST_F(Gateways, AnswersGoNowhereElse) {
   carrier->stop({});
 }
 
+TEST_F(Gateways, ARequestHasALimitedNumberOfPackets) {
+  rig.connect();
+  testing::Listener handler;
+  const auto carrier = broker.carrier();
+  carrier->subscribe("rr/$reply/eve/1");
+  carrier->start(handler, {});
+  ASSERT_TRUE(handler.connected.wait_for(1));
+  Message request{"rr/hall/robot/bench/$send/eve/commands", Bytes(10'000)};
+  request.correlation = Bytes(4);
+  request.response_topic = "rr/$reply/eve/1";
+  request.properties = {{"count", "257"}};
+  ASSERT_EQ(carrier->publish(request), Published::taken);
+  ASSERT_TRUE(handler.messages.wait_for(1));
+  EXPECT_EQ(handler.messages.items()[0].find("error-message"),
+            "a request has at most 256 packets, this one says 257");
+  carrier->stop({});
+}
+
 TEST_F(Gateways, AnAnswerThatIsTooLargeForTheBrokerIsAnError) {
   const auto bench = rig.connect();
   broker.set_faults({.largest = 100});

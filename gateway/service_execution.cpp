@@ -146,8 +146,11 @@ void ServiceExporter::send_packets(const RequestTopic& request, const Message& m
     return;
   }
   const std::uint64_t count = number_property(message, "count").value_or(1);
-  if (count > message.payload.size()) {
-    throw Error(ErrorCode::invalid_argument, "the request has fewer packets than it says");
+  // Before anything is made for each of them.
+  if (count > most_packets) {
+    throw Error(ErrorCode::invalid_argument,
+                "a request has at most " + std::to_string(most_packets) +
+                    " packets, this one says " + std::to_string(count));
   }
   const std::vector<dynamic::ParameterDescription> parameters(
       count, {"value", object.member(request.member).type});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -55,6 +56,8 @@ enum class Verb : std::uint8_t {
 inline constexpr std::array all_verbs{Verb::get,    Verb::set,    Verb::call,
                                       Verb::poke,   Verb::send,   Verb::next,
                                       Verb::object, Verb::stream, Verb::confirm};
+/// Packets that one request to send some may have.
+inline constexpr std::size_t most_packets = 256;
 /// `get` for Verb::get.
 std::string_view verb_name(Verb verb);
 
