@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How requests that are allowed are executed. On threads of the node, with nothing that changes.
+#include <algorithm>
 #include <utility>
 
 #include "gateway/elements.hpp"
@@ -40,10 +41,26 @@ dynamic::Memory::Numbers numbers(const Message& message, const char* name) {
               std::string("`") + name + "` of the request is no list of numbers");
 }
 
+// The client makes room for as many items as are asked for, before the service has seen the
+// request.
+void check_items(const dynamic::Memory::Numbers& count) {
+  std::uint64_t items = 1;
+  for (const std::uint64_t one : count) {
+    // Both factors are small enough for their product.
+    items = std::min(one, most_items + 1) * items;
+    if (items > most_items) {
+      throw Error(ErrorCode::invalid_argument,
+                  "a request reads at most " + std::to_string(most_items) + " items of a memory");
+    }
+  }
+}
+
 void get_memory(const dynamic::Memory& memory, const dynamic::ValueType& type,
                 const Message& message, const Executed& done) {
   if (message.find("position")) {
-    memory.async_read(numbers(message, "position"), numbers(message, "count"), give(done, type));
+    const auto count = numbers(message, "count");
+    check_items(count);
+    memory.async_read(numbers(message, "position"), count, give(done, type));
   } else {
     done(nullptr, {"", {}, {{"dims", list_text(memory.dims())}}});
   }

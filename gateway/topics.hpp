@@ -58,6 +58,8 @@ inline constexpr std::array all_verbs{Verb::get,    Verb::set,    Verb::call,
                                       Verb::object, Verb::stream, Verb::confirm};
 /// Packets that one request to send some may have.
 inline constexpr std::size_t most_packets = 256;
+/// Items of a memory that one request may read; gateways ask for less at a time.
+inline constexpr std::uint64_t most_items = 1'048'576;
 /// `get` for Verb::get.
 std::string_view verb_name(Verb verb);
 
