@@ -141,6 +141,22 @@ TEST_F(MosquittoAccess, LetsRequestsPassThatTheExportLists) {
   EXPECT_EQ(refused, requests.size() - passing);
 }
 
+TEST_F(MosquittoAccess, ARefusalNamesTheTopicHoweverFastItIs) {
+  start(some_rules);
+  Person eve(*broker, "eve");
+  constexpr std::size_t count = 3000;
+  std::set<std::string> expected;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string topic = "secret/" + std::to_string(i);
+    ASSERT_TRUE(
+        comes_true([&] { return eve.carrier->publish({topic, {}}) == Published::taken; }));
+    expected.insert(Refusal{topic, "Not authorized"}.text());
+  }
+  ASSERT_TRUE(eve.listener.refused.wait_for(count));
+  const std::vector<std::string> refused = eve.listener.refused.items();
+  EXPECT_EQ(std::set<std::string>(refused.begin(), refused.end()), expected);
+}
+
 TEST_F(MosquittoAccess, GivesUsersWhatTheExportLists) {
   start(some_rules);
   Person eve(*broker, "eve");

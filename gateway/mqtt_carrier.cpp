@@ -100,14 +100,18 @@ class MqttCarrier final : public Carrier {
     // Before it is acknowledged, which the other thread may see at once.
     ++waiting_;
     int id = 0;
-    const int result = mosquitto_publish_v5(
-        client_.get(), &id, message.topic.c_str(), static_cast<int>(message.payload.size()),
-        message.payload.data(), qos, message.retained, properties.get());
-    if (result == MOSQ_ERR_SUCCESS) {
+    int result = 0;
+    {
+      // The acknowledgement waits until the topic is known. The library calls back with no lock
+      // that publishing takes.
       const MutexLock lock(topics_mutex_);
-      topics_[id] = message.topic;
-      return Published::taken;
+      result = mosquitto_publish_v5(client_.get(), &id, message.topic.c_str(),
+                                    static_cast<int>(message.payload.size()),
+                                    message.payload.data(), qos, message.retained,
+                                    properties.get());
+      if (result == MOSQ_ERR_SUCCESS) topics_[id] = message.topic;
     }
+    if (result == MOSQ_ERR_SUCCESS) return Published::taken;
     --waiting_;
     const bool is_large = result == MOSQ_ERR_PAYLOAD_SIZE || result == MOSQ_ERR_OVERSIZE_PACKET;
     return is_large ? Published::refused : Published::later;
@@ -290,8 +294,7 @@ class MqttCarrier final : public Carrier {
     if (self.subscribing_ > 0 && --self.subscribing_ == 0) self.become_connected();
   }
 
-  /// Where a message that is acknowledged went; empty when the acknowledgement was faster than the
-  /// publisher's thread.
+  /// Where a message that is acknowledged went.
   std::string take_topic(int id) {
     const MutexLock lock(topics_mutex_);
     const auto node = topics_.extract(id);
