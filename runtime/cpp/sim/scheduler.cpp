@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/sim/scheduler.hpp"
 
-#include <linux/futex.h>
-#include <sys/syscall.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <utility>
@@ -24,18 +20,6 @@ constexpr std::size_t most_notes = 200;
 __thread Scheduler* running = nullptr;
 __thread Scheduler::Thread* this_thread = nullptr;
 
-long system_futex(std::atomic<std::uint32_t>* word, int operation, std::uint32_t value) {
-  static constinit Real<long(long, ...)> call{"syscall"};
-  return call(SYS_futex, word, operation, value, nullptr, nullptr, 0);
-}
-
-void await_turn(Scheduler::Thread& thread) {
-  while (thread.turn.load(std::memory_order_acquire) == 0) {
-    system_futex(&thread.turn, FUTEX_WAIT_PRIVATE, 0);
-  }
-  thread.turn.store(0, std::memory_order_relaxed);
-}
-
 }  // namespace
 
 Scheduler* Scheduler::current() { return running; }
@@ -52,6 +36,7 @@ Scheduler::Scheduler(std::uint64_t seed, const Turns& turns)
     : end_key_(make_end_key()), random_(seed), turns_(turns) {
   auto first = std::make_unique<Thread>();
   first->system = pthread_self();
+  first->context.begin();
   first->rank = random_.next();
   ready_.push_back(first.get());
   this_thread = first.get();
@@ -210,23 +195,14 @@ Scheduler::Thread* Scheduler::choose() {
   });
 }
 
-void Scheduler::give(Thread& next) {
-  next.turn.store(1, std::memory_order_release);
-  system_futex(&next.turn, FUTEX_WAKE_PRIVATE, 1);
-}
-
-void Scheduler::hand_over(Thread& next) {
-  Thread& own = *this_thread;
-  give(next);
-  await_turn(own);
-}
+void Scheduler::hand_over(Thread& next) { this_thread->context.pass_to(next.context); }
 
 void* Scheduler::run(void* pointer) {
   auto& [scheduler, thread] = *static_cast<std::pair<Scheduler*, Thread*>*>(pointer);
   Scheduler* const its = scheduler;
   Thread* const own = thread;
   delete static_cast<std::pair<Scheduler*, Thread*>*>(pointer);
-  await_turn(*own);
+  own->context.await_first_turn();
   running = its;
   this_thread = own;
   pthread_setspecific(its->end_key_, own);
@@ -243,7 +219,7 @@ void Scheduler::leave(void* pointer) {
   Thread& next = scheduler.next_that_can_run();
   running = nullptr;
   this_thread = nullptr;
-  scheduler.give(next);
+  own->context.leave_to(next.context);
 }
 
 int Scheduler::start(pthread_t* system, const pthread_attr_t* attributes, void* (*function)(void*),

@@ -3,7 +3,6 @@
 
 #include <pthread.h>
 
-#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -12,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/cpp/sim/context.hpp"
 #include "runtime/cpp/sim/random.hpp"
 #include "runtime/cpp/sim/trace.hpp"
 
@@ -36,8 +36,8 @@ struct Turns {
 };
 
 /// Runs the threads of this process one at a time, on a clock of its own, in an order that follows
-/// from a seed. Threads are those of the system, since thread-local objects must be theirs; each
-/// waits until it is given the turn. What may block goes through wait(), what others may see
+/// from a seed. Each has a thread of the system, since thread-local objects must be its own, and
+/// waits until it is given the turn (Context). What may block goes through wait(), what others may see
 /// through point(). All members are called by the thread whose turn it is.
 class Scheduler {
  public:
@@ -45,7 +45,7 @@ class Scheduler {
   struct Thread {
     int number = 0;
     pthread_t system{};
-    std::atomic<std::uint32_t> turn{0};  ///< 1: may run
+    Context context;
     const char* waits_for = nullptr;     ///< a literal; null: can run
     const void* object = nullptr;        ///< what it waits for
     Nanoseconds deadline = never;
@@ -130,7 +130,6 @@ class Scheduler {
   void run_due();
   Thread* choose();
   void hand_over(Thread& next);
-  void give(Thread& next);
   Thread& next_that_can_run();
   void make_ready(Thread& thread);
 
