@@ -98,7 +98,7 @@ class Seeker {
 };
 
 std::unique_ptr<Host> new_host(stress::Lines& lines) {
-  auto host = std::make_unique<Host>(lines, 8, impatient_options());
+  auto host = std::make_unique<Host>(lines, 1, impatient_options());
   host->announce(network_of_run());
   return host;
 }

@@ -19,7 +19,7 @@ void run_inside(Scheduler& run) {
   Faults::spare_this_thread();
   stress::Lines lines;
   Random random(run.random().next());
-  Host host(lines, 8, impatient_options());
+  Host host(lines, 1, impatient_options());
   const Producer producer(host.bench(), random.next(), milliseconds(200));
   const std::string url = host.listen_inside();
   {

@@ -46,7 +46,7 @@ class Place {
 
  private:
   void begin(std::uint16_t port) {
-    host_ = std::make_unique<Host>(lines_, 8, options_, port);
+    host_ = std::make_unique<Host>(lines_, 1, options_, port);
     producer_ = std::make_unique<Producer>(host_->bench(), ++seed_, milliseconds(500));
   }
   void end() {

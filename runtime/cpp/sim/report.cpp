@@ -2,10 +2,12 @@
 // What a person reads when a run has failed.
 #include <cxxabi.h>
 #include <dlfcn.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -85,18 +87,27 @@ std::string function_at(const void* address) {
   return names.empty() ? "?" : names.begin()->second;
 }
 
+Trace::Trace()
+    : steps_(static_cast<Step*>(::mmap(nullptr, most_kept * sizeof(Step), PROT_READ | PROT_WRITE,
+                                       MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0))),
+      kept_(std::bit_ceil(std::clamp(steps_to_print(), std::size_t{1}, most_kept))) {
+  if (steps_ == MAP_FAILED) std::abort();
+}
+
+Trace::~Trace() { ::munmap(steps_, most_kept * sizeof(Step)); }
+
 void Trace::print(std::FILE* file, std::size_t most) const {
   // Objects have numbers here: addresses say nothing.
   std::map<const void*, std::size_t> names;
-  const std::uint64_t kept = std::min<std::uint64_t>({count_, steps_.size(), most});
+  const std::uint64_t kept = std::min<std::uint64_t>({count_, kept_, most});
   std::set<const void*> callers;
   for (std::uint64_t i = count_ - kept; i < count_; ++i) {
-    callers.insert(steps_[i % steps_.size()].caller);
+    callers.insert(steps_[i & (kept_ - 1)].caller);
   }
   callers.erase(nullptr);
   const auto functions = names_of(callers);
   for (std::uint64_t i = count_ - kept; i < count_; ++i) {
-    const Step& step = steps_[i % steps_.size()];
+    const Step& step = steps_[i & (kept_ - 1)];
     std::string object;
     if (step.object != nullptr) {
       object = " #" + std::to_string(names.try_emplace(step.object, names.size()).first->second);

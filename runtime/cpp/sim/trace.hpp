@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -21,8 +20,15 @@ class Trace {
     const void* caller = nullptr;  ///< an address in the function that did it
   };
 
+  /// Keeps as many steps as a report prints. They have memory of their own, which is always as large:
+  /// a run's other memory is where it is however many are printed.
+  Trace();
+  ~Trace();
+  Trace(const Trace&) = delete;
+  Trace& operator=(const Trace&) = delete;
+
   void add(const Step& step) {
-    steps_[count_++ % steps_.size()] = step;
+    steps_[count_++ & (kept_ - 1)] = step;
     hash_ = (hash_ ^ static_cast<std::uint64_t>(step.time) ^
              (static_cast<std::uint64_t>(step.thread) << 48U)) *
             0x100000001b3U;
@@ -34,7 +40,10 @@ class Trace {
   void print(std::FILE* file, std::size_t most) const;
 
  private:
-  std::array<Step, 65'536> steps_{};
+  static constexpr std::size_t most_kept = 65'536;
+
+  Step* const steps_;
+  const std::size_t kept_;  // a power of two
   std::uint64_t count_ = 0;
   std::uint64_t hash_ = 0xcbf29ce484222325U;
 };
