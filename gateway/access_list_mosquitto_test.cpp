@@ -148,8 +148,7 @@ TEST_F(MosquittoAccess, ARefusalNamesTheTopicHoweverFastItIs) {
   std::set<std::string> expected;
   for (std::size_t i = 0; i < count; ++i) {
     const std::string topic = "secret/" + std::to_string(i);
-    ASSERT_TRUE(
-        comes_true([&] { return eve.carrier->publish({topic, {}}) == Published::taken; }));
+    ASSERT_TRUE(comes_true([&] { return eve.carrier->publish({topic, {}}) == Published::taken; }));
     expected.insert(Refusal{topic, "Not authorized"}.text());
   }
   ASSERT_TRUE(eve.listener.refused.wait_for(count));

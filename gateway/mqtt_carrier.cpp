@@ -105,10 +105,9 @@ class MqttCarrier final : public Carrier {
       // The acknowledgement waits until the topic is known. The library calls back with no lock
       // that publishing takes.
       const MutexLock lock(topics_mutex_);
-      result = mosquitto_publish_v5(client_.get(), &id, message.topic.c_str(),
-                                    static_cast<int>(message.payload.size()),
-                                    message.payload.data(), qos, message.retained,
-                                    properties.get());
+      result = mosquitto_publish_v5(
+          client_.get(), &id, message.topic.c_str(), static_cast<int>(message.payload.size()),
+          message.payload.data(), qos, message.retained, properties.get());
       if (result == MOSQ_ERR_SUCCESS) topics_[id] = message.topic;
     }
     if (result == MOSQ_ERR_SUCCESS) return Published::taken;

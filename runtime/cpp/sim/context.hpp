@@ -25,9 +25,11 @@ class Context {
   void begin();
   /// Of the calling thread, which is new: returns when it is given the turn.
   void await_first_turn();
-  /// Gives the turn to `next`; returns when the calling thread, whose context this is, has it again.
+  /// Gives the turn to `next`; returns when the calling thread, whose context this is, has it
+  /// again.
   void pass_to(Context& next);
-  /// The same, for the last time: returns at once, in the calling thread's own thread of the system.
+  /// The same, for the last time: returns at once, in the calling thread's own thread of the
+  /// system.
   void leave_to(Context& next);
 
  private:

@@ -37,8 +37,8 @@ struct Turns {
 
 /// Runs the threads of this process one at a time, on a clock of its own, in an order that follows
 /// from a seed. Each has a thread of the system, since thread-local objects must be its own, and
-/// waits until it is given the turn (Context). What may block goes through wait(), what others may see
-/// through point(). All members are called by the thread whose turn it is.
+/// waits until it is given the turn (Context). What may block goes through wait(), what others may
+/// see through point(). All members are called by the thread whose turn it is.
 class Scheduler {
  public:
   /// One simulated thread.
@@ -46,8 +46,8 @@ class Scheduler {
     int number = 0;
     pthread_t system{};
     Context context;
-    const char* waits_for = nullptr;     ///< a literal; null: can run
-    const void* object = nullptr;        ///< what it waits for
+    const char* waits_for = nullptr;  ///< a literal; null: can run
+    const void* object = nullptr;     ///< what it waits for
     Nanoseconds deadline = never;
     bool is_timed_out = false;
     bool has_ended = false;

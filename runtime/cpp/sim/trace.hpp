@@ -20,8 +20,8 @@ class Trace {
     const void* caller = nullptr;  ///< an address in the function that did it
   };
 
-  /// Keeps as many steps as a report prints. They have memory of their own, which is always as large:
-  /// a run's other memory is where it is however many are printed.
+  /// Keeps as many steps as a report prints. They have memory of their own, which is always as
+  /// large: a run's other memory is where it is however many are printed.
   Trace();
   ~Trace();
   Trace(const Trace&) = delete;
