@@ -6,12 +6,13 @@
 #include <utility>
 
 #include "runtime/cpp/src/channel/time.hpp"
+#include "runtime/cpp/src/platform/thread_object.hpp"
 
 namespace rr::channel {
 namespace {
 
-// The scratch that a thread keeps; nested leases make others for as long as they last.
-thread_local std::unique_ptr<Scratch> unused;  // NOLINT
+// What a thread keeps; nested leases make other scratches for as long as they last.
+using Spare = std::unique_ptr<Scratch>;
 
 constexpr Milliseconds pause_without_memory{10};
 
@@ -27,18 +28,19 @@ std::unique_ptr<Scratch> make_scratch() {
 }  // namespace
 
 [[gnu::hot]] ScratchLease::ScratchLease() {
-  scratch_ = std::move(unused);
+  if (Spare* const spare = platform::thread_object<Spare>()) scratch_ = std::move(*spare);
   if (!scratch_) scratch_ = make_scratch();
 }
 
 [[gnu::hot]] ScratchLease::~ScratchLease() {
   scratch_->waiting.clear();
-  unused = std::move(scratch_);
+  if (Spare* const spare = platform::thread_object<Spare>()) *spare = std::move(scratch_);
 }
 
 [[gnu::hot]] Writer& thread_writer() {
-  thread_local Writer writer;
-  return writer;
+  Writer* const writer = platform::thread_object<Writer>();
+  if (writer == nullptr) throw std::bad_alloc();
+  return *writer;
 }
 
 }  // namespace rr::channel

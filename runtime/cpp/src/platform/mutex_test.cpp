@@ -12,8 +12,7 @@ namespace {
 
 using std::chrono::steady_clock;
 
-// Global ones need no constructor at run time.
-constinit Mutex global_mutex;
+Mutex global_mutex;
 static_assert(sizeof(Mutex) == sizeof(std::mutex));
 static_assert(sizeof(Condition) == sizeof(std::condition_variable));
 

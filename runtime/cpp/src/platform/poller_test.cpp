@@ -4,13 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "runtime/cpp/src/platform/sockets.hpp"
@@ -150,6 +153,93 @@ TEST_F(PollerTest, ReportsAllOfManyThatAreReady) {
     for (std::size_t i = 0; i < found; ++i) ++seen[events[i].key];
   }
   EXPECT_EQ(seen.size(), count);
+}
+
+// A server that only its poller wakes: it accepts, and answers each message with the same bytes.
+class Echo {
+ public:
+  Echo() {
+    std::error_code error;
+    listener_ = listen_at(address_of(parse_ip("127.0.0.1").value(), 0), error);
+    EXPECT_FALSE(error);
+    poller_.add(listener_.get(), ready::input, this);
+    thread_ = std::thread([this] { serve(); });
+  }
+  ~Echo() {
+    is_over_ = true;
+    poller_.wake();
+    thread_.join();
+  }
+  [[nodiscard]] Address address() const { return local_address(listener_.get()); }
+
+ private:
+  void serve() {
+    std::array<Poller::Event, Poller::most_events> events;
+    while (!is_over_) {
+      const std::size_t count = poller_.wait(events, true);
+      for (const Poller::Event& event : std::span(events).first(count)) {
+        if (event.key == this) accept_all();
+        if (event.key != this && event.key != nullptr) answer(*static_cast<Descriptor*>(event.key));
+      }
+    }
+  }
+  void accept_all() {
+    std::error_code error;
+    while (Descriptor accepted = accept_one(listener_.get(), error)) {
+      auto kept = std::make_unique<Descriptor>(std::move(accepted));
+      poller_.add(kept->get(), ready::input | ready::closing, kept.get());
+      accepted_.push_back(std::move(kept));
+    }
+  }
+  void answer(Descriptor& socket) {
+    std::array<std::byte, 100> room{};
+    std::ptrdiff_t size = 0;
+    while ((size = receive(socket.get(), room, Wait::none)) > 0) {
+      send(socket.get(), std::span(room).first(static_cast<std::size_t>(size)));
+    }
+    if (size != nothing_now) {
+      poller_.remove(socket.get());
+      std::erase_if(accepted_, [&](const auto& each) { return each.get() == &socket; });
+    }
+  }
+
+  Poller poller_;
+  Descriptor listener_;
+  std::vector<std::unique_ptr<Descriptor>> accepted_;
+  std::atomic<bool> is_over_{false};
+  std::thread thread_;
+};
+
+bool is_answered(const Address& address) {
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  Descriptor socket;
+  std::error_code error;
+  if (begin_connect(address, socket, error) == Connecting::failed) return false;
+  if (!wait_for(socket.get(), ready::room, limit) || connect_result(socket.get())) return false;
+  std::array<std::byte, 4> bytes{};
+  for (int i = 0; i < 3; ++i) {
+    if (send(socket.get(), bytes) != 4) return false;
+    for (std::size_t received = 0; received < bytes.size();) {
+      if (!wait_for(socket.get(), ready::input, limit)) return false;
+      const std::ptrdiff_t size = receive(socket.get(), bytes, Wait::none);
+      if (size <= 0 && size != nothing_now) return false;
+      if (size > 0) received += static_cast<std::size_t>(size);
+    }
+  }
+  return true;
+}
+
+TEST(PollerOfAServer, MissesNoneOfManyConnections) {
+  const Echo echo;
+  std::atomic<int> missed = 0;
+  std::vector<std::thread> clients;
+  for (int i = 0; i < 4; ++i) {
+    clients.emplace_back([&] {
+      for (int round = 0; round < 200; ++round) missed += is_answered(echo.address()) ? 0 : 1;
+    });
+  }
+  for (std::thread& client : clients) client.join();
+  EXPECT_EQ(missed, 0);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "rr/type.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
+#include "runtime/cpp/src/platform/thread_object.hpp"
 #include "runtime/cpp/src/service/pipes.hpp"
 #include "runtime/cpp/src/service/places.hpp"
 
@@ -31,8 +33,9 @@ class Encoded final : public PipeEnd::State::Written {
  private:
   // Short ones stay in a writer of the thread: nothing else is written there before they are sent.
   Form encode(MessageVersion version) const {
-    thread_local std::array<Writer, 2> writers;
-    Writer& writer = writers[version == MessageVersion::v2 ? 0 : 1];
+    auto* const writers = platform::thread_object<std::array<Writer, 2>>();
+    if (writers == nullptr) throw std::bad_alloc();
+    Writer& writer = (*writers)[version == MessageVersion::v2 ? 0 : 1];
     writer.reset(version);
     member_.type->write(writer, "packet", value_);
     if (writer.failed()) throw endpoint::latched(writer);

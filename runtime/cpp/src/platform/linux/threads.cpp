@@ -9,6 +9,9 @@
 #include <unistd.h>
 
 #include <cstdint>
+#include <utility>
+
+#include "runtime/cpp/src/platform/thread_object.hpp"
 
 namespace rr::platform {
 namespace {
@@ -24,6 +27,23 @@ struct SchedulingAttributes {
   std::uint64_t deadline = 0;
   std::uint64_t period = 0;
 };
+
+// Links of the calling thread.
+struct Ends {
+  ThreadEnd* first = nullptr;
+
+  constexpr Ends() = default;
+  ~Ends() {
+    // One that ends may add others.
+    while (first != nullptr) {
+      ThreadEnd* const link = std::exchange(first, first->next);
+      link->end(*link);
+    }
+  }
+  Ends(const Ends&) = delete;
+  Ends& operator=(const Ends&) = delete;
+};
+constinit thread_local Ends ends;
 
 }  // namespace
 
@@ -52,5 +72,7 @@ void leave_signals_to_others() {
   sigfillset(&signals);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 }
+
+void at_thread_end(ThreadEnd& link) noexcept { link.next = std::exchange(ends.first, &link); }
 
 }  // namespace rr::platform

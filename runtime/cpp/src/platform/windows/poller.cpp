@@ -17,6 +17,10 @@
 namespace rr::platform {
 namespace {
 
+// In Wine 8 an accept that finds nothing does not ask for the next connection to be recorded, so
+// listening sockets are looked at this often as well.
+constexpr DWORD look_period_ms = 200;
+
 long interest_of(std::uint32_t events) {
   long interest = FD_CLOSE;
   if ((events & ready::input) != 0) interest |= FD_READ | FD_ACCEPT;
@@ -44,6 +48,14 @@ std::uint32_t present_at(int socket, std::uint32_t wanted) {
   return events;
 }
 
+bool is_listening(int socket) {
+  BOOL result = FALSE;
+  int size = sizeof result;
+  getsockopt(static_cast<SOCKET>(socket), SOL_SOCKET, SO_ACCEPTCONN,
+             reinterpret_cast<char*>(&result), &size);
+  return result != FALSE;
+}
+
 }  // namespace
 
 struct Poller::System {
@@ -51,10 +63,12 @@ struct Poller::System {
     std::uint32_t wanted = 0;
     std::uint32_t pending = 0;  // to be reported, whatever is recorded
     void* key = nullptr;
+    bool is_listening = false;
   };
 
   void watch(int socket, std::uint32_t events, void* key, bool is_new);
   std::size_t collect(std::span<Event> events);
+  void await_event();
 
   const HANDLE event = CreateEventW(nullptr, FALSE, FALSE, nullptr);
   Mutex mutex;
@@ -75,7 +89,7 @@ void Poller::System::watch(int socket, std::uint32_t events, void* key, bool is_
   if (WSAEventSelect(static_cast<SOCKET>(socket), event, interest_of(events)) != 0) {
     throw std::system_error(last_socket_error(), "watching a socket");
   }
-  sockets[socket] = {events, present_at(socket, events), key};
+  sockets[socket] = {events, present_at(socket, events), key, is_listening(socket)};
   SetEvent(event);
 }
 
@@ -104,6 +118,20 @@ std::size_t Poller::System::collect(std::span<Event> events) {
   return count;
 }
 
+void Poller::System::await_event() {
+  const auto listens = [](const auto& each) { return each.second.is_listening; };
+  DWORD limit = INFINITE;
+  {
+    const MutexLock lock(mutex);
+    if (std::ranges::any_of(sockets, listens)) limit = look_period_ms;
+  }
+  if (WaitForSingleObject(event, limit) != WAIT_TIMEOUT) return;
+  const MutexLock lock(mutex);
+  for (auto& [socket, watched] : sockets) {
+    if (watched.is_listening) watched.pending |= present_at(socket, watched.wanted);
+  }
+}
+
 Poller::Poller() : system_(std::make_unique<System>()) {
   if (system_->event == nullptr) throw std::system_error(last_system_error(), "CreateEvent");
 }
@@ -129,7 +157,7 @@ std::size_t Poller::wait(std::span<Event> events, bool may_wait) {
   while (true) {
     const std::size_t count = system_->collect(events);
     if (count != 0 || !may_wait) return count;
-    WaitForSingleObject(system_->event, INFINITE);
+    system_->await_event();
   }
 }
 
