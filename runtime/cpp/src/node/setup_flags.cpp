@@ -59,6 +59,26 @@ bool take_level(SetupOptions& options, const std::string& value) {
   return std::find(levels.begin(), levels.end(), level) != levels.end();
 }
 
+bool take_format(SetupOptions& options, const std::string& value) {
+  options.log_format = value;
+  return value == "text" || value == "logfmt";
+}
+
+bool take_number(std::uint64_t& to, const std::string& value) {
+  const char* const end = value.data() + value.size();
+  const auto [stop, error] = std::from_chars(value.data(), end, to);
+  return !value.empty() && error == std::errc() && stop == end;
+}
+
+bool take_file_size(SetupOptions& options, const std::string& value) {
+  return take_number(options.log_file_size, value) && options.log_file_size != 0;
+}
+
+bool take_file_count(SetupOptions& options, const std::string& value) {
+  constexpr std::uint64_t most = 1000;  // each is renamed when one is full
+  return take_number(options.log_file_count, value) && options.log_file_count <= most;
+}
+
 std::optional<bool> truth_of(const std::string& value) {
   if (value == "true" || value == "1") return true;
   if (value == "false" || value == "0") return false;
@@ -107,6 +127,13 @@ const std::array flags = {
     Flag{"nodename", &take_name},
     Flag{"tcp-port", &take_port},
     Flag{"log-level", &take_level},
+    Flag{"log-format", &take_format},
+    Flag{"log-file", &O::log_file},
+    Flag{"log-file-size", &take_file_size},
+    Flag{"log-file-count", &take_file_count},
+    Flag{"metrics", &O::metrics},
+    Flag{"metrics-from", &O::metrics_from},
+    Flag{"metrics-host", &O::metrics_host},
     Flag{"local-tap-enable", &O::local_tap_enable},
     Flag{"local-tap-name", &O::local_tap_name},
     Flag{"jumbo-message", &O::jumbo_message},

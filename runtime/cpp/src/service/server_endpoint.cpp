@@ -254,7 +254,7 @@ void ServerEndpoint::answer_late(const LateAnswer& late, const Error& error) {
   Writer& writer = channel::thread_writer();
   writer.reset(late.batch ? late.batch->version() : connection_->version());
   endpoint::write_error_answer(writer, question_of(late), error);
-  finish_late(late, writer);
+  finish_late(late, writer, error.code());
 }
 
 void ServerEndpoint::answer_late_text(const LateAnswer& late, std::string_view text) {
@@ -265,7 +265,8 @@ void ServerEndpoint::answer_late_text(const LateAnswer& late, std::string_view t
   finish_late(late, writer);
 }
 
-void ServerEndpoint::finish_late(const LateAnswer& late, Writer& writer) {
+void ServerEndpoint::finish_late(const LateAnswer& late, Writer& writer, ErrorCode code) {
+  count(late.request_type, late.begun, code);
   const Entry request = question_of(late);
   const auto send = [&] {
     if (late.batch) {

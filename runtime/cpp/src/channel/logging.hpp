@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <utility>
+
+#include "rr/options.hpp"
+
+namespace rr::channel {
+
+class Connection;
+
+/// What the calling thread works for: lines of the log say so. Costs two words where it begins and
+/// ends, and nothing else until something is logged.
+class LogScope {
+ public:
+  /// `connection` and what it belongs to outlive this.
+  LogScope(const Connection& connection, std::uint32_t session)
+      : connection_before_(std::exchange(current_connection, &connection)),
+        session_before_(std::exchange(current_session, session)) {}
+  ~LogScope() {
+    current_connection = connection_before_;
+    current_session = session_before_;
+  }
+  LogScope(const LogScope&) = delete;
+  LogScope& operator=(const LogScope&) = delete;
+
+ private:
+  friend void log(const NodeOptions& options, LogLevel level, std::string_view text,
+                  std::string_view peer);
+
+  static constinit thread_local const Connection* current_connection;
+  static constinit thread_local std::uint32_t current_session;
+
+  const Connection* const connection_before_;
+  const std::uint32_t session_before_;
+};
+
+/// Whether anybody takes the lines of a node.
+inline bool has_log(const NodeOptions& options) {
+  return static_cast<bool>(options.log) || static_cast<bool>(options.log_record);
+}
+
+/// Hands a line to whoever the options name, printable and of bounded length. `peer`: the address
+/// of whom it is about, where no LogScope says it. Throws nothing.
+void log(const NodeOptions& options, LogLevel level, std::string_view text,
+         std::string_view peer = {});
+
+}  // namespace rr::channel
