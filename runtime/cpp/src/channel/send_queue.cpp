@@ -60,6 +60,10 @@ SendQueue::Sent SendQueue::send(Writer& message, const How& how) {
   } else {
     mark = take_gathered_and_tell(message);
   }
+  // Before it leaves: whoever has it finds it counted.
+  note_sent(message.size());
+  if (how.newest != nullptr) wire_values_.add(1);
+  if (how.is_packet) packets_.add(1);
   const bool overtakes = how.priority == Priority::urgent && !outbox_.empty();
   if (overtakes) outbox_.add_urgent(message);
   const std::span<const Piece> rest = overtakes ? std::span<const Piece>() : message.pieces();
@@ -67,9 +71,6 @@ SendQueue::Sent SendQueue::send(Writer& message, const How& how) {
   if (!is_unsent) sent = outbox_.send(terms_.socket, rest, carrier_);
   last_sent_.store(how.now, std::memory_order_relaxed);
   if (sent < 0) return false;
-  note_sent(message.size());
-  if (how.newest != nullptr) wire_values_.add(1);
-  if (how.is_packet) packets_.add(1);
   const bool is_left = !overtakes && sent != static_cast<std::ptrdiff_t>(message.size());
   if (is_left) queue(message, static_cast<std::size_t>(sent), how, mark);
   has_rest = is_left || (overtakes && !outbox_.empty()) || carrier_unsent() != 0;
