@@ -339,6 +339,7 @@ std::optional<std::string> missing(const Options& options) {
     case Command::set:
     case Command::call:
     case Command::watch:
+    case Command::top:
     case Command::connect:
     case Command::complete:
       return live::missing(options);
@@ -368,6 +369,7 @@ std::optional<ExitStatus> run_command(const Options& options, std::ostream& out,
     case Command::set:
     case Command::call:
     case Command::watch:
+    case Command::top:
     case Command::connect:
     case Command::complete:
       return run_live(options, out, err);
