@@ -17,8 +17,8 @@
 namespace RR_VISIBLE rr {
 
 /// What a set-up starts. Each has a flag `--robotraconteur-...` named as itself, with `-` for `_`,
-/// and a variable `ROBOTRACONTEUR_...`, in capitals; flags win over variables, these over what the
-/// program says.
+/// and a variable `ROBOTRACONTEUR_...`, in capitals; flags win over variables, these over the file
+/// that the flag or variable `config` names, and that over what the program says.
 struct SetupOptions {
   /// All that no flag says. Its name and id are those of the node.
   NodeOptions node{};
@@ -105,9 +105,11 @@ struct SetupOptions {
   /// The same with TLS required.
   static SetupOptions secure_server(std::string name, std::uint16_t port);
 
-  /// Takes in the environment, then the arguments behind the program's name; returns those that are
-  /// no flags of these. Throws rr::Error (invalid_argument) for a flag that there is not and for a
-  /// value that is none.
+  /// Takes in the configuration file, if one is named, the environment, and the arguments behind
+  /// the program's name; returns those that are no flags of these. Throws rr::Error:
+  /// invalid_argument for a flag that there is not and for a value that is none,
+  /// invalid_configuration, with the line, for the same in the file, and for one that cannot be
+  /// read.
   std::vector<std::string> take(int argc, const char* const* argv);
 };
 

@@ -8,10 +8,10 @@
 
 #include "rr/log.hpp"
 #include "rr/printable.hpp"
+#include "runtime/cpp/src/channel/rotating_file.hpp"
 #include "runtime/cpp/src/codec/json_text.hpp"
 #include "runtime/cpp/src/platform/clock.hpp"
 #include "runtime/cpp/src/platform/files.hpp"
-#include "runtime/cpp/src/platform/rotating_file.hpp"
 #include "runtime/cpp/src/platform/service_manager.hpp"
 
 namespace rr {
@@ -73,7 +73,7 @@ struct LogFile::State {
       : least(options.least), file(std::move(path), options.max_size, options.kept_files) {}
 
   const LogLevel least;
-  platform::RotatingFile file;
+  channel::RotatingFile file;
 };
 
 LogFile::LogFile(std::string path, Options options)

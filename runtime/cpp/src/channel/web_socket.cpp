@@ -269,10 +269,10 @@ class WebSocketServer final : public WebSocketLayer {
                                    .may_be_clear = client_.is_encrypted || !client_.must_encrypt},
                                   rules_.origins);
     if (!page) return false;
-    if (!state_.take()) refuse(http::status::service_unavailable, reply);
+    const bool is_refused = page->status >= 400 && page->status < 500;
+    if (!is_refused && !state_.take()) refuse(http::status::service_unavailable, reply);
     append(reply, bytes_of(page->bytes));
-    constexpr unsigned forbidden = 403;  // and what is above: the answer has no content
-    if (page->status >= forbidden && page->status < 500) {
+    if (is_refused) {
       throw Error(ErrorCode::connection_error,
                   "the node's state was refused: HTTP " + std::to_string(page->status));
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The flags of a node's set-up: one table, read for the command line and for the environment.
+// The flags of a node's set-up: one table, read for the command line, for the environment and for
+// the configuration file.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -14,6 +15,7 @@
 #include "rr/error.hpp"
 #include "rr/setup.hpp"
 #include "rr/url.hpp"
+#include "runtime/cpp/src/node/setup_file.hpp"
 
 namespace rr {
 namespace {
@@ -91,8 +93,12 @@ bool take_system_trust(SetupOptions& options, const std::string& value) {
   return truth.has_value();
 }
 
+// The file is read before everything else (config_file()).
+bool take_config(SetupOptions& /*options*/, const std::string& value) { return !value.empty(); }
+
 using O = SetupOptions;
 const std::array flags = {
+    Flag{"config", &take_config},
     Flag{"discovery-listening-enable", &O::discovery_listening_enable},
     Flag{"discovery-announce-enable", &O::discovery_announce_enable},
     Flag{"local-enable", &O::local_enable},
@@ -168,11 +174,48 @@ std::string variable_of(const Flag& flag) {
   return name;
 }
 
-const Flag& find_flag(const std::string& written, std::string_view name) {
+const Flag* flag_of(std::string_view name) {
   for (const Flag& flag : flags) {
-    if (flag.name == name) return flag;
+    if (flag.name == name) return &flag;
   }
-  throw Error(ErrorCode::invalid_argument, "there is no flag `" + written + "`");
+  return nullptr;
+}
+
+const Flag& find_flag(const std::string& written, std::string_view name) {
+  const Flag* const flag = flag_of(name);
+  if (flag == nullptr) {
+    throw Error(ErrorCode::invalid_argument, "there is no flag `" + written + "`");
+  }
+  return *flag;
+}
+
+// The configuration file that the command line names or, if it does not, the environment; empty:
+// none.
+std::string config_file(int argc, const char* const* argv) {
+  constexpr std::string_view name = "--robotraconteur-config";
+  std::string file;
+  if (const char* const variable = std::getenv("ROBOTRACONTEUR_CONFIG")) file = variable;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (argument == "--") break;
+    if (argument == name && i + 1 < argc) file = argv[i + 1];
+    if (argument.starts_with(name) && argument.substr(name.size()).starts_with('=')) {
+      file = argument.substr(name.size() + 1);
+    }
+  }
+  return file;
+}
+
+void take_file(SetupOptions& options, const std::string& path) {
+  for (const SetupLine& line : read_setup_file(path)) {
+    const Flag* const flag = flag_of(line.name);
+    const bool is_known = flag != nullptr && flag->name != "config";
+    if (is_known && take_value(options, *flag, line.value)) continue;
+    throw Error(
+        ErrorCode::invalid_configuration,
+        line.place + (is_known ? ": `" + line.value + "` is no value for `" + line.name + "`"
+                               : ": there is no setting `" + line.name + "`"));
+  }
 }
 
 }  // namespace
@@ -200,6 +243,7 @@ SetupOptions SetupOptions::secure_server(std::string name, std::uint16_t port) {
 }
 
 std::vector<std::string> SetupOptions::take(int argc, const char* const* argv) {
+  if (const std::string file = config_file(argc, argv); !file.empty()) take_file(*this, file);
   for (const Flag& flag : flags) {
     const std::string name = variable_of(flag);
     const char* const value = std::getenv(name.c_str());

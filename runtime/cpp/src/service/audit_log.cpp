@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "rr/audit.hpp"
+#include "runtime/cpp/src/channel/rotating_file.hpp"
 #include "runtime/cpp/src/codec/json_text.hpp"
 #include "runtime/cpp/src/platform/clock.hpp"
-#include "runtime/cpp/src/platform/rotating_file.hpp"
 
 namespace rr {
 namespace {
@@ -56,7 +56,7 @@ class AuditLog::File {
   void write(std::string_view line) { file_.write(line); }
 
  private:
-  platform::RotatingFile file_;
+  channel::RotatingFile file_;
 };
 
 AuditLog::AuditLog(std::string path, Options options)

@@ -8,7 +8,7 @@
 #include "rr/mutex.hpp"
 #include "runtime/cpp/src/platform/files.hpp"
 
-namespace rr::platform {
+namespace rr::channel {
 
 /// A file of lines that nobody but its owner may read (0600). One that would become larger than a
 /// limit is renamed to `path.1`, that to `path.2` and so on. Its lock is the innermost. Any thread.
@@ -32,8 +32,8 @@ class RR_INSIDE RotatingFile {
   const std::size_t max_size_;
   const unsigned kept_files_;
   Mutex mutex_;
-  File file_ RR_GUARDED_BY(mutex_);
+  platform::File file_ RR_GUARDED_BY(mutex_);
   std::size_t size_ RR_GUARDED_BY(mutex_) = 0;
 };
 
-}  // namespace rr::platform
+}  // namespace rr::channel
