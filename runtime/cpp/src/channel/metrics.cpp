@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "runtime/cpp/src/channel/metrics_text.hpp"
+#include "runtime/cpp/src/platform/process.hpp"
 
 namespace rr::channel {
 namespace {
@@ -114,6 +115,16 @@ Traffic Metrics::sum(Open& open, std::uint64_t& queued) const {
 void Metrics::write(MetricsText& text) const {
   write_connections(text);
   write_requests(text);
+  write_process(text);
+}
+
+// The names that Prometheus has for this.
+void Metrics::write_process(MetricsText& text) {
+  const platform::ProcessUse use = platform::process_use();
+  text.begin({"process_cpu_seconds", "counter", "Processor time of the process.", "seconds"});
+  text.sample("_total", {}, std::chrono::duration<double>(use.processor).count());
+  text.gauge({"process_resident_memory_bytes", "gauge", "Memory of the process.", "bytes"},
+             use.resident);
 }
 
 void Metrics::write_connections(MetricsText& text) const {

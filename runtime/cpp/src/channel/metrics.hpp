@@ -128,6 +128,7 @@ class Metrics {
   Traffic sum(Open& open, std::uint64_t& queued) const;
   void write_connections(MetricsText& text) const;
   void write_requests(MetricsText& text) const;
+  static void write_process(MetricsText& text);
 
   std::array<Place, places> places_;
   std::array<std::atomic<std::uint64_t>, 256> errors_{};  // by code

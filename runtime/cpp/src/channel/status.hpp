@@ -9,6 +9,7 @@
 
 #include "rr/mutex.hpp"
 #include "rr/options.hpp"
+#include "rr/visibility.hpp"
 #include "runtime/cpp/src/platform/address.hpp"
 
 namespace rr::channel {
@@ -16,7 +17,7 @@ namespace rr::channel {
 class MetricsText;
 
 /// What a node tells of itself to programs that watch it, and which of them may ask. Any thread.
-class Status {
+class RR_INSIDE Status {
  public:
   /// Throws rr::Error (invalid_argument) for places that are none.
   explicit Status(const MetricsOptions& options);

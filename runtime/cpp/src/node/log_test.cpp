@@ -131,6 +131,18 @@ TEST(LogRecords, SayWhoseRequestItIs) {
   EXPECT_THAT(line, HasSubstr("after the answer\\\\nlevel=error"));
 }
 
+TEST(LogRecords, OfAClientSayWhichServiceItIs) {
+  Kept kept;
+  Pair pair({}, {.log_record = kept.taker()});
+  auto client = pair.connect();
+  const auto listening = client->ticked().connect(
+      [](std::int32_t, const std::string&) { throw std::runtime_error("no"); });
+  client->fire(1);
+  EXPECT_TRUE(eventually([&] { return !kept.lines().empty(); }));
+  EXPECT_THAT(kept.lines().front(),
+              HasSubstr(" peer_node=" + pair.server.id().text() + " session="));
+}
+
 TEST(LogRecords, SayWhoWasRefused) {
   Kept kept;
   NodeOptions options{.log_record = kept.taker()};

@@ -90,6 +90,8 @@ TEST(Metrics, AreWellFormed) {
   client->add(1, 2);
   const OpenMetrics parsed(pair.server.metrics());
   EXPECT_THAT(parsed.faults(), ::testing::IsEmpty());
+  EXPECT_GT(parsed.value("process_resident_memory_bytes"), 1024 * 1024);
+  EXPECT_GT(parsed.value("process_cpu_seconds_total"), 0);
   EXPECT_EQ(parsed.value("robdef_node_info{node_id=\"" + pair.server.id().text() +
                          "\",node_name=\"metrics.test\",version=\"" +
                          std::string(library_version()) + "\"}"),

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "runtime/cpp/src/channel/logging.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
 #include "runtime/cpp/src/endpoint/requests.hpp"
@@ -337,6 +338,7 @@ void ServerEndpoint::lost(const Error& why, channel::DeferredCallbacks& deferred
 }
 
 void ServerEndpoint::closed() {
+  const channel::LogScope scope(*connection_, client_.endpoint);
   if (is_member_.exchange(false)) host_->remove_client(*this);
   end_members();
   last_object_.reset();
