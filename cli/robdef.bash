@@ -117,7 +117,7 @@ _robdef() {
       discover) options="--once --type --format --wait --ipv4 --interface --port $tls --help" ;;
       lsp) options='--stdio --import-path -I --help' ;;
       bridge) options="--listen --everywhere $tls --help" ;;
-      replay) options='--connect --listen --everywhere --connection --fast --help' ;;
+      replay) options='--connect --listen --everywhere --connection --fast --tolerance --ignore --help' ;;
       ca)
         options='--ca --days --list-days --name --renew --new-key --revoke-old --passphrase --passphrase-file
           --output -o --json --help' ;;
