@@ -15,6 +15,7 @@ constexpr std::size_t longest_line = 2000;
 
 }  // namespace
 
+constinit thread_local const NodeOptions* LogScope::current_node = nullptr;
 constinit thread_local const Connection* LogScope::current_connection = nullptr;
 constinit thread_local std::uint32_t LogScope::current_session = 0;
 
@@ -31,7 +32,8 @@ void log(const NodeOptions& options, LogLevel level, std::string_view text,
   record.node_name = options.name;
   record.text = line;
   std::string address;
-  if (const Connection* const connection = LogScope::current_connection; connection != nullptr) {
+  if (LogScope::current_node == &options) {
+    const Connection* const connection = LogScope::current_connection;
     address = connection->remote_address();
     record.peer_node = connection->remote_node();
     record.peer_name = connection->remote_name();

@@ -21,11 +21,17 @@ std::size_t place_of_thread(std::size_t places) {
 }
 
 void count_up(std::atomic<std::uint64_t>& to, std::uint64_t more) {
-  to.fetch_add(more, std::memory_order_relaxed);
+  to.fetch_add(more, std::memory_order_release);
 }
 
 std::uint64_t get(const std::atomic<std::uint64_t>& from) {
-  return from.load(std::memory_order_relaxed);
+  return from.load(std::memory_order_acquire);
+}
+
+// Codes without a name of their own are one.
+std::size_t row_of(ErrorCode code) {
+  const bool is_known = !error_name(code).empty() || code == ErrorCode::remote_error;
+  return static_cast<std::size_t>(is_known ? code : ErrorCode::unknown_error);
 }
 
 std::string error_type(std::size_t code) {
@@ -60,17 +66,15 @@ Metrics::Metrics() = default;
 [[gnu::hot]] void Metrics::count_request(RequestKind kind, Clock::duration took, ErrorCode code) {
   const auto nanoseconds =
       static_cast<std::uint64_t>(std::max<std::int64_t>(0, std::chrono::nanoseconds(took).count()));
-  const std::uint64_t microseconds = nanoseconds / 1000;
   std::size_t bucket = 0;
-  while (bucket != bounds.size() && microseconds >= bounds[bucket]) ++bucket;
+  while (bucket != bounds.size() && nanoseconds > std::uint64_t{bounds[bucket]} * 1000) ++bucket;
   Place& place = places_[place_of_thread(places)];
   const auto row = static_cast<std::size_t>(kind);
   count_up(place.nanoseconds[row], nanoseconds);
-  if (code != ErrorCode::none) {
-    count_up(place.errors[row], 1);
-    count_up(errors_[std::min<std::size_t>(static_cast<std::size_t>(code), errors_.size() - 1)], 1);
-  }
   count_up(place.buckets[row][bucket], 1);
+  if (code == ErrorCode::none) return;
+  count_up(place.errors[row], 1);  // last: see counted()
+  count_up(errors_.at(row_of(code)), 1);
 }
 
 void Metrics::add(const Metered& connection) {
@@ -83,16 +87,17 @@ void Metrics::remove(const Metered& connection) {
   if (connections_.erase(&connection) != 0) of_ended_ += connection.sample().traffic;
 }
 
+// Errors are read first, as they are counted last: all requests without them never become fewer.
 Metrics::Counted Metrics::counted() const {
   Counted sums;
   for (const Place& place : places_) {
     for (std::size_t kind = 0; kind != request_kinds; ++kind) {
+      sums.errors[kind] += get(place.errors[kind]);
       for (std::size_t i = 0; i != sums.buckets[kind].size(); ++i) {
         const std::uint64_t count = get(place.buckets[kind][i]);
         sums.buckets[kind][i] += count;
         sums.all[kind] += count;
       }
-      sums.errors[kind] += get(place.errors[kind]);
       sums.nanoseconds[kind] += get(place.nanoseconds[kind]);
     }
   }

@@ -19,13 +19,14 @@ namespace rr::channel {
 
 class MetricsText;
 
-/// A number that one thread at a time adds to, and any thread reads: as cheap as a plain one.
+/// A number that one thread at a time adds to, and any thread reads: as cheap as a plain one. Who
+/// reads one, and then another that was added to before it, sees that addition.
 class Tally {
  public:
   void add(std::uint64_t more) {
-    value_.store(value_.load(std::memory_order_relaxed) + more, std::memory_order_relaxed);
+    value_.store(value_.load(std::memory_order_relaxed) + more, std::memory_order_release);
   }
-  [[nodiscard]] std::uint64_t get() const { return value_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t get() const { return value_.load(std::memory_order_acquire); }
 
  private:
   std::atomic<std::uint64_t> value_{0};

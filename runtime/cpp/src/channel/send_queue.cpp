@@ -217,11 +217,14 @@ void SendQueue::note_sent(std::size_t size) {
   bytes_.add(size);
 }
 
+// What is taken off is read before what it is taken off from: no difference is ever smaller than it
+// was before.
 Traffic SendQueue::traffic() const {
+  const std::uint64_t skipped = values_skipped_.get();
   return {.messages_sent = messages_.get() + gathered_messages_.get(),
           .bytes_sent = bytes_.get() + all_gathered_bytes_.get(),
           .wire_values = wire_values_.get(),
-          .values_skipped = values_skipped_.get(),
+          .values_skipped = skipped,
           .pipe_packets = packets_.get() + gathered_packets_.get()};
 }
 

@@ -218,7 +218,7 @@ void Session::foresee(const Message& message) {
 
 [[gnu::hot]] void Session::handle(const Message& message, const Entry& first,
                                   const MemoryRef& owner) {
-  const channel::LogScope scope(*connection_, connection_->own_endpoint());
+  const channel::LogScope scope(core_->options(), *connection_, connection_->own_endpoint());
   const auto handle_one = [&](const Entry& entry) {
     endpoint::call_user_code(*core_, "a handler", [&] { handle_entry(message, entry, owner); });
   };

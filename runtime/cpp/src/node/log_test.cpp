@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "rr/setup.hpp"
+#include "rr/users.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
 #include "runtime/cpp/src/node/testing/raw_socket.hpp"
 
@@ -141,6 +142,28 @@ TEST(LogRecords, OfAClientSayWhichServiceItIs) {
   EXPECT_TRUE(eventually([&] { return !kept.lines().empty(); }));
   EXPECT_THAT(kept.lines().front(),
               HasSubstr(" peer_node=" + pair.server.id().text() + " session="));
+}
+
+// A handler may use another node: what that logs is not about the handler's client.
+TEST(LogRecords, OfAnotherNodeHaveNoPeer) {
+  Kept kept;
+  struct Asking final : Counter {
+    explicit Asking(Node& other) : other_(other) {}
+    // A password's weak hash makes the other node warn.
+    void reset() override {
+      other_.register_service(
+          "counter", std::make_shared<Counter>(),
+          {.users = std::make_shared<PasswordUsers>("bob b177f56968fdfe39a41e06e419013440 _\n")});
+    }
+    Node& other_;
+  };
+  Kept of_other;
+  Node other({.log_record = of_other.taker()});
+  Pair pair({.log_record = kept.taker()}, {}, std::make_shared<Asking>(other));
+  auto client = pair.connect();
+  client->reset();
+  ASSERT_EQ(of_other.lines().size(), 1U);
+  EXPECT_THAT(of_other.lines(), ::testing::Each(::testing::Not(HasSubstr(" peer="))));
 }
 
 TEST(LogRecords, SayWhoWasRefused) {

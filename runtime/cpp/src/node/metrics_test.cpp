@@ -73,8 +73,8 @@ TEST(Metrics, PutsLatenciesIntoTheirBuckets) {
         "robdef_request=\"get\",le=\"" +
         bound + "\"}");
   };
-  EXPECT_EQ(below("1e-05"), 3);
-  EXPECT_EQ(below("2.5e-05"), 5);
+  EXPECT_EQ(below("1e-05"), 4);
+  EXPECT_EQ(below("2.5e-05"), 6);
   EXPECT_EQ(below("5e-05"), 6);
   EXPECT_EQ(below("2.5"), 6);
   EXPECT_EQ(below("10.0"), 7);
@@ -117,6 +117,18 @@ TEST(Metrics, CountRequestsByKindAndOutcome) {
   EXPECT_EQ(now.value("rpc_server_call_duration_seconds_count{rpc_system_name=\"robot_raconteur\","
                       "robdef_request=\"call\"}"),
             3);
+}
+
+// A program may throw any code: those without a name are counted together, and once.
+TEST(Metrics, CountErrorsOfAnyCode) {
+  Pair pair(counting());
+  auto client = pair.connect();
+  for (const int code : {77, 300, 65'535, static_cast<int>(ErrorCode::unknown_error)}) {
+    EXPECT_THROW(client->raise(code, "x"), Error);
+  }
+  const OpenMetrics now(pair.server.metrics());
+  EXPECT_THAT(now.faults(), ::testing::IsEmpty());
+  EXPECT_EQ(now.value("robdef_server_errors_total{error_type=\"RobotRaconteur.UnknownError\"}"), 4);
 }
 
 // An answer that is given later counts when it is given, from when the request was taken up.

@@ -338,7 +338,7 @@ void ServerEndpoint::lost(const Error& why, channel::DeferredCallbacks& deferred
 }
 
 void ServerEndpoint::closed() {
-  const channel::LogScope scope(*connection_, client_.endpoint);
+  const channel::LogScope scope(core()->options(), *connection_, client_.endpoint);
   if (is_member_.exchange(false)) host_->remove_client(*this);
   end_members();
   last_object_.reset();

@@ -94,7 +94,7 @@ std::string_view ServerEndpoint::current_path() { return path_of_request; }
 [[gnu::hot]] void ServerEndpoint::handle(const Message& message, const Entry& first,
                                          const MemoryRef& owner) {
   if (connection_->is_closed()) return;  // nobody is left for whom this could be done
-  const channel::LogScope scope(*connection_, client_.endpoint);
+  const channel::LogScope scope(core()->options(), *connection_, client_.endpoint);
   last_heard_.store(channel::coarse_now(), std::memory_order_relaxed);
   if (must_wait_for_login(message, first, owner)) return;
   const bool brings_login = has_outcome_;
