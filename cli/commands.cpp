@@ -158,6 +158,24 @@ constexpr std::array options = {
               {Command::replay},
               "send as soon as the answers before have come,\nnot at the recorded times",
               take_recording_switch<&RecordingOptions::is_fast>},
+    OptionRow{
+        "--tolerance",
+        "",
+        "NUMBER",
+        {Command::replay},
+        "floating-point numbers may differ by so much,\nand by so many parts of those above 1;"
+        " default: 0",
+        take_tolerance},
+    OptionRow{
+        "--ignore",
+        "",
+        "PATH",
+        {Command::replay},
+        "do not compare this member, or object with all\nbelow it, as arm.state; may be repeated",
+        [](Options& taken, const std::string& value) {
+          more(taken).recording.ignored.push_back(value);
+          return std::string(value.empty() ? "the value is empty" : "");
+        }},
     OptionRow{"--once",
               "",
               "",
@@ -339,6 +357,7 @@ std::optional<std::string> missing(const Options& options) {
     case Command::set:
     case Command::call:
     case Command::watch:
+    case Command::top:
     case Command::connect:
     case Command::complete:
       return live::missing(options);
@@ -368,6 +387,7 @@ std::optional<ExitStatus> run_command(const Options& options, std::ostream& out,
     case Command::set:
     case Command::call:
     case Command::watch:
+    case Command::top:
     case Command::connect:
     case Command::complete:
       return run_live(options, out, err);

@@ -22,7 +22,9 @@ struct LiveOptions {
   std::optional<std::vector<std::uint64_t>> position;  ///< none: the beginning
   std::optional<std::vector<std::uint64_t>> counts;    ///< none: up to the end
 
-  // watch, and generators
+  std::optional<std::chrono::milliseconds> period;  ///< top: between two tables; none: 1 s
+
+  // watch, top and generators
   std::optional<std::uint64_t> limit;                 ///< values; none: all
   std::optional<std::chrono::milliseconds> duration;  ///< none: until interrupted
 };

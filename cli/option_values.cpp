@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -40,6 +41,18 @@ std::string take_entry_types(Options& options, const std::string& value) {
 std::string take_connection(Options& options, const std::string& value) {
   more(options).recording.connection = number_in<std::uint32_t>(value);
   return more(options).recording.connection ? "" : "`" + value + "` is no number of a connection";
+}
+
+std::string take_tolerance(Options& options, const std::string& value) {
+  double number = 0;
+  const char* const end = value.data() + value.size();
+  const auto [at, error] = std::from_chars(value.data(), end, number);
+  const bool is_right = !value.empty() && error == std::errc() && at == end;
+  if (!is_right || !(number >= 0) || !std::isfinite(number)) {
+    return "`" + value + "` is no number of at least 0";
+  }
+  more(options).recording.tolerance = number;
+  return "";
 }
 
 std::string take_port(Options& options, const std::string& value) {

@@ -12,6 +12,7 @@ namespace robdef {
 
 std::string take_entry_types(Options& options, const std::string& value);
 std::string take_connection(Options& options, const std::string& value);
+std::string take_tolerance(Options& options, const std::string& value);
 std::string take_port(Options& options, const std::string& value);
 std::string take_discover_format(Options& options, const std::string& value);
 std::string take_discovery_port(Options& options, const std::string& value);

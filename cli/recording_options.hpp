@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace robdef {
 
@@ -25,6 +26,8 @@ struct RecordingOptions {
   bool drops = false;
   bool keeps_credentials = false;
   bool is_fast = false;
+  double tolerance = 0;              ///< replay: of floating-point numbers
+  std::vector<std::string> ignored;  ///< replay: members and objects that are not compared
 };
 
 /// Who can connect to a command that listens, and how that is changed: a line for standard error.

@@ -142,6 +142,10 @@ TEST_F(Recordings, WrongUseIsExplained) {
   EXPECT_THAT(run({"record", "-o", "x", "--listen", "0"}).err, HasSubstr("`--connect` is missing"));
   EXPECT_THAT(run({"record", "--connect", "a:1", "--listen", "x"}).err, HasSubstr("is no port"));
   EXPECT_THAT(run({"replay", "x"}).err, HasSubstr("give either `--connect` or `--listen`"));
+  for (const char* const wrong : {"-1", "x", "1x", "", "nan", "inf", "1e999"}) {
+    EXPECT_EQ(run({"replay", "x", "--listen", "0", "--tolerance", wrong}).status, 2) << wrong;
+  }
+  EXPECT_EQ(run({"replay", "x", "--listen", "0", "--ignore", ""}).status, 2);
   EXPECT_EQ(run({"replay", "x", "--listen", "0", "--connect", "a:1"}).status, 2);
   EXPECT_EQ(run({"inspect"}).status, 2);
   const Ended nowhere = run({"record", "--connect", "nothing", "--listen", "0", "-o", "x"});

@@ -20,6 +20,8 @@ ExitStatus replay(const Options& options, std::ostream& out, std::ostream& err) 
     how.listens_everywhere = wanted.listens_everywhere;
     how.connection = wanted.connection;
     how.is_fast = wanted.is_fast;
+    how.tolerance = wanted.tolerance;
+    how.ignored = wanted.ignored;
     how.on_listening = [&](int port) {
       out << "playing the service at port " << port << std::endl;
       err << place_line(wanted) << std::endl;
@@ -35,6 +37,7 @@ ExitStatus replay(const Options& options, std::ostream& out, std::ostream& err) 
     if (report.left_out != 0) {
       out << fmt::format("values of wires missing or too many: {}\n", report.left_out);
     }
+    if (report.ignored != 0) out << fmt::format("entries ignored: {}\n", report.ignored);
     return report.differences.empty() ? exit_fine : exit_errors;
   } catch (const rr::Error& error) {
     err << "robdef: " << error.message() << '\n';

@@ -23,7 +23,7 @@ _robdef() {
   COMPREPLY=()
   if [ "$COMP_CWORD" = 1 ]; then
     mapfile -t COMPREPLY < <(compgen -W \
-      'generate check format breaking docs describe model view explain inspect record replay bridge ca discover lsp get set call watch connect
+      'generate check format breaking docs describe model view explain inspect record replay bridge ca discover lsp get set call watch top connect
       --help --version' -- "$word")
     return
   fi
@@ -109,6 +109,7 @@ _robdef() {
       set) options="--at $live --help" ;;
       call) options="--count $live --help" ;;
       watch) options="--count --for $live --help" ;;
+      top) options="--count --for --every $live --help" ;;
       connect) options="$live --help" ;;
       explain) options='--list --json --help' ;;
       inspect) options='--json --entries --path --connection --summary --page --help' ;;
@@ -116,7 +117,7 @@ _robdef() {
       discover) options="--once --type --format --wait --ipv4 --interface --port $tls --help" ;;
       lsp) options='--stdio --import-path -I --help' ;;
       bridge) options="--listen --everywhere $tls --help" ;;
-      replay) options='--connect --listen --everywhere --connection --fast --help' ;;
+      replay) options='--connect --listen --everywhere --connection --fast --tolerance --ignore --help' ;;
       ca)
         options='--ca --days --list-days --name --renew --new-key --revoke-old --passphrase --passphrase-file
           --output -o --json --help' ;;
@@ -125,7 +126,7 @@ _robdef() {
   elif [ "$command" = explain ]; then
     mapfile -t COMPREPLY < <(compgen -W \
       "$(robdef explain --list 2>/dev/null | cut -d ' ' -f 1)" -- "$word")
-  elif [[ $command == @(get|set|call|watch|connect) || $COMP_LINE == *describe*://* ]]; then
+  elif [[ $command == @(get|set|call|watch|top|connect) || $COMP_LINE == *describe*://* ]]; then
     _robdef_members
   elif [ "$command" = ca ] && [ "$COMP_CWORD" = 2 ]; then
     mapfile -t COMPREPLY < <(compgen -W 'init issue request sign revoke refresh list passphrase' -- "$word")

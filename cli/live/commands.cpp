@@ -14,6 +14,7 @@
 #include "cli/live/describe.hpp"
 #include "cli/live/members.hpp"
 #include "cli/live/prompt.hpp"
+#include "cli/live/top.hpp"
 #include "cli/live/watch.hpp"
 #include "cli/options.hpp"
 
@@ -68,6 +69,8 @@ ExitStatus answer(const Options& options, std::ostream& out, std::ostream& err) 
       break;
     case Command::watch:
       return live::watch_service(inputs[0], inputs.subspan(1), more(options).live, out, err);
+    case Command::top:
+      return live::top(inputs[0], inputs.subspan(1), more(options).live, out);
     case Command::connect:
       return live::prompt(inputs[0], more(options).live, out, err);
     case Command::complete:

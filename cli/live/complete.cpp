@@ -24,7 +24,7 @@ bool takes(std::string_view command, const MemberDescription& member) {
            member.kind == MemberKind::memory;
   }
   if (command == "call") return member.kind == MemberKind::function;
-  if (command == "watch") {
+  if (command == "watch" || command == "top") {
     return member.kind == MemberKind::wire || member.kind == MemberKind::pipe ||
            member.kind == MemberKind::event;
   }

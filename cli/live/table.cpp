@@ -92,6 +92,13 @@ constexpr std::array command_rows = {
                "Prints what wires, pipes and events send: an object of JSON a line, with the\n"
                "member, the sender's time where there is one, and the value. Goes on until it is\n"
                "interrupted. Says when the connection is lost, and connects again.\n"},
+    CommandRow{Command::top, "top", "[OPTION...] URL [MEMBER...]",
+               "show rates, clients and latencies of a service",
+               "Prints a table every second: of each wire, pipe and event, those of the root\n"
+               "object if none is named, how many values come and the newest; and where the node\n"
+               "tells its metrics (--robotraconteur-metrics), clients, requests, errors and\n"
+               "latencies. At a terminal one table replaces the other. Goes on until it is\n"
+               "interrupted, and connects again.\n"},
     CommandRow{Command::connect, "connect", "[OPTION...] URL",
                "use a service by commands, at a prompt",
                "Reads commands from the terminal, where TAB completes members, or from a file\n"
@@ -105,11 +112,12 @@ constexpr CommandRow completing_row = {Command::complete, "complete",
 
 constexpr CommandSet connecting = {Command::breaking, Command::describe, Command::get,
                                    Command::set,      Command::call,     Command::watch,
-                                   Command::connect,  Command::complete};
+                                   Command::top,      Command::connect,  Command::complete};
 
-constexpr CommandSet using_tls = {
-    Command::breaking, Command::describe, Command::get,      Command::set,      Command::call,
-    Command::watch,    Command::connect,  Command::complete, Command::discover, Command::bridge};
+constexpr CommandSet using_tls = {Command::breaking, Command::describe, Command::get,
+                                  Command::set,      Command::call,     Command::watch,
+                                  Command::top,      Command::connect,  Command::complete,
+                                  Command::discover, Command::bridge};
 
 constexpr std::array option_rows = {
     OptionRow{
@@ -155,15 +163,21 @@ constexpr std::array option_rows = {
     OptionRow{"--count",
               "",
               "NUMBER",
-              {Command::call, Command::watch},
-              "end after so many values",
+              {Command::call, Command::watch, Command::top},
+              "end after so many values; top: tables",
               take_limit},
     OptionRow{"--for",
               "",
               "SECONDS",
-              {Command::watch},
+              {Command::watch, Command::top},
               "end after this time",
               take_seconds<&LiveOptions::duration>},
+    OptionRow{"--every",
+              "",
+              "SECONDS",
+              {Command::top},
+              "time between two tables; default: 1",
+              take_seconds<&LiveOptions::period>},
 };
 
 }  // namespace

@@ -45,6 +45,7 @@ enum class Command {
   set,
   call,
   watch,
+  top,
   connect,
   complete
 };

@@ -176,7 +176,8 @@ void Channel::answer(Stream& stream, const Scenario& scenario) {
   if (name_ == "wss") {
     stream.put(tls_of(scenario.service.id).make_server(false), handshake_limit);
   }
-  if (has_web_socket()) stream.put(web_sockets_->make_server(name_ == "wss"), handshake_limit);
+  if (has_web_socket())
+    stream.put(web_sockets_->make_server({.is_encrypted = name_ == "wss"}), handshake_limit);
   if (name_ == "tls" || name_ == "rrs+ws") {
     bool is_mutual = false;
     const Node node = answer_for_tls(stream, scenario, is_mutual);

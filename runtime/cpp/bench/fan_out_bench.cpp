@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A service in one process, and many clients in others that have connected its wire: what a value
 // for all of them costs the service, and whether each gets the newest.
-//   fan_out_bench [clients] [values] [values per second] [bytes]
+//   fan_out_bench [clients] [values] [values per second] [bytes] [watched]
+// `watched`: the service counts, is asked for its metrics every second, and logs to a file.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -11,15 +12,18 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "rr/log.hpp"
 #include "runtime/cpp/bench/source.hpp"
 #include "runtime/cpp/src/node/testing/child.hpp"
 #include "runtime/cpp/src/node/testing/process_state.hpp"
+#include "runtime/cpp/src/node/testing/raw_socket.hpp"
 
 namespace {
 
@@ -45,8 +49,13 @@ double cpu_seconds() {
 void say(const std::string& line) { std::cout << line << std::endl; }
 
 // The process with the service: `memory` says what is resident, `send N RATE BYTES` sends.
-void serve() {
-  rr::Node node;
+void serve(const std::string& log) {
+  rr::NodeOptions options;
+  if (!log.empty()) {
+    options.metrics.is_enabled = true;
+    options.log_record = rr::LogFile(log);
+  }
+  rr::Node node(options);
   const auto source = std::make_shared<Source>();
   node.register_service("source", source);
   say("port " + std::to_string(node.listen_tcp(0, "127.0.0.1")));
@@ -74,6 +83,24 @@ void serve() {
       say("cpu " + std::to_string(static_cast<long>(1e6 * (cpu_seconds() - before))));
     }
   }
+}
+
+// The process that asks for metrics, until its input ends.
+void scrape(const std::string& port) {
+  std::atomic<bool> is_over{false};
+  std::atomic<int> answers{0};
+  std::thread asking([&] {
+    while (!is_over) {
+      const rr::testing::RawSocket peer(static_cast<std::uint16_t>(std::stoul(port)));
+      peer.send("GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n");
+      answers += peer.receive_until("# EOF\n").ends_with("# EOF\n") ? 1 : 0;
+      std::this_thread::sleep_for(std::chrono::seconds(1));
+    }
+  });
+  std::string command;
+  while (std::cin >> command && command != "end") say("answers " + std::to_string(answers));
+  is_over = true;
+  asking.join();
 }
 
 struct Reader {
@@ -121,9 +148,13 @@ double ask(Child& child, const std::string& command, const std::string& word) {
   return std::stod(child.wait_for(word));
 }
 
-void measure(int clients, int values, double rate, int bytes) {
-  Child service({"serve"});
+void measure(int clients, int values, double rate, int bytes, bool is_watched) {
+  const auto log = std::filesystem::temp_directory_path() / "fan_out_bench.log";
+  Child service(is_watched ? std::vector<std::string>{"serve", log.string()}
+                           : std::vector<std::string>{"serve"});
   const auto port = service.wait_for("port");
+  std::vector<Child> watching;
+  if (is_watched) watching.push_back(Child({"scrape", port}));
   const double empty = ask(service, "memory", "memory");
   std::vector<Child> processes;
   for (int first = 0; first < clients; first += clients_of_a_process) {
@@ -147,6 +178,10 @@ void measure(int clients, int values, double rate, int bytes) {
   };
   const auto warm = send(static_cast<int>(rate));
   const auto [cpu, all, current] = send(values);
+  for (Child& one : watching) {
+    std::printf("%.0f answers to GET /metrics; ", ask(one, "report", "answers"));
+  }
+  if (is_watched) std::filesystem::remove(log);
   const double received = all - warm[1];
   const double wanted = double(clients) * values;
   std::printf(
@@ -161,7 +196,9 @@ void measure(int clients, int values, double rate, int bytes) {
 int main(int count, char** words) {
   const std::string role = count > 1 ? words[1] : "";
   if (role == "serve") {
-    serve();
+    serve(count > 2 ? words[2] : "");
+  } else if (role == "scrape") {
+    scrape(words[2]);
   } else if (role == "read") {
     read(words[2], std::atoi(words[3]));
   } else {
@@ -169,6 +206,6 @@ int main(int count, char** words) {
       return count > place ? std::atof(words[place]) : otherwise;
     };
     measure(static_cast<int>(number(1, 1000)), static_cast<int>(number(2, 500)), number(3, 50),
-            static_cast<int>(number(4, 200)));
+            static_cast<int>(number(4, 200)), count > 5 && words[5] == std::string("watched"));
   }
 }

@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const bool is_client = (how & 1U) != 0;
   const auto layer = is_client
                          ? sockets->make_client(rr::Url::parse("rr+ws://127.0.0.1:1/?service=any"))
-                         : sockets->make_server(false);
+                         : sockets->make_server({});
   rr::channel::Bytes plain;
   rr::channel::Bytes reply;
   if (is_client) layer->begin(reply);

@@ -182,6 +182,13 @@ class Node {
   /// rr::Error (invalid_operation) after shutdown().
   void run_aside(std::function<void()> work);
 
+  /// What the node has counted, as OpenMetrics text: what it answers `GET /metrics` with. Throws
+  /// rr::Error (invalid_operation) unless NodeOptions::metrics switches it on.
+  [[nodiscard]] std::string metrics() const;
+  /// Makes `GET /health` say that something is wrong (HTTP 503), and what, until it is called with
+  /// an empty text. Any thread.
+  void set_fault(std::string why);
+
   /// Closes all services, clients and connections, and waits for the node's threads: for handlers
   /// that run, for what they are still to be told, and for run_aside(). On a thread of the node, or
   /// of run_aside(), it does not wait, which is left to the destructor or to the next call from

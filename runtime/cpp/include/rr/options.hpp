@@ -14,6 +14,7 @@
 
 #include "rr/audit.hpp"
 #include "rr/definition_check.hpp"
+#include "rr/log.hpp"
 #include "rr/node_id.hpp"
 #include "rr/visibility.hpp"
 #include "rr/wire.hpp"
@@ -23,10 +24,6 @@ namespace RR_VISIBLE rr {
 class IntraSpace;
 class MessageChannel;
 class Tap;
-
-/// How much a line of the log matters: `debug` and `info` for looking into things, `warning` for
-/// what a user should know, `error` for what fails.
-enum class LogLevel : std::uint8_t { debug, info, warning, error };
 
 /// What one side of a new connection offers the other (04, section 4.4). Both must want a thing.
 struct Offer {
@@ -85,6 +82,20 @@ struct WebSocketOptions {
   /// connect: that page of this node, and no other of this machine. Everybody who reaches the port
   /// gets it. Empty: nothing is served. Compressed by gzip it may have up to 1 MB.
   std::string inspector_page{};
+};
+
+/// What a node tells of itself at its TCP ports: `GET /metrics` and `GET /health`
+/// (docs/howto/monitoring.md). Needs web sockets (WebSocketOptions::is_enabled), and robdef::web.
+struct MetricsOptions {
+  /// Whether the node counts, and answers these requests.
+  bool is_enabled = false;
+  /// From where they are answered, besides this machine: addresses and networks (`10.0.0.5`,
+  /// `192.168.10.0/24`, `fd00::/8`), or `*` for everywhere. Another text makes the node throw
+  /// rr::Error (invalid_argument).
+  std::vector<std::string> from{};
+  /// Names of this machine by which it may be asked, besides its addresses, `localhost` and its
+  /// host name. Any other name is refused: a page of the web can have its own name point here.
+  std::vector<std::string> hosts{};
 };
 
 /// Local sockets of a node (04, section 7).
@@ -161,6 +172,9 @@ struct NodeOptions {
   unsigned session_threads = 16;
   /// Where reports go; nothing is printed. Called on any thread, under no lock.
   std::function<void(LogLevel, std::string_view)> log{};
+  /// The same with its parts: time, node, peer, session (rr/log.hpp). Both are called where both
+  /// are given. What it throws is not told to anybody.
+  std::function<void(const LogRecord&)> log_record{};
 
   /// What this node offers where it connects.
   Offer client_offer{};
@@ -229,6 +243,8 @@ struct NodeOptions {
   TlsOptions tls{};
   /// Web sockets, and which pages may use them.
   WebSocketOptions web_socket{};
+  /// Metrics and health at the TCP ports; off by default.
+  MetricsOptions metrics{};
   /// Local sockets.
   LocalOptions local{};
   /// Where nodes find each other by `rr+intra`; null: all of the process do.

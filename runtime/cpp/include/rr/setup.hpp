@@ -17,8 +17,8 @@
 namespace RR_VISIBLE rr {
 
 /// What a set-up starts. Each has a flag `--robotraconteur-...` named as itself, with `-` for `_`,
-/// and a variable `ROBOTRACONTEUR_...`, in capitals; flags win over variables, these over what the
-/// program says.
+/// and a variable `ROBOTRACONTEUR_...`, in capitals; flags win over variables, these over the file
+/// that the flag or variable `config` names, and that over what the program says.
 struct SetupOptions {
   /// All that no flag says. Its name and id are those of the node.
   NodeOptions node{};
@@ -82,9 +82,19 @@ struct SetupOptions {
   bool web_inspector = false;
   /// Its file; empty: the one that is installed with the runtime.
   std::string web_inspector_page{};
-  /// Reports of this level and above go to standard error, unless `node.log` takes them. One of
-  /// `debug`, `info`, `warning`, `error`, and `disable`.
+  /// Counts, and answers `GET /metrics` and `GET /health`: MetricsOptions::is_enabled.
+  bool metrics = false;
+  std::vector<std::string> metrics_from{};  ///< besides MetricsOptions::from
+  std::vector<std::string> metrics_host{};  ///< besides MetricsOptions::hosts
+  /// Reports of this level and above go to standard error, or to `log_file`, unless `node.log` or
+  /// `node.log_record` takes them. One of `debug`, `info`, `warning`, `error`, and `disable`.
   std::string log_level = "warning";
+  /// How a line on standard error looks: `text` or `logfmt` (LogFormat).
+  std::string log_format = "text";
+  /// A file for these reports instead of standard error (LogFile); empty: none.
+  std::string log_file{};
+  std::uint64_t log_file_size = 16 * 1024 * 1024;  ///< LogFile::Options::max_size
+  std::uint64_t log_file_count = 5;                ///< LogFile::Options::kept_files
 
   /// The defaults of a client: listens to discovery, and to nobody else.
   static SetupOptions client();
@@ -95,9 +105,11 @@ struct SetupOptions {
   /// The same with TLS required.
   static SetupOptions secure_server(std::string name, std::uint16_t port);
 
-  /// Takes in the environment, then the arguments behind the program's name; returns those that are
-  /// no flags of these. Throws rr::Error (invalid_argument) for a flag that there is not and for a
-  /// value that is none.
+  /// Takes in the configuration file, if one is named, the environment, and the arguments behind
+  /// the program's name; returns those that are no flags of these. Throws rr::Error:
+  /// invalid_argument for a flag that there is not and for a value that is none,
+  /// invalid_configuration, with the line, for the same in the file, and for one that cannot be
+  /// read.
   std::vector<std::string> take(int argc, const char* const* argv);
 };
 
@@ -108,6 +120,8 @@ struct SetupOptions {
 ///     rr::ServerNodeSetup setup("my.camera.host", 6257, argc, argv);
 ///     setup->register_service("camera", std::make_shared<MyCamera>());
 ///     rr::print_candidate_urls(std::cout, setup.node(), "camera");
+///     setup.wait();
+///   }
 ///
 /// Nodes that a channel is missing for say so in their log, and go on; but not those that require
 /// TLS.
@@ -131,6 +145,15 @@ class NodeSetup {
   [[nodiscard]] const std::vector<std::string>& arguments() const;
   /// Where it accepts connections by TCP; 0 for nowhere.
   [[nodiscard]] std::uint16_t port() const;
+
+  /// Serves until SIGTERM or SIGINT comes, or end_wait() is called: returns the signal, 0 for
+  /// end_wait(). Before and after, the signals do what they did. Under systemd it says when the
+  /// service is ready and when it stops, and feeds the watchdog for as long as the node's threads
+  /// do their work (docs/howto/setup.md#systemd). One thread at a time in the process; throws
+  /// rr::Error (invalid_operation) for a second one.
+  int wait();
+  /// Ends wait(), also one that has not begun. Any thread.
+  void end_wait();
 
  private:
   struct State;
@@ -167,6 +190,11 @@ class SecureServerNodeSetup : public NodeSetup {
 /// program, as `../share/robdef/inspector.html.gz`, or where the runtime was installed. The page
 /// itself is beside it, without `.gz`. Throws rr::Error (invalid_configuration) where it is not.
 std::string installed_inspector_page();
+
+/// Tells the service manager something of the process, as systemd's sd_notify() does: lines such as
+/// `STATUS=...`. False where nobody is to be told (no `NOTIFY_SOCKET`), or cannot be. NodeSetup::
+/// wait() says READY, STOPPING and WATCHDOG by itself.
+bool notify_service_manager(std::string_view lines);
 
 /// All URLs by which a service of the node may be reached, one a line.
 void print_candidate_urls(std::ostream& out, const Node& node, std::string_view service);

@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/channel/logging.hpp"
+#include "runtime/cpp/src/channel/metrics.hpp"
 
 namespace rr::channel {
 namespace {
@@ -35,14 +37,18 @@ void Admission::Place::leave() {
   if (is_counted_) admission_->remove(*this);
 }
 
-Admission::Admission(std::shared_ptr<const NodeOptions> options) : options_(std::move(options)) {}
+Admission::Admission(std::shared_ptr<const NodeOptions> options, std::shared_ptr<Metrics> metrics)
+    : options_(std::move(options)), metrics_(std::move(metrics)) {}
 
 std::shared_ptr<Admission::Place> Admission::enter(std::string address) {
   auto place = std::make_shared<Place>(shared_from_this(), std::move(address));
   std::vector<Leaving> leaving;
   {
     const MutexLock lock(mutex_);
-    if (is_full(count_, options_->max_connections) && !choose(strangers_, leaving)) return nullptr;
+    if (is_full(count_, options_->max_connections) && !choose(strangers_, leaving)) {
+      if (metrics_) metrics_->count_beyond_limit();
+      return nullptr;
+    }
     if (is_full(strangers_.size(), options_->max_connections_before_session)) {
       choose(strangers_, leaving);
     }
@@ -56,6 +62,7 @@ std::shared_ptr<Admission::Place> Admission::enter(std::string address) {
     place->is_counted_ = true;
     add_stranger(*place);
   }
+  if (metrics_) metrics_->count_accepted();
   close(leaving);
   return place;
 }
@@ -108,6 +115,7 @@ bool Admission::choose(const Places& places, std::vector<Leaving>& leaving) {
 
 void Admission::close(const std::vector<Leaving>& leaving) {
   for (const Leaving& each : leaving) {
+    if (metrics_) metrics_->count_beyond_limit();
     const std::string from = each.address.empty() ? std::string() : " (" + each.address + ")";
     warn("the oldest connection without a session" + from + " is closed to make room for another");
     if (!each.connection) continue;
@@ -117,7 +125,7 @@ void Admission::close(const std::vector<Leaving>& leaving) {
 }
 
 void Admission::warn(const std::string& text) {
-  if (!options_->log) return;
+  if (!has_log(*options_)) return;
   std::size_t unwarned = 0;
   {
     const MutexLock lock(warning_);
@@ -131,7 +139,7 @@ void Admission::warn(const std::string& text) {
   }
   const std::string more =
       unwarned == 0 ? std::string() : " (" + std::to_string(unwarned) + " more were not logged)";
-  options_->log(LogLevel::warning, text + more);
+  log(*options_, LogLevel::warning, text + more);
 }
 
 std::size_t Admission::size() const {

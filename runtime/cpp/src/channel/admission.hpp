@@ -15,6 +15,8 @@
 
 namespace rr::channel {
 
+class Metrics;
+
 /// Counts the incoming connections of a node. Those in sessions keep their place until they end; of
 /// the others the oldest gives way to a new one when there are too many of them, in all or from one
 /// address. So whoever opens connections and leaves them open shuts nobody out. Any thread.
@@ -49,7 +51,9 @@ class Admission : public std::enable_shared_from_this<Admission> {
     Iterator in_address_ RR_GUARDED_BY(admission_->mutex_);
   };
 
-  explicit Admission(std::shared_ptr<const NodeOptions> options);
+  /// `metrics`: who counts connections, too; null for nobody.
+  explicit Admission(std::shared_ptr<const NodeOptions> options,
+                     std::shared_ptr<Metrics> metrics = nullptr);
 
   /// A place for a connection from `address`; empty: from nowhere that would be counted. Null when
   /// all places are those of sessions.
@@ -78,6 +82,7 @@ class Admission : public std::enable_shared_from_this<Admission> {
   void close(const std::vector<Leaving>& leaving);
 
   const std::shared_ptr<const NodeOptions> options_;
+  const std::shared_ptr<Metrics> metrics_;
 
   mutable Mutex mutex_;
   std::size_t count_ RR_GUARDED_BY(mutex_) = 0;

@@ -36,8 +36,15 @@ NodeId certified_id(const TlsOptions& options) {
   return rr_component_tls.certified_id(options);
 }
 
-std::shared_ptr<WebSockets> make_web_sockets(const WebSocketOptions& options) {
-  return has_web() ? rr_component_web.make(options) : nullptr;
+std::shared_ptr<WebSockets> make_web_sockets(const WebSocketOptions& options,
+                                             std::shared_ptr<const Status> status) {
+  if (status != nullptr && (!has_web() || !options.is_enabled)) {
+    throw Error(ErrorCode::invalid_configuration,
+                has_web()
+                    ? "metrics are served at the port of web sockets, which are switched off"
+                    : "metrics need web sockets, which this program has not: link robdef::web");
+  }
+  return has_web() ? rr_component_web.make(options, std::move(status)) : nullptr;
 }
 
 std::string missing_component(std::string_view scheme) {

@@ -13,6 +13,7 @@
 namespace rr::channel {
 
 class Reactor;
+class Status;
 class Tls;
 class WebSockets;
 
@@ -25,7 +26,8 @@ struct TlsComponent {
 };
 /// What the library robdef_web brings.
 struct WebComponent {
-  std::shared_ptr<WebSockets> (*make)(const WebSocketOptions& options);
+  std::shared_ptr<WebSockets> (*make)(const WebSocketOptions& options,
+                                      std::shared_ptr<const Status> status);
 };
 
 /// Null without the component. Throws rr::Error (invalid_configuration) when a certificate cannot
@@ -36,8 +38,10 @@ std::shared_ptr<const Tls> make_tls(const TlsOptions& options, const NodeId& own
 /// The node that the certificate of the options is of. Throws rr::Error (invalid_configuration).
 NodeId certified_id(const TlsOptions& options);
 
-/// Null without the component.
-std::shared_ptr<WebSockets> make_web_sockets(const WebSocketOptions& options);
+/// Null without the component. `status`: what the node tells of itself at its ports; null: nothing.
+/// Throws rr::Error (invalid_configuration) for options that need what is not there.
+std::shared_ptr<WebSockets> make_web_sockets(const WebSocketOptions& options,
+                                             std::shared_ptr<const Status> status = nullptr);
 
 /// What URLs of a scheme need that this program is not linked with: `robdef::tls`. Empty: nothing.
 std::string missing_component(std::string_view scheme);

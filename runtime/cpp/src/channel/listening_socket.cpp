@@ -6,6 +6,8 @@
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/accept.hpp"
+#include "runtime/cpp/src/channel/logging.hpp"
+#include "runtime/cpp/src/channel/metrics.hpp"
 
 namespace rr::channel {
 namespace {
@@ -127,11 +129,10 @@ bool ListeningSocket::is_welcome(const Descriptor& accepted) const {
   if (!terms_.only_user) return true;
   const auto client = platform::peer_user(accepted.get());
   if (client && (*client == *terms_.only_user || *client == platform::system_user)) return true;
-  if (context_.options->log) {
-    context_.options->log(LogLevel::warning,
-                          "a local connection was refused: it is of user " +
-                              (client ? std::to_string(*client) : std::string("unknown")));
-  }
+  if (Metrics* const metrics = context_.reactor->metrics()) metrics->count_failed_handshake();
+  const std::string user = client ? std::to_string(*client) : std::string("unknown");
+  log(*context_.options, LogLevel::warning, "a local connection was refused: it is of user " + user,
+      "uid " + user);
   return false;
 }
 

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "runtime/cpp/src/channel/remote_address.hpp"
 #include "runtime/cpp/src/channel/send_queue.hpp"
 #include "runtime/cpp/src/channel/tls.hpp"
 #include "runtime/cpp/src/channel/web_socket.hpp"
@@ -17,8 +18,7 @@ PeerLayers::PeerLayers(const Terms& terms, const LinkTerms& link, SendQueue& sen
 
 // TLS may be around everything, web sockets around messages, and nothing twice.
 std::unique_ptr<Layer> PeerLayers::asked(std::byte first) {
-  constexpr auto http_begin = std::byte{'G'};  // of `GET `
-  constexpr auto tls_begin = std::byte{22};    // a record of a handshake
+  constexpr auto tls_begin = std::byte{22};  // a record of a handshake
   if (!terms_.is_server) return nullptr;
   const std::size_t count = is_layered_ ? layers().count() : 0;
   if (carrier_ != nullptr && !is_layered_) return nullptr;
@@ -27,8 +27,10 @@ std::unique_ptr<Layer> PeerLayers::asked(std::byte first) {
     around_ |= web_tls;
     return layer;
   }
-  if (first == http_begin && link_.web_sockets && (around_ & web_socket) == 0) {
-    auto layer = link_.web_sockets->make_server((around_ & web_tls) != 0);
+  if (link_.web_sockets && link_.web_sockets->is_request(first) && (around_ & web_socket) == 0) {
+    auto layer = link_.web_sockets->make_server({.is_encrypted = (around_ & web_tls) != 0,
+                                                 .must_encrypt = link_.is_tls_required,
+                                                 .address = remote_address_of(terms_.socket)});
     around_ |= web_socket;
     return layer;
   }

@@ -27,6 +27,8 @@
 
 namespace rr::channel {
 
+class Metrics;
+
 /// Something with a file descriptor that the reactor watches.
 class Pollable {
  public:
@@ -66,6 +68,8 @@ class RR_INSIDE Reactor final : public Watcher {
     std::function<std::thread(std::function<void()>)> make_thread{};
     /// Hears what nobody else can be told. On any thread, under no lock; must not throw.
     std::function<void(std::string_view)> report{};
+    /// What the node counts; null: nothing is counted.
+    std::shared_ptr<Metrics> metrics{};
   };
   explicit Reactor(unsigned max_threads) : Reactor(Terms{.max_threads = max_threads}) {}
   explicit Reactor(Terms terms);
@@ -101,6 +105,10 @@ class RR_INSIDE Reactor final : public Watcher {
   void post_for(std::shared_ptr<Pollable> pollable, std::function<void()> work) {
     post({std::move(work), nullptr, std::move(pollable)});
   }
+
+  /// What the node counts; null where nobody wants to know.
+  [[nodiscard]] Metrics* metrics() const { return terms_.metrics.get(); }
+  [[nodiscard]] const std::shared_ptr<Metrics>& shared_metrics() const { return terms_.metrics; }
 
   /// Records which accepted connections receive data.
   [[nodiscard]] Readers& readers() { return readers_; }

@@ -35,7 +35,9 @@ void SendQueue::check_room_for_packet(std::size_t size) const {
 SendQueue::Sent SendQueue::stream(Writer& message) {
   bool is_first = false;
   if (gather_if_streaming(message, is_first)) return is_first ? Sent::first : Sent::taken;
-  return send(message, {.now = coarse_now(), .refusal = ErrorCode::buffer_limit_violation});
+  return send(message, {.now = coarse_now(),
+                        .refusal = ErrorCode::buffer_limit_violation,
+                        .is_packet = terms_.is_server});
 }
 
 [[gnu::hot]] bool SendQueue::gather_if_streaming(Writer& message, bool& is_first) {
@@ -50,6 +52,7 @@ SendQueue::Sent SendQueue::stream(Writer& message) {
     return false;
   }
   gather(message);
+  if (terms_.is_server) gathered_packets_.add(1);
   return true;
 }
 
@@ -96,6 +99,8 @@ void SendQueue::uncork(const std::atomic<unsigned>& expected) {
     gathered_size_ += piece.size;
   }
   gathered_bytes_.store(gathered_size_, std::memory_order_relaxed);
+  gathered_messages_.add(1);
+  all_gathered_bytes_.add(message.size());
   if (tap_.is_open()) tap_.sent(message.pieces());
 }
 

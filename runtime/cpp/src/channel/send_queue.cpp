@@ -60,6 +60,10 @@ SendQueue::Sent SendQueue::send(Writer& message, const How& how) {
   } else {
     mark = take_gathered_and_tell(message);
   }
+  // Before it leaves: whoever has it finds it counted.
+  note_sent(message.size());
+  if (how.newest != nullptr) wire_values_.add(1);
+  if (how.is_packet) packets_.add(1);
   const bool overtakes = how.priority == Priority::urgent && !outbox_.empty();
   if (overtakes) outbox_.add_urgent(message);
   const std::span<const Piece> rest = overtakes ? std::span<const Piece>() : message.pieces();
@@ -120,6 +124,7 @@ void SendQueue::queue(Writer& message, std::size_t sent, const How& how,
     queue_newest_and_tell(message, *how.newest);
   } else if (how.newest != nullptr && sent == 0) {
     const Outbox::Queued queued = outbox_.add_newest(message, how.newest->stream, how.newest->time);
+    if (queued.mark == nullptr || queued.is_replacement) values_skipped_.add(1);
     if (queued.mark != nullptr) *queued.mark = mark.value_or(0);
   } else {
     outbox_.add(message, sent);
@@ -133,6 +138,7 @@ void SendQueue::queue_newest_and_tell(Writer& message, const Newest& newest) {
   const MutexLock lock(gathering_);
   move_gathered();
   const Outbox::Queued queued = outbox_.add_newest(message, newest.stream, newest.time);
+  if (queued.mark == nullptr || queued.is_replacement) values_skipped_.add(1);
   if (queued.mark == nullptr) return;
   if (queued.is_replacement) tap_.replaced(*queued.mark);
   *queued.mark = tap_.sent(message.pieces());
@@ -155,6 +161,7 @@ bool SendQueue::hold_back(Writer& message, Priority priority) try {
     outbox_.add(message, 0);
     if (priority == Priority::fixed) outbox_.fix_order();
   }
+  note_sent(message.size());
   answer_bytes_ += message.size();
   note_waiting();
   return true;
@@ -203,6 +210,22 @@ std::size_t SendQueue::waiting_answers() const { return std::min(answer_bytes_, 
   const std::size_t waiting = unsent();
   if (waiting == 0) answer_bytes_ = 0;
   outbox_bytes_.store(waiting, std::memory_order_relaxed);
+}
+
+void SendQueue::note_sent(std::size_t size) {
+  messages_.add(1);
+  bytes_.add(size);
+}
+
+// What is taken off is read before what it is taken off from: no difference is ever smaller than it
+// was before.
+Traffic SendQueue::traffic() const {
+  const std::uint64_t skipped = values_skipped_.get();
+  return {.messages_sent = messages_.get() + gathered_messages_.get(),
+          .bytes_sent = bytes_.get() + all_gathered_bytes_.get(),
+          .wire_values = wire_values_.get(),
+          .values_skipped = skipped,
+          .pipe_packets = packets_.get() + gathered_packets_.get()};
 }
 
 std::size_t SendQueue::unsent() const { return outbox_.size() + carrier_unsent(); }

@@ -13,6 +13,7 @@
 #include "rr/writer.hpp"
 #include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
+#include "runtime/cpp/src/channel/metrics.hpp"
 #include "runtime/cpp/src/channel/outbox.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 
@@ -47,6 +48,7 @@ class SendQueue {
     const Newest* newest = nullptr;  ///< of which only the newest counts; null: all count
     ErrorCode refusal = ErrorCode::out_of_system_resource;  ///< thrown when it may not wait
     bool is_answer = false;
+    bool is_packet = false;  ///< of a pipe of a service
   };
   /// What has become of a message.
   enum class Sent : std::uint8_t {
@@ -114,6 +116,8 @@ class SendQueue {
   /// Nothing waits but what is gathered.
   [[nodiscard]] bool is_empty() const;
   [[nodiscard]] Time last_sent() const { return last_sent_; }
+  /// What was sent, or waits to be.
+  [[nodiscard]] Traffic traffic() const;
 
   /// Nothing is sent from now on. May be called under any lock.
   void close() { is_closed_.store(true, std::memory_order_relaxed); }
@@ -128,6 +132,7 @@ class SendQueue {
   void queue_newest_and_tell(Writer& message, const Newest& newest) RR_REQUIRES(mutex_);
   [[nodiscard]] bool admit(std::size_t size, ErrorCode refusal) RR_REQUIRES(mutex_);
   void settle() RR_REQUIRES(mutex_);
+  void note_sent(std::size_t size) RR_REQUIRES(mutex_);
   void note_waiting() RR_REQUIRES(mutex_);
   [[nodiscard]] std::size_t unsent() const RR_REQUIRES(mutex_);
   [[nodiscard]] std::size_t carrier_unsent() const RR_REQUIRES(mutex_);
@@ -155,6 +160,12 @@ class SendQueue {
   std::atomic<bool> has_unsent_{false};
   std::atomic<std::size_t> outbox_bytes_{0};
   std::atomic<Time> last_sent_;
+  // What was sent: written under mutex_.
+  Tally messages_;
+  Tally bytes_;
+  Tally wire_values_;
+  Tally values_skipped_;
+  Tally packets_;
 
   Mutex gathering_;
   Allocation gathered_ RR_GUARDED_BY(gathering_);  // whole messages, which follow the outbox
@@ -166,6 +177,10 @@ class SendQueue {
       0;                  // callers, until half of those expected have come
   Time crowded_until_{};  // nobody corks before; the same, or by the one who has corked
   std::atomic<std::size_t> gathered_bytes_{0};  // the same as gathered_size_
+  // The same of what was gathered: written under gathering_.
+  Tally gathered_messages_;
+  Tally all_gathered_bytes_;
+  Tally gathered_packets_;
 };
 
 }  // namespace rr::channel

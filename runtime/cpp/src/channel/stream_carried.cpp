@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "rr/printable.hpp"
+#include "runtime/cpp/src/channel/logging.hpp"
 #include "runtime/cpp/src/channel/stream_connection.hpp"
 #include "runtime/cpp/src/channel/tls.hpp"
 
@@ -55,10 +56,11 @@ StreamConnection::Received StreamConnection::receive_bytes(Scratch& scratch, boo
       if (failure.empty()) {
         return fail_reading({ErrorCode::connection_error, "the other side closed the connection"});
       }
-      if (options_->log) {
-        options_->log(LogLevel::warning,
-                      "a connection was refused, or has failed: " + printable(failure));
+      if (Metrics* const metrics = was_heard_ ? nullptr : reactor_->metrics()) {
+        metrics->count_failed_handshake();
       }
+      log(*options_, LogLevel::warning,
+          "a connection was refused, or has failed: " + printable(failure), remote_address_);
       return fail_reading({ErrorCode::connection_error, failure});
     }
     note_received();

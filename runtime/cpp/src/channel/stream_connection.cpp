@@ -50,7 +50,8 @@ StreamConnection::StreamConnection(Role role, Descriptor socket, std::shared_ptr
       strand_(options_->request_queue_limit, account_),
       last_received_(coarse_now()),
       created_(coarse_now()),
-      watch_(*reactor_, socket_.get(), *this) {
+      watch_(*reactor_, socket_.get(), *this),
+      meter_(reactor_->metrics(), *this) {
   platform::set_stream_options(socket_.get());
   if (role_ == Role::server) threads_ = reactor_->open_share(remote_key(remote_address_));
   tap_.open(socket_.get());
@@ -115,6 +116,18 @@ ChannelTraits StreamConnection::traits() const {
   traits.message_limit = largest_size_;
   traits.is_encrypted = layers_.is_encrypted();
   return traits;
+}
+
+ConnectionSample StreamConnection::sample() const {
+  ConnectionSample sample{.is_open = !is_closed(),
+                          .is_server = role_ == Role::server,
+                          .is_in_session = is_authorised_.load(std::memory_order_relaxed),
+                          .transport = layers_.scheme(),
+                          .queued_bytes = sending_.waiting_bytes(),
+                          .traffic = sending_.traffic()};
+  sample.traffic.messages_received = messages_received_.get();
+  sample.traffic.bytes_received = bytes_received_.get();
+  return sample;
 }
 
 std::uint32_t StreamConnection::largest_message() const {

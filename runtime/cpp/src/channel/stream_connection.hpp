@@ -16,6 +16,7 @@
 #include "runtime/cpp/src/channel/link_terms.hpp"
 #include "runtime/cpp/src/channel/member_timer.hpp"
 #include "runtime/cpp/src/channel/message_deadline.hpp"
+#include "runtime/cpp/src/channel/metrics.hpp"
 #include "runtime/cpp/src/channel/own_requests.hpp"
 #include "runtime/cpp/src/channel/peer_layers.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
@@ -53,6 +54,7 @@ namespace rr::channel {
 class StreamConnection final : public Connection,
                                public Pollable,
                                public Flushable,
+                               public Metered,
                                public std::enable_shared_from_this<StreamConnection> {
  public:
   enum class Role : std::uint8_t { client, server };
@@ -117,6 +119,7 @@ class StreamConnection final : public Connection,
   void on_stuck() override { flush(); }
   [[nodiscard]] std::shared_ptr<ThreadShare> thread_share() const override { return threads_; }
   void flush_streamed() override { flush(); }
+  [[nodiscard]] ConnectionSample sample() const override;
 
  private:
   enum class Received { some, nothing, end };
@@ -277,6 +280,8 @@ class StreamConnection final : public Connection,
   bool had_message_ = false;
   bool has_receive_timeout_ = false;
   ReceivePace pace_;
+  Tally messages_received_;
+  Tally bytes_received_;
 
   bool holds_back_answers_ = false;  // with the strand
 
@@ -290,6 +295,7 @@ class StreamConnection final : public Connection,
   MemberTimer<StreamConnection, &StreamConnection::look_at_watch> watch_timer_{*this};
   MemberTimer<StreamConnection, &StreamConnection::look_at_message> look_timer_{*this};
   SocketWatch watch_ RR_GUARDED_BY(mutex_);
+  const Meter meter_;  // the last one: until it goes, this is asked for what it has counted
 };
 
 }  // namespace rr::channel

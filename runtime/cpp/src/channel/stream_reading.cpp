@@ -253,6 +253,8 @@ void StreamConnection::refuse_stream(const Scratch& scratch, std::size_t size) {
 // Reads a message and does with it what does not have to wait. False when it is none.
 [[gnu::hot]] bool StreamConnection::take(Scratch& scratch, Frame& frame) {
   if (tap_.is_open()) tap_.received(frame.bytes);
+  messages_received_.add(1);
+  bytes_received_.add(frame.bytes.size());
   Message& message = scratch.message;
   Entry& first = scratch.first;
   scratch.parsed = 0;

@@ -16,6 +16,7 @@
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/components.hpp"
 #include "runtime/cpp/src/channel/memory_stream.hpp"
+#include "runtime/cpp/src/channel/status_page.hpp"
 
 namespace rr::channel {
 
@@ -32,11 +33,14 @@ constexpr std::uint32_t longest_header = 8192;
 constexpr std::size_t read_size = 16 * 1024;
 // Connections that hold a copy of the page at once: strangers who do not read it cost no more.
 constexpr unsigned most_open_pages = 8;
+// First letters of the methods of HTTP. Web sockets begin with `GET` alone.
+constexpr std::string_view method_letters = "GHPDOCT";
 
 // What a node lets pages do.
 struct WebRules {
   std::vector<std::string> origins;
-  std::shared_ptr<const WebPage> page;  // null: none is served
+  std::shared_ptr<const WebPage> page;   // null: none is served
+  std::shared_ptr<const Status> status;  // null: nobody is told
 };
 
 // What all web sockets of a node live in.
@@ -44,7 +48,8 @@ struct Home {
   explicit Home(WebRules of_node) : rules(std::move(of_node)) {}
 
   const WebRules rules;
-  std::atomic<unsigned> open_pages{0};  // connections that were answered with the page
+  std::atomic<unsigned> open_pages{0};   // connections that were answered with the page
+  std::atomic<unsigned> open_states{0};  // the same with the node's state
   asio::io_context context{};  // where timers of the library, which are never started, register
 };
 
@@ -206,11 +211,12 @@ class OpenPage {
 
 class WebSocketServer final : public WebSocketLayer {
  public:
-  WebSocketServer(const std::shared_ptr<Home>& home, bool is_encrypted)
+  WebSocketServer(const std::shared_ptr<Home>& home, WebClient client)
       : WebSocketLayer(home),
         rules_(home->rules),
-        is_encrypted_(is_encrypted),
-        page_(home->open_pages) {
+        client_(std::move(client)),
+        page_(home->open_pages),
+        state_(home->open_states) {
     parser_.header_limit(longest_header);
   }
 
@@ -220,7 +226,8 @@ class WebSocketServer final : public WebSocketLayer {
       take_frames(wire, plain, reply);
       return;
     }
-    if (page_.is_taken()) return;  // the browser closes once it has read the page
+    // Whoever has asked closes once it has read the answer.
+    if (page_.is_taken() || state_.is_taken()) return;
     append(head_, wire);
     beast::error_code error;
     const std::size_t used = parser_.put(asio::const_buffer(head_.data(), head_.size()), error);
@@ -231,6 +238,7 @@ class WebSocketServer final : public WebSocketLayer {
     }
     if (error) refuse(http::status::bad_request, reply);
     if (!parser_.is_header_done()) return;
+    if (rules_.status != nullptr && answer_state(parser_.get(), reply)) return;
     const http::status status = judge(parser_.get());
     if (status == http::status::ok) {
       if (!page_.take()) refuse(http::status::service_unavailable, reply);
@@ -244,6 +252,37 @@ class WebSocketServer final : public WebSocketLayer {
   }
 
  private:
+  // False for a request that is not for the node's state.
+  bool answer_state(const Request& request, Bytes& reply) {
+    const std::string_view target = text_of(request.target());
+    const auto header = [&](auto field) {
+      return request.count(field) == 0 ? std::optional<std::string_view>()
+                                       : std::optional(text_of(request[field]));
+    };
+    const auto page = status_page(*rules_.status,
+                                  {.method = text_of(request.method_string()),
+                                   .path = target.substr(0, target.find('?')),
+                                   .host = text_of(request[http::field::host]),
+                                   .origin = header(http::field::origin),
+                                   .fetch_site = header("Sec-Fetch-Site"),
+                                   .from = client_.address,
+                                   .may_be_clear = client_.is_encrypted || !client_.must_encrypt},
+                                  rules_.origins);
+    if (!page) return false;
+    const bool is_refused = page->status >= 400 && page->status < 500;
+    if (!is_refused && !state_.take()) refuse(http::status::service_unavailable, reply);
+    append(reply, bytes_of(page->bytes));
+    if (is_refused) {
+      throw Error(ErrorCode::connection_error,
+                  "the node's state was refused: HTTP " + std::to_string(page->status));
+    }
+    return true;
+  }
+  template <class Text>
+  static std::string_view text_of(const Text& text) {
+    return {text.data(), text.size()};
+  }
+
   // In the order of 04, section 2.2. `ok`: the page is asked for.
   [[nodiscard]] http::status judge(const Request& request) const {
     if (request.method() != http::verb::get) return http::status::not_found;
@@ -282,7 +321,7 @@ class WebSocketServer final : public WebSocketLayer {
   [[nodiscard]] bool may_connect(std::string_view origin, const Request& request) const {
     if (is_allowed_origin(origin, rules_.origins)) return true;
     const std::string host = host_of(request);
-    const std::string own = (is_encrypted_ ? "https://" : "http://") + host;
+    const std::string own = (client_.is_encrypted ? "https://" : "http://") + host;
     return rules_.page != nullptr && host.find('*') == std::string::npos && is_own_host(host) &&
            is_allowed_origin(origin, {own});
   }
@@ -319,8 +358,9 @@ class WebSocketServer final : public WebSocketLayer {
   }
 
   const WebRules& rules_;  // of the home
-  const bool is_encrypted_;
+  const WebClient client_;
   OpenPage page_;
+  OpenPage state_;
   http::request_parser<http::empty_body> parser_;
   Bytes head_;  // of the request, that the parser has not used
 };
@@ -332,17 +372,23 @@ class BeastWebSockets final : public WebSockets {
   std::unique_ptr<Layer> make_client(const Url& url) override {
     return std::make_unique<WebSocketClient>(home_, url);
   }
-  std::unique_ptr<Layer> make_server(bool is_encrypted) override {
-    return std::make_unique<WebSocketServer>(home_, is_encrypted);
+  std::unique_ptr<Layer> make_server(WebClient client) override {
+    return std::make_unique<WebSocketServer>(home_, std::move(client));
+  }
+  [[nodiscard]] bool is_request(std::byte first) const override {
+    const auto letter = static_cast<char>(first);
+    if (home_->rules.status == nullptr) return letter == 'G';
+    return method_letters.find(letter) != std::string_view::npos;
   }
 
  private:
   const std::shared_ptr<Home> home_;
 };
 
-std::shared_ptr<WebSockets> make(const WebSocketOptions& options) {
+std::shared_ptr<WebSockets> make(const WebSocketOptions& options,
+                                 std::shared_ptr<const Status> status) {
   return std::make_shared<BeastWebSockets>(
-      WebRules{allowed_origins(options), served_page(options)});
+      WebRules{allowed_origins(options), served_page(options), std::move(status)});
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -13,6 +14,15 @@
 
 namespace rr::channel {
 
+class Status;
+
+/// Who has connected to a node, as far as it matters for what it is shown.
+struct WebClient {
+  bool is_encrypted = false;  ///< there is TLS around
+  bool must_encrypt = false;  ///< and there has to be
+  std::string address{};      ///< as remote_address_of() writes it
+};
+
 /// Web sockets around streams (04, sections 2.2 and 2.3), those of one node. Any thread may use it.
 /// See components.hpp for who makes one.
 class WebSockets {
@@ -22,8 +32,10 @@ class WebSockets {
   /// As the client of a URL.
   [[nodiscard]] virtual std::unique_ptr<Layer> make_client(const Url& url) = 0;
   /// For pages of the origins that the options allow, and what says no origin. Where a page is
-  /// served, it may connect, too: to the node that served it. `is_encrypted`: there is TLS around.
-  [[nodiscard]] virtual std::unique_ptr<Layer> make_server(bool is_encrypted) = 0;
+  /// served, it may connect, too: to the node that served it.
+  [[nodiscard]] virtual std::unique_ptr<Layer> make_server(WebClient client) = 0;
+  /// Whether what begins with this byte is a request of HTTP, and not something else.
+  [[nodiscard]] virtual bool is_request(std::byte first) const = 0;
 };
 
 /// The page that options name; null for none. Throws rr::Error (invalid_configuration).

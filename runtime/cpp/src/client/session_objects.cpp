@@ -7,6 +7,7 @@
 
 #include "rr/error.hpp"
 #include "rr/type.hpp"
+#include "runtime/cpp/src/channel/logging.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
 #include "runtime/cpp/src/client/definition_reader.hpp"
 #include "runtime/cpp/src/client/session.hpp"
@@ -217,6 +218,7 @@ void Session::foresee(const Message& message) {
 
 [[gnu::hot]] void Session::handle(const Message& message, const Entry& first,
                                   const MemoryRef& owner) {
+  const channel::LogScope scope(core_->options(), *connection_, connection_->own_endpoint());
   const auto handle_one = [&](const Entry& entry) {
     endpoint::call_user_code(*core_, "a handler", [&] { handle_entry(message, entry, owner); });
   };

@@ -7,10 +7,14 @@
 
 #include "rr/error.hpp"
 #include "rr/mutex.hpp"
-#include "rr/printable.hpp"
 #include "rr/tap.hpp"
 #include "rr/url.hpp"
+#include "rr/version.hpp"
 #include "runtime/cpp/src/channel/components.hpp"
+#include "runtime/cpp/src/channel/logging.hpp"
+#include "runtime/cpp/src/channel/metrics.hpp"
+#include "runtime/cpp/src/channel/metrics_text.hpp"
+#include "runtime/cpp/src/channel/status.hpp"
 #include "runtime/cpp/src/endpoint/timer.hpp"
 
 namespace rr::endpoint {
@@ -44,28 +48,35 @@ std::shared_ptr<const NodeOptions> completed(NodeOptions options) {
 
 namespace {
 
-void log_to(const NodeOptions& options, LogLevel level, std::string_view text) {
-  if (!options.log) return;
-  // Much of what is logged quotes another node.
-  constexpr std::size_t longest_line = 2000;
-  try {
-    options.log(level, printable(text, longest_line));
-  } catch (...) {
-    // There is nowhere else to say it.
-  }
-}
-
 // Says what went wrong where nobody else can be told, and the core may be gone.
 std::function<void(std::string_view)> error_log(std::shared_ptr<const NodeOptions> options) {
   return [options = std::move(options)](std::string_view text) {
-    log_to(*options, LogLevel::error, text);
+    channel::log(*options, LogLevel::error, text);
   };
 }
 
 channel::Reactor::Terms reactor_terms(const std::shared_ptr<const NodeOptions>& options) {
   return {.max_threads = options->max_threads,
           .session_threads = std::max(options->session_threads, 1U),
-          .report = error_log(options)};
+          .report = error_log(options),
+          .metrics = options->metrics.is_enabled ? std::make_shared<channel::Metrics>() : nullptr};
+}
+
+// What the node holds and runs, beside what it has counted.
+void write_state(channel::MetricsText& text, const channel::Reactor& reactor,
+                 const channel::Pools& pools) {
+  text.begin(
+      {"robdef_budget_used_bytes", "gauge", "Bytes that peers make this node hold.", "bytes"});
+  text.sample("", {{"pool", "sessions"}}, std::uint64_t{pools.sessions->held()});
+  text.sample("", {{"pool", "before_session"}}, std::uint64_t{pools.before_session->held()});
+  text.begin({"robdef_budget_limit_bytes", "gauge", "How many they may.", "bytes"});
+  text.sample("", {{"pool", "sessions"}}, std::uint64_t{pools.sessions->limit()});
+  text.sample("", {{"pool", "before_session"}}, std::uint64_t{pools.before_session->limit()});
+  text.begin({"robdef_threads", "gauge", "Threads of the node; held: by handlers that block."});
+  text.sample("", {{"state", "live"}}, std::uint64_t{reactor.live_threads()});
+  text.sample("", {{"state", "held"}}, std::uint64_t{reactor.held()});
+  text.gauge({"robdef_work_waiting", "gauge", "Handlers that wait for a thread."},
+             reactor.waiting());
 }
 
 }  // namespace
@@ -117,7 +128,7 @@ class Core::Rounds final : public channel::Timer, public std::enable_shared_from
 Core::Core(NodeOptions options)
     : options_(completed(std::move(options))),
       reactor_(std::make_shared<channel::Reactor>(reactor_terms(options_))),
-      accepted_(std::make_shared<channel::Admission>(options_)),
+      accepted_(std::make_shared<channel::Admission>(options_, reactor_->shared_metrics())),
       pools_(channel::make_pools(*options_)),
       types_(std::make_shared<const TypeRegistry>()) {
   const auto limit = std::min(
@@ -126,14 +137,39 @@ Core::Core(NodeOptions options)
                                                         channel::Milliseconds(longest_round));
   rounds_ = std::make_shared<Rounds>(reactor_, period);
   channel::watch_pools(pools_, reactor_);
-  tls_ = channel::make_tls(options_->tls, options_->id, reactor_, options_->log);
-  web_sockets_ = channel::make_web_sockets(options_->web_socket);
+  std::function<void(LogLevel, std::string_view)> tls_log;
+  if (channel::has_log(*options_)) {
+    tls_log = [options = options_](LogLevel level, std::string_view text) {
+      channel::log(*options, level, text);
+    };
+  }
+  tls_ = channel::make_tls(options_->tls, options_->id, reactor_, tls_log);
+  make_status();
+  web_sockets_ = channel::make_web_sockets(options_->web_socket, status_);
   channels_ = channel::all_channels(context());
 }
 
 Core::~Core() { stop(); }
 
-void Core::log(LogLevel level, std::string_view text) const { log_to(*options_, level, text); }
+void Core::make_status() {
+  if (!options_->metrics.is_enabled) return;
+  status_ = std::make_shared<channel::Status>(options_->metrics);
+  status_->add(
+      [options = options_, reactor = reactor_, pools = pools_](channel::MetricsText& text) {
+        text.begin({"robdef_node", "info", "This node."});
+        text.sample("_info",
+                    {{"node_id", options->id.text()},
+                     {"node_name", options->name},
+                     {"version", std::string(library_version())}},
+                    std::uint64_t{1});
+        reactor->metrics()->write(text);
+        write_state(text, *reactor, pools);
+      });
+}
+
+void Core::log(LogLevel level, std::string_view text) const {
+  channel::log(*options_, level, text);
+}
 
 rr::Timer Core::every(std::chrono::nanoseconds period, std::function<void()> work) {
   if (period <= std::chrono::nanoseconds(0)) {

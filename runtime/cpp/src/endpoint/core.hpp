@@ -22,6 +22,10 @@
 #include "runtime/cpp/src/endpoint/found_urls.hpp"
 #include "runtime/cpp/src/endpoint/sender_clock.hpp"
 
+namespace rr::channel {
+class Status;
+}  // namespace rr::channel
+
 namespace rr::endpoint {
 
 /// An endpoint that wants to be looked after every few seconds.
@@ -48,6 +52,8 @@ class Core : public NodeContext, public std::enable_shared_from_this<Core> {
   }
   /// What peers may make this node hold.
   [[nodiscard]] const channel::Pools& pools() const { return pools_; }
+  /// What the node tells of itself; null where nobody is told.
+  [[nodiscard]] const std::shared_ptr<channel::Status>& status() const { return status_; }
   /// Starts the threads unless they run.
   void start() { reactor_->start(); }
   /// Waits for all threads to end. No connection may be left.
@@ -81,6 +87,7 @@ class Core : public NodeContext, public std::enable_shared_from_this<Core> {
   void attend(std::weak_ptr<Attended> endpoint);
 
  private:
+  void make_status();
   void tell_tap(const Definition& definition) const;
   rr::Timer start_timer(std::chrono::nanoseconds delay, std::chrono::nanoseconds period,
                         std::function<void()> work);
@@ -94,6 +101,7 @@ class Core : public NodeContext, public std::enable_shared_from_this<Core> {
   std::shared_ptr<channel::Admission> accepted_;
   const channel::Pools pools_;
   std::shared_ptr<const channel::Tls> tls_;
+  std::shared_ptr<channel::Status> status_;
   std::shared_ptr<channel::WebSockets> web_sockets_;
   mutable Mutex mutex_;
   std::set<std::shared_ptr<const Definition>> kept_definitions_

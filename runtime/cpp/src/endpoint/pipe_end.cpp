@@ -4,6 +4,7 @@
 
 #include "rr/error.hpp"
 #include "rr/type.hpp"
+#include "runtime/cpp/src/channel/metrics.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
 #include "runtime/cpp/src/endpoint/pipe_packets.hpp"
@@ -86,6 +87,10 @@ std::size_t PipeEnd::State::unacknowledged() const {
 void PipeEnd::State::on_acknowledged(Function<void(std::uint32_t)> function) {
   const MutexLock lock(mutex_);
   std::swap(acknowledged_function_, function);  // what was there before ends behind the lock
+}
+
+void PipeEnd::State::count_dropped() const {
+  if (channel::Metrics* const metrics = core_->reactor().metrics()) metrics->count_dropped_packet();
 }
 
 bool PipeEnd::State::wait_sent(std::chrono::milliseconds limit, std::size_t bytes) const {

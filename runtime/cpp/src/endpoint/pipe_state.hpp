@@ -78,6 +78,8 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   [[nodiscard]] bool has_sent(std::size_t bytes) const;
   void ask_for_acknowledgements(bool on) { asks_.store(on, std::memory_order_relaxed); }
   void on_acknowledged(Function<void(std::uint32_t)> function);
+  /// For the metrics of the node: a packet was not sent, because the other side takes too few.
+  void count_dropped() const;
 
   // Receiving (pipe_state.cpp)
   /// Takes a packet that has arrived: `size` bytes of a message, and `memory` bytes of containers.

@@ -23,6 +23,10 @@ class WireTable {
   Added add(const End& end);
   void remove(const WireEnd::State& end);
   [[nodiscard]] std::vector<End> all() const;
+  [[nodiscard]] std::size_t size() const {
+    const MutexLock lock(mutex_);
+    return ends_.size();
+  }
   using Choice = std::function<bool(const WireEnd::State&)>;
   /// Takes out those of an object and of the objects below it, but for what `is_taken` denies;
   /// empty: all.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "rr/url.hpp"
+#include "runtime/cpp/src/channel/status.hpp"
 #include "runtime/cpp/src/endpoint/user_code.hpp"
 #include "runtime/cpp/src/node/node_state.hpp"
 
@@ -149,6 +150,18 @@ Timer Node::after(std::chrono::nanoseconds delay, std::function<void()> work) {
 }
 
 void Node::run_aside(std::function<void()> work) { state_->run_aside(std::move(work)); }
+
+std::string Node::metrics() const {
+  const auto& status = state_->core->status();
+  if (!status) {
+    throw Error(ErrorCode::invalid_operation, "the node counts nothing: NodeOptions::metrics");
+  }
+  return status->metrics();
+}
+
+void Node::set_fault(std::string why) {
+  if (const auto& status = state_->core->status()) status->set_fault(std::move(why));
+}
 
 void Node::shutdown() {
   state_->begin_end();

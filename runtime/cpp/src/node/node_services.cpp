@@ -3,9 +3,12 @@
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "rr/discovery.hpp"
 #include "rr/url.hpp"
+#include "runtime/cpp/src/channel/metrics_text.hpp"
+#include "runtime/cpp/src/channel/status.hpp"
 #include "runtime/cpp/src/discovery/interfaces.hpp"
 #include "runtime/cpp/src/endpoint/service_index_types.hpp"
 #include "runtime/cpp/src/node/node_discovery.hpp"
@@ -17,8 +20,57 @@ namespace {
 
 void tell_nonce(Places& places, discovery::NodeDiscovery& discovery, const endpoint::Core& core) {
   const std::string failure = places.tell_nonce(discovery.announcer());
-  const auto& log = core.options().log;
-  if (!failure.empty() && log) log(LogLevel::warning, failure);
+  if (!failure.empty()) core.log(LogLevel::warning, failure);
+}
+
+// The metrics of so many services have their names; those of further ones are added up, so that
+// the text has a limit.
+constexpr std::size_t most_services_named = 100;
+
+struct ServiceUse {
+  std::string name;
+  service::ServiceHost::Use use;
+};
+
+// What the services of a node are used for, the oldest first; the last one may stand for several.
+std::vector<ServiceUse> uses_of(const service::Directory& directory) {
+  auto hosts = directory.all();
+  std::vector<ServiceUse> uses;
+  for (auto host = hosts.rbegin(); host != hosts.rend(); ++host) {
+    const service::ServiceHost::Use use = (*host)->use();
+    if (uses.size() < most_services_named) {
+      uses.push_back({(*host)->name(), use});
+      continue;
+    }
+    if (uses.size() == most_services_named) uses.push_back({"", {}});
+    service::ServiceHost::Use& rest = uses.back().use;
+    rest.sessions += use.sessions;
+    rest.objects += use.objects;
+    rest.wires += use.wires;
+    rest.pipes += use.pipes;
+  }
+  // One that is unregistered meanwhile may end with this, and its objects are the program's.
+  directory.core()->reactor().post([kept = std::move(hosts)]() mutable { kept.clear(); });
+  return uses;
+}
+
+void write_services(channel::MetricsText& text, const service::Directory& directory) {
+  const std::vector<ServiceUse> uses = uses_of(directory);
+  const auto write = [&](const channel::MetricsText::Family& family,
+                         std::size_t service::ServiceHost::Use::*value) {
+    text.begin(family);
+    for (const ServiceUse& each : uses) {
+      text.sample("", {{"robdef_service", each.name}}, std::uint64_t{each.use.*value});
+    }
+  };
+  using Use = service::ServiceHost::Use;
+  write({"robdef_server_sessions", "gauge", "Clients that are connected to services."},
+        &Use::sessions);
+  write({"robdef_server_objects", "gauge", "Objects of services that are in use."}, &Use::objects);
+  write({"robdef_server_wire_connections", "gauge", "Wires that clients have connected."},
+        &Use::wires);
+  write({"robdef_server_pipe_endpoints", "gauge", "Pipe endpoints that clients have connected."},
+        &Use::pipes);
 }
 
 /// The services of a node, which others find in their index.
@@ -40,6 +92,11 @@ class NodeServices final : public NodePart {
                                  tell_nonce(*places, *discovery, *core);
                                }});
     directory_->start();
+    if (!node.core->status()) return;
+    node.core->status()->add(
+        [weak = std::weak_ptr<service::Directory>(directory_)](channel::MetricsText& text) {
+          if (const auto directory = weak.lock()) write_services(text, *directory);
+        });
   }
 
   void end() override { directory_->close(); }

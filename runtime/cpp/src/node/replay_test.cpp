@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <future>
+#include <limits>
 #include <mutex>
 #include <thread>
 
@@ -229,6 +230,61 @@ TEST_F(Replaying, WhatDiffersIsNamed) {
   EXPECT_THAT(texts.front(), HasSubstr(": `return`: double 7 recorded, double 3 came"));
   EXPECT_THAT(texts[1], HasSubstr("error 0 recorded, 19 came"));
   EXPECT_THAT(texts[2], HasSubstr("came and is not recorded"));
+}
+
+TEST_F(Replaying, NumbersMayDifferByATolerance) {
+  struct Drifting final : Counter {
+    double get_value() override { return 2000.0 + drift; }
+    double add(double a, double b) override { return a + b + drift; }
+    double drift = 0;
+  };
+  const auto object = std::make_shared<Drifting>();
+  const std::string path = record_counter(
+      [](CounterStub& counter) {
+        counter.get_value();
+        counter.add(0.25, 0.25);
+      },
+      object);
+  object->drift = 0.5;
+  Pair pair({}, {}, object);
+  const auto differences = [&](double tolerance, std::vector<std::string> ignored = {}) {
+    PlayOptions options;
+    options.service = replay::HostPort{"127.0.0.1", pair.port};
+    options.is_fast = true;
+    options.tolerance = tolerance;
+    options.ignored = std::move(ignored);
+    return play(path, options);
+  };
+  EXPECT_EQ(differences(0).differences.size(), 2U);
+  const PlayReport some = differences(0.001);  // enough of 2000, and too little of 0.5
+  EXPECT_THAT(all_of(some), HasSubstr("FunctionCallRes counter.add"));
+  EXPECT_EQ(some.differences.size(), 1U);
+  EXPECT_EQ(all_of(differences(0.5)), "");
+  EXPECT_EQ(all_of(differences(std::numeric_limits<double>::max())), "");
+  object->drift = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(differences(1e300).differences.size(), 2U) << "what is no number is near to none";
+  // What is ignored is counted, request and answer, and nothing beside it.
+  const PlayReport ignoring = differences(0, {"counter.add"});
+  EXPECT_EQ(ignoring.differences.size(), 1U);
+  EXPECT_GE(ignoring.ignored, 1U);
+  EXPECT_EQ(differences(0, {"counter.ad", "counter.addition"}).differences.size(), 2U);
+  EXPECT_EQ(all_of(differences(0, {"counter"})), "");
+}
+
+// Texts and integers have no tolerance.
+TEST_F(Replaying, ATextMayNotDiffer) {
+  struct Shouting final : Counter {
+    std::string echo(const std::string& text) override { return text + "!"; }
+  };
+  const std::string path = record_counter([](CounterStub& counter) { counter.echo("a"); });
+  Pair pair({}, {}, std::make_shared<Shouting>());
+  PlayOptions options;
+  options.service = replay::HostPort{"127.0.0.1", pair.port};
+  options.is_fast = true;
+  options.tolerance = 1000;
+  EXPECT_EQ(play(path, options).differences.size(), 1U);
+  options.ignored = {"counter.echo"};
+  EXPECT_EQ(all_of(play(path, options)), "");
 }
 
 TEST_F(Replaying, ARecordingThatCannotBePlayedIsRefused) {

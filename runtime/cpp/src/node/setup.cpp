@@ -11,8 +11,11 @@
 #include "rr/error.hpp"
 #include "rr/wire.hpp"
 #include "runtime/cpp/src/channel/components.hpp"
+#include "runtime/cpp/src/channel/logging.hpp"
+#include "runtime/cpp/src/node/end_of_service.hpp"
 #include "runtime/cpp/src/node/kept_node_id.hpp"
 #include "runtime/cpp/src/platform/node_folders.hpp"
+#include "runtime/cpp/src/platform/service_manager.hpp"
 
 namespace rr {
 namespace {
@@ -23,20 +26,28 @@ constexpr std::uint32_t jumbo_size = 100 * 1024 * 1024;
 constexpr const char* private_local_url = "rr+local:///";
 constexpr const char* public_local_url = "rr+local:///?public=true";
 
-constexpr std::array<std::string_view, 4> level_names = {"debug", "info", "warning", "error"};
+// The least level that is reported; nothing for none.
+std::optional<LogLevel> least_level(const std::string& name) {
+  for (const LogLevel level :
+       {LogLevel::debug, LogLevel::info, LogLevel::warning, LogLevel::error}) {
+    if (log_level_name(level) == name) return level;
+  }
+  return std::nullopt;
+}
 
-// Prints what is at least as grave as `least`.
-std::function<void(LogLevel, std::string_view)> printing_log(const std::string& least) {
-  std::size_t first = 0;
-  while (first < level_names.size() && level_names[first] != least) ++first;
-  if (first == level_names.size()) return {};
-  return [first](LogLevel level, std::string_view text) {
-    const auto number = static_cast<std::size_t>(level);
-    if (number < first) return;
-    const std::string line =
-        "robotraconteur: " + std::string(level_names[number]) + ": " + std::string(text) + "\n";
-    std::fwrite(line.data(), 1, line.size(), stderr);
-  };
+// A log for a program that has none of its own.
+void apply_log(const SetupOptions& setup, NodeOptions& options) {
+  const auto least = least_level(setup.log_level);
+  if (options.log || options.log_record || !least) return;
+  if (!setup.log_file.empty()) {
+    options.log_record =
+        LogFile(setup.log_file, {.least = *least,
+                                 .max_size = setup.log_file_size,
+                                 .kept_files = static_cast<unsigned>(setup.log_file_count)});
+  } else {
+    options.log_record =
+        StderrLog(*least, setup.log_format == "logfmt" ? LogFormat::logfmt : LogFormat::text);
+  }
 }
 
 void apply_limits(const SetupOptions& setup, NodeOptions& options) {
@@ -93,6 +104,12 @@ void apply_channels(const SetupOptions& setup, NodeOptions& options) {
   }
 }
 
+void apply_metrics(const SetupOptions& setup, MetricsOptions& metrics) {
+  metrics.is_enabled = metrics.is_enabled || setup.metrics;
+  append(metrics.from, setup.metrics_from);
+  append(metrics.hosts, setup.metrics_host);
+}
+
 // A channel whose flags a set-up knows, and what it does with them.
 struct ChannelRow {
   bool (*is_wanted)(const SetupOptions&);
@@ -120,13 +137,13 @@ constexpr std::array channels = {
 
 // Most machines have no folder for public local sockets, for which an administrator is needed: the
 // user's own is used instead.
-std::uint16_t listen(Node& node, const std::string& url,
-                     const std::function<void(LogLevel, std::string_view)>& log) {
+std::uint16_t listen(Node& node, const std::string& url, const NodeOptions& options) {
   try {
     return node.listen(url);
   } catch (const Error& error) {
     if (url != public_local_url || error.code() != ErrorCode::system_resource_error) throw;
-    if (log) log(LogLevel::info, "local sockets are for this user only: " + error.message());
+    channel::log(options, LogLevel::info,
+                 "local sockets are for this user only: " + error.message());
   }
   return node.listen(private_local_url);
 }
@@ -134,9 +151,8 @@ std::uint16_t listen(Node& node, const std::string& url,
 // What may be asked for, and nobody here does.
 void report_missing(const SetupOptions& setup, const NodeOptions& options) {
   const auto warn = [&](const char* flag, const char* why) {
-    if (options.log) {
-      options.log(LogLevel::warning, "the flag " + std::string(flag) + " does nothing: " + why);
-    }
+    channel::log(options, LogLevel::warning,
+                 "the flag " + std::string(flag) + " does nothing: " + why);
   };
   if (setup.hardware_enable) warn("hardware-enable", "there are no channels to hardware");
   if (setup.local_tap_enable) {
@@ -189,9 +205,17 @@ std::string place_line(const SetupOptions& setup, std::uint16_t port) {
 
 void report_place(const SetupOptions& setup, const NodeOptions& options, std::uint16_t port) {
   const std::string line = place_line(setup, port);
-  if (setup.node.log) {
-    options.log(LogLevel::info, line);
-  } else if (setup.log_level != "error" && setup.log_level != "disable") {
+  if (setup.node.log || setup.node.log_record) {
+    channel::log(options, LogLevel::info, line);
+  } else if (setup.log_level == "error" || setup.log_level == "disable") {
+    return;
+  } else if (setup.log_format == "logfmt") {
+    NodeOptions told;
+    told.id = options.id;
+    told.name = options.name;
+    told.log_record = StderrLog(LogLevel::info, LogFormat::logfmt);
+    channel::log(told, LogLevel::info, line);
+  } else {
     const std::string whole = "robotraconteur: " + line + "\n";
     std::fwrite(whole.data(), 1, whole.size(), stderr);
   }
@@ -209,6 +233,7 @@ struct NodeSetup::State {
   std::optional<KeptNodeId> kept_id;  // goes after the node
   std::optional<Node> node;
   std::uint16_t port = 0;
+  EndOfService end;
 };
 
 NodeSetup::NodeSetup(SetupOptions options, int argc, const char* const* argv)
@@ -219,18 +244,18 @@ NodeSetup::NodeSetup(SetupOptions options, int argc, const char* const* argv)
   state.arguments = setup.take(argc, argv);
   state.kept_id = choose_id(setup);
   NodeOptions node_options = setup.node;
-  if (!node_options.log) node_options.log = printing_log(setup.log_level);
+  apply_log(setup, node_options);
   apply_limits(setup, node_options);
   apply_channels(setup, node_options);
+  apply_metrics(setup, node_options.metrics);
   report_missing(setup, node_options);
-  const auto log = node_options.log;
   state.node.emplace(node_options);
   Node& node = *state.node;
-  setup.node.id = node.id();
+  setup.node.id = node_options.id = node.id();
 
   for (const ChannelRow& row : channels) {
     if (!row.is_wanted(setup)) continue;
-    const std::uint16_t port = listen(node, row.url(setup), log);
+    const std::uint16_t port = listen(node, row.url(setup), node_options);
     if (!row.is_tcp) continue;
     state.port = port;
     report_place(setup, node_options, port);
@@ -245,7 +270,7 @@ NodeSetup::NodeSetup(SetupOptions options, int argc, const char* const* argv)
     try {
       discovery.listen({.network = network_of(setup), .local = setup.local_enable});
     } catch (const Error& error) {
-      if (log) log(LogLevel::warning, error.message());
+      channel::log(node_options, LogLevel::warning, error.message());
     }
   }
 }
@@ -256,6 +281,11 @@ Node& NodeSetup::node() const { return *state_->node; }
 const SetupOptions& NodeSetup::options() const { return state_->options; }
 const std::vector<std::string>& NodeSetup::arguments() const { return state_->arguments; }
 std::uint16_t NodeSetup::port() const { return state_->port; }
+int NodeSetup::wait() { return state_->end.wait(*state_->node); }
+void NodeSetup::end_wait() { state_->end.request(); }
+bool notify_service_manager(std::string_view lines) {
+  return platform::notify_service_manager(lines);
+}
 
 void print_candidate_urls(std::ostream& out, const Node& node, std::string_view service) {
   for (const std::string& url : node.candidate_urls(service)) out << url << '\n';

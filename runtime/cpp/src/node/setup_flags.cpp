@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The flags of a node's set-up: one table, read for the command line and for the environment.
+// The flags of a node's set-up: one table, read for the command line, for the environment and for
+// the configuration file.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -14,6 +15,7 @@
 #include "rr/error.hpp"
 #include "rr/setup.hpp"
 #include "rr/url.hpp"
+#include "runtime/cpp/src/node/setup_file.hpp"
 
 namespace rr {
 namespace {
@@ -59,6 +61,26 @@ bool take_level(SetupOptions& options, const std::string& value) {
   return std::find(levels.begin(), levels.end(), level) != levels.end();
 }
 
+bool take_format(SetupOptions& options, const std::string& value) {
+  options.log_format = value;
+  return value == "text" || value == "logfmt";
+}
+
+bool take_number(std::uint64_t& to, const std::string& value) {
+  const char* const end = value.data() + value.size();
+  const auto [stop, error] = std::from_chars(value.data(), end, to);
+  return !value.empty() && error == std::errc() && stop == end;
+}
+
+bool take_file_size(SetupOptions& options, const std::string& value) {
+  return take_number(options.log_file_size, value) && options.log_file_size != 0;
+}
+
+bool take_file_count(SetupOptions& options, const std::string& value) {
+  constexpr std::uint64_t most = 1000;  // each is renamed when one is full
+  return take_number(options.log_file_count, value) && options.log_file_count <= most;
+}
+
 std::optional<bool> truth_of(const std::string& value) {
   if (value == "true" || value == "1") return true;
   if (value == "false" || value == "0") return false;
@@ -71,8 +93,12 @@ bool take_system_trust(SetupOptions& options, const std::string& value) {
   return truth.has_value();
 }
 
+// The file is read before everything else (config_file()).
+bool take_config(SetupOptions& /*options*/, const std::string& value) { return !value.empty(); }
+
 using O = SetupOptions;
 const std::array flags = {
+    Flag{"config", &take_config},
     Flag{"discovery-listening-enable", &O::discovery_listening_enable},
     Flag{"discovery-announce-enable", &O::discovery_announce_enable},
     Flag{"local-enable", &O::local_enable},
@@ -107,6 +133,13 @@ const std::array flags = {
     Flag{"nodename", &take_name},
     Flag{"tcp-port", &take_port},
     Flag{"log-level", &take_level},
+    Flag{"log-format", &take_format},
+    Flag{"log-file", &O::log_file},
+    Flag{"log-file-size", &take_file_size},
+    Flag{"log-file-count", &take_file_count},
+    Flag{"metrics", &O::metrics},
+    Flag{"metrics-from", &O::metrics_from},
+    Flag{"metrics-host", &O::metrics_host},
     Flag{"local-tap-enable", &O::local_tap_enable},
     Flag{"local-tap-name", &O::local_tap_name},
     Flag{"jumbo-message", &O::jumbo_message},
@@ -141,11 +174,48 @@ std::string variable_of(const Flag& flag) {
   return name;
 }
 
-const Flag& find_flag(const std::string& written, std::string_view name) {
+const Flag* flag_of(std::string_view name) {
   for (const Flag& flag : flags) {
-    if (flag.name == name) return flag;
+    if (flag.name == name) return &flag;
   }
-  throw Error(ErrorCode::invalid_argument, "there is no flag `" + written + "`");
+  return nullptr;
+}
+
+const Flag& find_flag(const std::string& written, std::string_view name) {
+  const Flag* const flag = flag_of(name);
+  if (flag == nullptr) {
+    throw Error(ErrorCode::invalid_argument, "there is no flag `" + written + "`");
+  }
+  return *flag;
+}
+
+// The configuration file that the command line names or, if it does not, the environment; empty:
+// none.
+std::string config_file(int argc, const char* const* argv) {
+  constexpr std::string_view name = "--robotraconteur-config";
+  std::string file;
+  if (const char* const variable = std::getenv("ROBOTRACONTEUR_CONFIG")) file = variable;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (argument == "--") break;
+    if (argument == name && i + 1 < argc) file = argv[i + 1];
+    if (argument.starts_with(name) && argument.substr(name.size()).starts_with('=')) {
+      file = argument.substr(name.size() + 1);
+    }
+  }
+  return file;
+}
+
+void take_file(SetupOptions& options, const std::string& path) {
+  for (const SetupLine& line : read_setup_file(path)) {
+    const Flag* const flag = flag_of(line.name);
+    const bool is_known = flag != nullptr && flag->name != "config";
+    if (is_known && take_value(options, *flag, line.value)) continue;
+    throw Error(
+        ErrorCode::invalid_configuration,
+        line.place + (is_known ? ": `" + line.value + "` is no value for `" + line.name + "`"
+                               : ": there is no setting `" + line.name + "`"));
+  }
 }
 
 }  // namespace
@@ -173,6 +243,7 @@ SetupOptions SetupOptions::secure_server(std::string name, std::uint16_t port) {
 }
 
 std::vector<std::string> SetupOptions::take(int argc, const char* const* argv) {
+  if (const std::string file = config_file(argc, argv); !file.empty()) take_file(*this, file);
   for (const Flag& flag : flags) {
     const std::string name = variable_of(flag);
     const char* const value = std::getenv(name.c_str());

@@ -142,6 +142,7 @@ TEST_F(Setup, EveryFlagThatUsersKnowIsTaken) {
                                    "require-tls",
                                    "local-tap-enable",
                                    "web-inspector",
+                                   "metrics",
                                    "jumbo-message"};
   for (const char* const name : switches) {
     for (const char* const value : {"=true", "=false", "=1", "=0"}) {
@@ -157,7 +158,10 @@ TEST_F(Setup, EveryFlagThatUsersKnowIsTaken) {
         "--robotraconteur-tls-certificate=a.pem", "--robotraconteur-tls-key=a.key",
         "--robotraconteur-tls-authority=ca.pem", "--robotraconteur-tls-revocation=revoked.pem",
         "--robotraconteur-local-tap-name=tap", "--robotraconteur-web-inspector-page=page.html",
-        "--robotraconteur-log-level=FATAL"}) {
+        "--robotraconteur-log-level=FATAL", "--robotraconteur-log-format=logfmt",
+        "--robotraconteur-log-file=node.log", "--robotraconteur-log-file-size=1",
+        "--robotraconteur-log-file-count=0", "--robotraconteur-metrics-from=10.0.0.5",
+        "--robotraconteur-metrics-host=a.example"}) {
     EXPECT_NO_THROW(taken(SetupOptions::client(), {flag})) << flag;
   }
 }
@@ -181,6 +185,57 @@ TEST_F(Setup, FlagsWinOverTheEnvironmentAndThatOverTheProgram) {
   EXPECT_EQ(options.tcp_port, 2222);
   EXPECT_EQ(options.log_level, "error");
   EXPECT_EQ(taken(SetupOptions::server("a.node", 3333), {}).tcp_port, 1111);
+}
+
+TEST_F(Setup, AFileComesBeforeTheEnvironmentAndFlags) {
+  const fs::path file = home_ / "node.conf";
+  std::ofstream(file) << "# of the camera\n\n  tcp-port = 1000\n\tlog-level=info\r\n"
+                      << "nodename = camera.host\nmetrics = true\nmetrics-from = 10.0.0.5\n"
+                      << "metrics-from = fd00::/8\ntls-key = /etc/a b#c.key\njumbo-message = 1\n";
+  const std::string flag = "--robotraconteur-config=" + file.string();
+  const SetupOptions options = taken(SetupOptions::server("a.node", 3333), {flag.c_str()});
+  EXPECT_EQ(options.tcp_port, 1000);
+  EXPECT_EQ(options.log_level, "info");
+  EXPECT_EQ(options.node.name, "camera.host");
+  EXPECT_EQ(options.tls_key, "/etc/a b#c.key");
+  EXPECT_TRUE(options.metrics && options.jumbo_message);
+  EXPECT_EQ(options.metrics_from, (std::vector<std::string>{"10.0.0.5", "fd00::/8"}));
+
+  set("ROBOTRACONTEUR_TCP_PORT", "2000");
+  EXPECT_EQ(taken(SetupOptions::client(), {flag.c_str()}).tcp_port, 2000);
+  EXPECT_EQ(taken(SetupOptions::client(),
+                  {"--robotraconteur-tcp-port=3000", "--robotraconteur-config", file.c_str()})
+                .tcp_port,
+            3000);
+  set("ROBOTRACONTEUR_CONFIG", file.string());
+  EXPECT_EQ(taken(SetupOptions::client(), {}).node.name, "camera.host");
+  EXPECT_EQ(taken(SetupOptions::client(), {"--", "--robotraconteur-config=/nowhere"}).node.name,
+            "camera.host");
+}
+
+TEST_F(Setup, AFileThatIsWrongIsRefusedWithItsLine) {
+  const fs::path file = home_ / "node.conf";
+  const auto refusal = [&](const std::string& text) {
+    std::ofstream(file) << text;
+    const std::string flag = "--robotraconteur-config=" + file.string();
+    const Error error = error_of([&] { taken(SetupOptions::client(), {flag.c_str()}); });
+    EXPECT_EQ(error.code(), ErrorCode::invalid_configuration) << text;
+    const std::string& message = error.message();
+    const std::size_t at = message.find("node.conf:");
+    return at == std::string::npos ? message : message.substr(at);
+  };
+  EXPECT_EQ(refusal("tcp-port = 1\n\ntcp-prot = 2\n"),
+            "node.conf:3: there is no setting `tcp-prot`");
+  EXPECT_EQ(refusal("tcp-port = 70000"), "node.conf:1: `70000` is no value for `tcp-port`");
+  EXPECT_EQ(refusal("metrics = maybe\n"), "node.conf:1: `maybe` is no value for `metrics`");
+  EXPECT_EQ(refusal("metrics\n"), "node.conf:1: `metrics` is no `name = value`");
+  EXPECT_EQ(refusal(" = 1\n"), "node.conf:1: `= 1` is no `name = value`");
+  EXPECT_EQ(refusal("config = other.conf\n"), "node.conf:1: there is no setting `config`");
+  EXPECT_NE(refusal(std::string(70'000, '#')).find("64 KiB"), std::string::npos);
+  EXPECT_EQ(error_of([&] {
+              taken(SetupOptions::client(), {"--robotraconteur-config=/nowhere/node.conf"});
+            }).code(),
+            ErrorCode::invalid_configuration);
 }
 
 TEST_F(Setup, AServerKeepsItsIdByItsName) {

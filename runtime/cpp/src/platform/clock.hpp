@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <ctime>
+#include <string>
 
 #include "rr/visibility.hpp"
 
@@ -15,5 +16,8 @@ RR_INSIDE Time coarse_now();
 
 /// The parts of a time in UTC.
 RR_INSIDE std::tm utc(std::time_t time);
+
+/// As RFC 3339 has it, with 1 to 6 decimals of the second: `2026-01-31T09:30:00.125Z`.
+RR_INSIDE std::string utc_text(std::chrono::system_clock::time_point time, unsigned decimals);
 
 }  // namespace rr::platform

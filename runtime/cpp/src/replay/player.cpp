@@ -47,7 +47,7 @@ class Player {
  private:
   struct Line {
     PlayedLine played;
-    std::set<std::string> lossy;  // wires of which a value did not come
+    std::set<std::string> lossy;  // what need not come, and once did not
     bool is_over = false;         // nothing more is expected
   };
 
@@ -131,9 +131,10 @@ class Player {
     if (at.is_over) return;
     const std::string name = name_of(recorded.entry.type) + " " + place_of(recorded.entry);
     const bool is_wire = recorded.entry.type == EntryType::wire_packet;
-    const Milliseconds patience = !is_wire                  ? options_.patience
-                                  : at.lossy.contains(name) ? Milliseconds(0)
-                                                            : wire_patience;
+    const bool is_ignored = is_about(recorded.entry, options_.ignored);
+    const Milliseconds most = is_wire ? wire_patience : options_.patience;
+    const bool may_be_lost = (is_wire || is_ignored) && at.lossy.contains(name);
+    const Milliseconds patience = may_be_lost ? Milliseconds(0) : most;
     // A message is due when it was recorded; it may be late by as much as one waits for it.
     auto deadline = Clock::now();
     if (!options_.is_fast) deadline = std::max(deadline, due());
@@ -141,7 +142,11 @@ class Player {
     while (true) {
       receive(Milliseconds(0));
       if (const auto live = at.played.take(recorded)) {
-        compare(recorded, *live);
+        if (is_ignored) {
+          ++report_.ignored;
+        } else {
+          compare(recorded, *live);
+        }
         return;
       }
       if (!at.played.is_open()) return lose(at);
@@ -149,9 +154,9 @@ class Player {
       if (left.count() <= 0) break;
       receive(left);
     }
-    if (is_wire) {
+    if (is_wire || is_ignored) {
       at.lossy.insert(name);
-      ++report_.left_out;
+      ++(is_ignored ? report_.ignored : report_.left_out);
     } else {
       differ(text_of(recorded.entry) + " did not come");
     }
@@ -159,7 +164,7 @@ class Player {
 
   void compare(const Unit& recorded, const Unit& live) {
     ++report_.compared;
-    if (const auto text = difference(recorded.entry, live.entry)) {
+    if (const auto text = difference(recorded.entry, live.entry, options_.tolerance)) {
       const std::string id =
           recorded.entry.request_id == 0 ? "" : " id " + std::to_string(recorded.entry.request_id);
       differ(name_of(recorded.entry.type) + " " + place_of(recorded.entry) + id + ": " + *text);
@@ -179,7 +184,9 @@ class Player {
       }
     }
     for (const Unit& unit : at.played.left()) {
-      if (unit.entry.type == EntryType::wire_packet) {
+      if (is_about(unit.entry, options_.ignored)) {
+        ++report_.ignored;
+      } else if (unit.entry.type == EntryType::wire_packet) {
         ++report_.left_out;
       } else {
         report_.differences.push_back(

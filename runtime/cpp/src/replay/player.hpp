@@ -24,6 +24,10 @@ struct PlayOptions {
   std::optional<std::uint32_t> connection;  ///< only this one; none: all
   /// Each message as soon as those before it have come; otherwise at its recorded time at least.
   bool is_fast = false;
+  /// How much floating-point numbers may differ: see difference().
+  double tolerance = 0;
+  /// Members and objects, as `counter.value`, of which nothing is compared, and nothing need come.
+  std::vector<std::string> ignored{};
   /// How long a message, or a client, is waited for.
   Milliseconds patience{5000};
 };
@@ -39,6 +43,7 @@ struct PlayReport {
   std::uint64_t sent = 0;      ///< messages
   std::uint64_t compared = 0;  ///< entries that came as recorded, or almost
   std::uint64_t left_out = 0;  ///< values of wires that did not come, or came too much
+  std::uint64_t ignored = 0;   ///< entries of members that are ignored
   std::vector<Difference> differences;
   std::vector<std::string> gaps;  ///< what the recording lacks
 };

@@ -30,7 +30,14 @@ constexpr bool is_connection_test(EntryType type) {
 bool may_be(const EntryTree& recorded, const EntryTree& live);
 
 /// Where two entries differ, in a line; nothing when they do not. How they were put on the wire
-/// (string codes, flags) does not count.
-std::optional<std::string> difference(const EntryTree& recorded, const EntryTree& live);
+/// (string codes, flags) does not count. Floating-point numbers may differ by `tolerance`, and by
+/// as many parts of a recorded one that is larger than 1; what is no number is the same only as
+/// itself.
+std::optional<std::string> difference(const EntryTree& recorded, const EntryTree& live,
+                                      double tolerance = 0);
+
+/// Whether an entry is about a member or an object at one of these paths (`counter.value`), or
+/// about what is below an object there.
+bool is_about(const EntryTree& entry, const std::vector<std::string>& paths);
 
 }  // namespace rr::replay

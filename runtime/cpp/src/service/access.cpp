@@ -214,8 +214,8 @@ void ServerEndpoint::answer_monitor_operation(const Question& question) {
   auto reply = [self = shared_from_this(),
                 late = LateAnswer{entry.type, std::string(entry.service_path),
                                   std::string(entry.member), entry.request_id, nullptr,
-                                  question.batch, question.place, admission_of(question)}](
-                   Monitors::Outcome outcome, const Error* error) {
+                                  question.batch, question.place, admission_of(question),
+                                  question.begun}](Monitors::Outcome outcome, const Error* error) {
     if (outcome == Monitors::Outcome::failed) {
       self->answer_late(late, *error);
     } else {
@@ -223,6 +223,7 @@ void ServerEndpoint::answer_monitor_operation(const Question& question) {
       self->answer_late_text(late, outcome == Monitors::Outcome::entered ? "OK" : "Continue");
     }
   };
+  question.is_put_off = true;
   if (entry.member == "MonitorContinueEnter") {
     monitors.go_on(*object, client_.endpoint, std::move(reply));
     return;

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "runtime/cpp/src/channel/metrics.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
 #include "runtime/cpp/src/service/server_endpoint.hpp"
 #include "runtime/cpp/src/service/service_host.hpp"
@@ -61,7 +62,14 @@ void AuditTrail::disconnected() {
   if (options_ != nullptr) tell(make(AuditKind::disconnect));
 }
 
+void AuditTrail::count_login(bool is_allowed) const {
+  if (channel::Metrics* const metrics = endpoint_.core()->reactor().metrics()) {
+    metrics->count_login(is_allowed);
+  }
+}
+
 void AuditTrail::logged_in(std::string_view user) {
+  count_login(true);
   if (options_ == nullptr) return;
   AuditEvent event = make(AuditKind::login);
   event.user = user;
@@ -69,6 +77,7 @@ void AuditTrail::logged_in(std::string_view user) {
 }
 
 void AuditTrail::refused_login(std::string_view user, const std::exception_ptr& why) {
+  count_login(false);
   if (options_ == nullptr) return;
   AuditEvent event = make(AuditKind::login);
   event.is_allowed = false;

@@ -42,6 +42,7 @@ class AuditTrail {
  private:
   [[nodiscard]] AuditEvent make(AuditKind kind) const;
   [[nodiscard]] AuditEvent make(AuditKind kind, const Question& question) const;
+  void count_login(bool is_allowed) const;
   void tell_request(const Question& question);
   bool may_tell_refusal(std::size_t& left_out);
   void tell(const AuditEvent& event) const;

@@ -64,6 +64,11 @@ class ObjectTree {
   /// where there are too many objects, and what user code throws.
   Object find(std::string_view path, std::uint32_t client);
   [[nodiscard]] const Object& root() const { return root_; }
+  /// Objects that are known, the root among them.
+  [[nodiscard]] std::size_t size() const {
+    const MutexLock lock(mutex_);
+    return size_ + 1;
+  }
 
   // What is forgotten is returned, for the caller to let go of.
   /// The objects at a path and below, of whomever they are; nothing when none is known there.
@@ -118,7 +123,7 @@ class ObjectTree {
   const Notices notices_;
   const channel::Milliseconds patience_;
   std::atomic<std::uint32_t> generation_{0};
-  Mutex mutex_;
+  mutable Mutex mutex_;
   Condition settled_;
   std::uint64_t settlements_ RR_GUARDED_BY(mutex_) = 0;
   std::size_t size_ RR_GUARDED_BY(mutex_) =

@@ -13,6 +13,7 @@
 #include "rr/mutex.hpp"
 #include "rr/reader.hpp"
 #include "runtime/cpp/src/channel/account.hpp"
+#include "runtime/cpp/src/channel/time.hpp"
 
 namespace rr::service {
 
@@ -37,6 +38,7 @@ struct LateAnswer {
   std::shared_ptr<ResponseBatch> batch;
   std::size_t place;
   Admission admission{};
+  channel::Time begun{};  ///< when the question was taken up
 };
 
 /// The answers that a session owes. A program may keep what it answers with for longer than the

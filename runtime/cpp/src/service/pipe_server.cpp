@@ -95,13 +95,17 @@ void PipeServerBase::set_backlog_limit(std::size_t packets) const {
   for (const auto& end : *ends) {
     if (limit != 0) {
       end->ask_for_acknowledgements(true);
-      if (end->unacknowledged() > limit) continue;
+      if (end->unacknowledged() > limit) {
+        end->count_dropped();
+        continue;
+      }
     }
     try {
       end->send_written(packet);
     } catch (const Error& error) {
       if (error.code() == ErrorCode::buffer_limit_violation ||
           error.code() == ErrorCode::out_of_system_resource) {
+        end->count_dropped();
         PipeEnd(end).close();
       } else if (end->is_open() && error.code() != ErrorCode::connection_error &&
                  error.code() != ErrorCode::invalid_operation) {

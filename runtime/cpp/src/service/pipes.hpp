@@ -64,6 +64,10 @@ class Pipes final : public endpoint::PipeSide {
   void release(std::string_view path);
   /// The session is over.
   void end();
+  [[nodiscard]] std::size_t count() const {
+    const MutexLock lock(mutex_);
+    return ends_.size();
+  }
 
   // From the ends
   [[nodiscard]] channel::Connection& connection() const override;
@@ -79,7 +83,7 @@ class Pipes final : public endpoint::PipeSide {
   void send_closed(const Served& end);
 
   ServerEndpoint& endpoint_;
-  Mutex mutex_;
+  mutable Mutex mutex_;
   endpoint::PipeTable ends_ RR_GUARDED_BY(mutex_);
 };
 

@@ -65,11 +65,12 @@ ReplyHandle Request::defer() {
       endpoint.shared_from_this(),
       {entry.type, std::string(entry.service_path), std::string(entry.member), entry.request_id,
        &source.member, source.question.batch, source.question.place,
-       service::admission_of(source.question)},
+       service::admission_of(source.question), source.question.begun},
       endpoint.late_answer_limit());
   auto state =
       std::make_unique<ReplyHandle::State>(ReplyHandle::State{endpoint.owed_answers(), number});
   source.made.end();  // it may be answered much later
+  source.question.is_put_off = true;
   source.state = Source::State::deferred;
   return ReplyHandle(std::move(state));
 }

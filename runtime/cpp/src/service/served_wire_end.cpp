@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/channel/metrics.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
 #include "runtime/cpp/src/endpoint/wire_values.hpp"
 #include "runtime/cpp/src/service/offered_wire.hpp"
@@ -82,6 +83,8 @@ void ServedWireEnd::send_common(std::shared_ptr<const void> value, Writer& eleme
     transmit(writer, {stream_, time});
   } catch (const Error&) {
     // The client is gone, or the value is larger than a message may be.
+    channel::Metrics* const metrics = core().reactor().metrics();
+    if (metrics != nullptr && !connection().is_closed()) metrics->count_dropped_value();
   }
 }
 

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "runtime/cpp/src/channel/logging.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
 #include "runtime/cpp/src/endpoint/requests.hpp"
@@ -254,7 +255,7 @@ void ServerEndpoint::answer_late(const LateAnswer& late, const Error& error) {
   Writer& writer = channel::thread_writer();
   writer.reset(late.batch ? late.batch->version() : connection_->version());
   endpoint::write_error_answer(writer, question_of(late), error);
-  finish_late(late, writer);
+  finish_late(late, writer, error.code());
 }
 
 void ServerEndpoint::answer_late_text(const LateAnswer& late, std::string_view text) {
@@ -265,7 +266,8 @@ void ServerEndpoint::answer_late_text(const LateAnswer& late, std::string_view t
   finish_late(late, writer);
 }
 
-void ServerEndpoint::finish_late(const LateAnswer& late, Writer& writer) {
+void ServerEndpoint::finish_late(const LateAnswer& late, Writer& writer, ErrorCode code) {
+  count(late.request_type, late.begun, code);
   const Entry request = question_of(late);
   const auto send = [&] {
     if (late.batch) {
@@ -336,6 +338,7 @@ void ServerEndpoint::lost(const Error& why, channel::DeferredCallbacks& deferred
 }
 
 void ServerEndpoint::closed() {
+  const channel::LogScope scope(core()->options(), *connection_, client_.endpoint);
   if (is_member_.exchange(false)) host_->remove_client(*this);
   end_members();
   last_object_.reset();

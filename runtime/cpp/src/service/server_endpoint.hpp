@@ -48,6 +48,8 @@ struct Question {
   std::shared_ptr<ResponseBatch> batch;  ///< null for a single one
   std::size_t place = 0;                 ///< in the batch
   bool is_urgent = false;                ///< the member is; known once that is found
+  channel::Time begun{};                 ///< when it was taken up; of a node that counts
+  mutable bool is_put_off = false;       ///< it is answered later (LateAnswer)
   DecodedMemory* decoded = nullptr;  ///< what its containers are drawn from; null for the wire's
   // How it was admitted (SessionAccess); null before.
   const AccessRow* row = nullptr;
@@ -82,6 +84,9 @@ class ServerEndpoint final : public channel::Receiver,
   [[nodiscard]] std::size_t generator_limit() const;
   [[nodiscard]] std::size_t late_answer_limit() const;
   [[nodiscard]] std::size_t callback_limit() const;
+  /// Wires and pipe endpoints that the client has connected.
+  [[nodiscard]] std::size_t wire_count() const { return wires_.count(); }
+  [[nodiscard]] std::size_t pipe_count() const { return pipes_.count(); }
   [[nodiscard]] ClientScopedValues& client_values() { return client_values_; }
   /// The endpoint whose request this thread handles; null outside of handlers.
   static ServerEndpoint* current();
@@ -239,7 +244,8 @@ class ServerEndpoint final : public channel::Receiver,
   void end_members();
   void announce_leaving(channel::DeferredCallbacks& deferred);
   void deliver(const Question& question, Writer& writer, std::string_view metadata = {});
-  void finish_late(const LateAnswer& late, Writer& writer);
+  void finish_late(const LateAnswer& late, Writer& writer, ErrorCode code = ErrorCode::none);
+  void count(EntryType request, channel::Time begun, ErrorCode code) const;
   enum class Way : std::uint8_t { reply, send, stream };
   void send_answer(Writer& writer, std::uint32_t entry_count, EntryType single_type, Way way,
                    std::string_view metadata = {}, bool is_urgent = false);

@@ -208,6 +208,19 @@ std::vector<ServiceClient> ServiceHost::clients() const {
   return result;
 }
 
+// Whoever has gone meanwhile may own things of the program: these do not end on this thread.
+ServiceHost::Use ServiceHost::use() const {
+  Use use{.objects = objects_.size()};
+  auto clients = connected();
+  for (const auto& client : *clients) {
+    ++use.sessions;
+    use.wires += client->wire_count();
+    use.pipes += client->pipe_count();
+  }
+  core_->reactor().post([kept = std::move(clients)]() mutable { kept.reset(); });
+  return use;
+}
+
 // The old list goes when the lock has, here and below, with what only it has held.
 bool ServiceHost::add_client(const std::shared_ptr<ServerEndpoint>& client) {
   std::shared_ptr<const Clients> old;

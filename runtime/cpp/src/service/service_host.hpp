@@ -45,6 +45,14 @@ class ServiceHost final : public ServiceContext, public std::enable_shared_from_
   [[nodiscard]] NodeContext& node() const override { return *core_; }
   void set_rights(std::shared_ptr<const Rights> rights) override;
   [[nodiscard]] std::vector<ServiceClient> clients() const override;
+  /// What its clients use.
+  struct Use {
+    std::size_t sessions = 0;
+    std::size_t objects = 0;
+    std::size_t wires = 0;
+    std::size_t pipes = 0;
+  };
+  [[nodiscard]] Use use() const;
   void disconnect(std::uint32_t endpoint) override;
   void close() override;
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Requests within a session (07, sections 2, 6, 8 and 14).
+#include <optional>
 #include <utility>
 
 #include "rr/type.hpp"
+#include "runtime/cpp/src/channel/logging.hpp"
+#include "runtime/cpp/src/channel/metrics.hpp"
 #include "runtime/cpp/src/endpoint/client_version.hpp"
 #include "runtime/cpp/src/endpoint/errors.hpp"
 #include "runtime/cpp/src/endpoint/requests.hpp"
@@ -43,6 +46,41 @@ class CurrentEndpoint {
 
 bool is_odd(EntryType type) { return static_cast<std::uint16_t>(type) % 2 != 0; }
 
+// What a request is counted as; nothing for packets.
+std::optional<channel::RequestKind> kind_of(EntryType type) {
+  using channel::RequestKind;
+  switch (type) {
+    case EntryType::property_get_req:
+      return RequestKind::get;
+    case EntryType::property_set_req:
+      return RequestKind::set;
+    case EntryType::function_call_req:
+      return RequestKind::call;
+    case EntryType::generator_next_req:
+      return RequestKind::next;
+    case EntryType::memory_read:
+    case EntryType::memory_write:
+    case EntryType::memory_get_param:
+      return RequestKind::memory;
+    case EntryType::wire_peek_in_value_req:
+    case EntryType::wire_peek_out_value_req:
+    case EntryType::wire_poke_out_value_req:
+      return RequestKind::peek;
+    case EntryType::wire_connect_req:
+    case EntryType::wire_disconnect_req:
+    case EntryType::pipe_connect_req:
+    case EntryType::pipe_disconnect_req:
+      return RequestKind::connect;
+    case EntryType::object_type_name:
+      return RequestKind::objref;
+    case EntryType::pipe_packet:
+    case EntryType::wire_packet:
+      return std::nullopt;
+    default:
+      return RequestKind::session;
+  }
+}
+
 bool is_special(EntryType type) {
   return is_odd(type) && static_cast<std::uint16_t>(type) < 500 &&
          type != EntryType::service_closed;
@@ -56,6 +94,7 @@ std::string_view ServerEndpoint::current_path() { return path_of_request; }
 [[gnu::hot]] void ServerEndpoint::handle(const Message& message, const Entry& first,
                                          const MemoryRef& owner) {
   if (connection_->is_closed()) return;  // nobody is left for whom this could be done
+  const channel::LogScope scope(core()->options(), *connection_, client_.endpoint);
   last_heard_.store(channel::coarse_now(), std::memory_order_relaxed);
   if (must_wait_for_login(message, first, owner)) return;
   const bool brings_login = has_outcome_;
@@ -146,21 +185,33 @@ bool ServerEndpoint::put_off(const Unfinished& state) {
   }
   DecodedMemory decoded(*this, question);
   question.decoded = &decoded;
+  if (core()->reactor().metrics() != nullptr) question.begun = channel::Clock::now();
   const CurrentEndpoint current(*this, entry.service_path);
   std::exception_ptr exception;
   try {
     answer_question(question);
+    if (!question.is_put_off) count(entry.type, question.begun, ErrorCode::none);
     return;
   } catch (...) {
     exception = std::current_exception();
   }
   try {
-    answer_error(question, endpoint::describe(exception));
+    const Error error = endpoint::describe(exception);
+    count(entry.type, question.begun, error.code());
+    answer_error(question, error);
   } catch (const Error& error) {
     directory_->core()->log(LogLevel::error, error.what());
     // The client would wait for the answer.
     if (error.code() == ErrorCode::out_of_system_resource) connection_->close(error);
   }
+}
+
+[[gnu::hot]] void ServerEndpoint::count(EntryType request, channel::Time begun,
+                                        ErrorCode code) const {
+  channel::Metrics* const metrics = core()->reactor().metrics();
+  if (metrics == nullptr) return;
+  const auto kind = kind_of(request);
+  if (kind) metrics->count_request(*kind, channel::Clock::now() - begun, code);
 }
 
 [[gnu::hot]] void ServerEndpoint::answer_question(Question& question) {

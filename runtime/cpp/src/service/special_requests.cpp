@@ -130,11 +130,13 @@ void ServerEndpoint::write_special_answer(Writer& writer, const Message& message
   decoder.set_budget(decoded);
   const auto attempt = [&](const Error& failure, auto&& write) {
     const MessageVersion version = writer.version();
+    const channel::Time begun = channel::Clock::now();
     std::optional<Error> error;
     try {
       const std::uint32_t count = write();
       if (!writer.failed()) {
         writer.entry(endpoint::answer_header(entry), count, 0);
+        this->count(entry.type, begun, ErrorCode::none);
         return;
       }
       error = failure;
@@ -145,6 +147,7 @@ void ServerEndpoint::write_special_answer(Writer& writer, const Message& message
     } catch (...) {  // user code, on the way to an object
       error = failure;
     }
+    this->count(entry.type, begun, error->code());
     writer.reset(version);
     endpoint::write_error_answer(writer, entry, *error);
   };

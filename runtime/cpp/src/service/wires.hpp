@@ -30,6 +30,7 @@ class Wires {
   bool take(const Message& message, const Entry& entry, const MemoryRef& owner,
             channel::DeferredCallbacks& deferred);
   void remove(const WireEnd::State& end) { table_.remove(end); }
+  [[nodiscard]] std::size_t count() const { return table_.size(); }
   /// Ends those for which `is_over(path, member)` holds, and tells the client. Returns how many.
   using Choice = std::function<bool(std::string_view, std::string_view)>;
   std::size_t end_if(const Choice& is_over);

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "runtime/cpp/src/platform/clock.hpp"
+
+namespace rr::platform {
+
+std::string utc_text(std::chrono::system_clock::time_point time, unsigned decimals) {
+  const auto since = std::chrono::floor<std::chrono::microseconds>(time.time_since_epoch());
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(since);
+  const std::tm parts = utc(static_cast<std::time_t>(seconds.count()));
+  std::array<char, 64> text{};
+  std::size_t size = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &parts);
+  std::snprintf(text.data() + size, text.size() - size, ".%06d",
+                static_cast<int>((since - seconds).count()));
+  size += 1 + std::min(decimals, 6U);
+  return std::string(text.data(), size) + "Z";
+}
+
+}  // namespace rr::platform
