@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gateway/export_file.hpp"
@@ -17,6 +18,9 @@ struct AccessRights {
   std::set<std::string> publish;  ///< may publish there
   std::set<std::string> receive;  ///< gets what others publish there
 };
+
+/// Stands for the name of the user, in topics for everybody.
+inline constexpr std::string_view any_user = "%u";
 
 /// Rights of the users of a broker.
 struct AccessList {
@@ -34,5 +38,10 @@ AccessList access_list(const std::vector<ExportFile>& files);
 
 /// The list as an `acl_file` of mosquitto.
 std::string mosquitto_acl(const AccessList& list);
+
+/// The list as an `authorization` block of a server of NATS. It has no rights for any user, so
+/// everybody is the users of the list and `others`. The password of user `eve` is the variable
+/// `$password_eve`, which the file `passwords.conf` beside it has.
+std::string nats_authorization(const AccessList& list, const std::vector<std::string>& others);
 
 }  // namespace rr::gateway

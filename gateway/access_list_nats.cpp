@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Access lists for servers of NATS.
+#include <algorithm>
+#include <set>
+
+#include "gateway/access_list.hpp"
+#include "gateway/kept_stream.hpp"
+#include "gateway/nats_subjects.hpp"
+#include "gateway/topics.hpp"
+
+namespace rr::gateway {
+namespace {
+
+using Subjects = std::set<std::string>;
+
+/// With the name of the user in place of `%u`.
+std::string named(std::string topic, const std::string& user) {
+  const std::size_t at = topic.find(any_user);
+  return at == std::string::npos ? topic : topic.replace(at, any_user.size(), user);
+}
+
+/// All subjects of a filter, with those of the beats of lives.
+Subjects subjects_of(const std::string& filter) {
+  Subjects all;
+  for (const std::string& subject : subjects_of_filter(filter)) all.insert(subject);
+  if (is_life_topic(filter)) all.insert(subjects_of_filter(beat_topic(filter))[0]);
+  return all;
+}
+
+struct UserSubjects {
+  Subjects publish;
+  Subjects subscribe;
+};
+
+/// Those that retain messages may make the stream.
+void add_rights(UserSubjects& all, const AccessRights& rights, const std::string& user) {
+  for (const std::string& topic : rights.publish) {
+    for (const std::string& subject : subjects_of(named(topic, user))) {
+      all.publish.insert(subject);
+      if (!may_be_retained(topic) || !topic.ends_with("/#")) continue;
+      all.publish.insert(kept_subject(subject).value_or(subject));
+      all.publish.insert(stream_create_subject());
+    }
+  }
+  for (const std::string& topic : rights.receive) {
+    for (const std::string& subject : subjects_of(named(topic, user))) {
+      all.subscribe.insert(subject);
+      const auto kept = kept_subject(subject);
+      if (kept && may_be_retained(topic)) all.publish.insert(reader_create_subject("*", *kept));
+    }
+  }
+}
+
+std::string subject_list(const Subjects& subjects) {
+  std::string text;
+  for (const std::string& subject : subjects) {
+    text += (text.empty() ? "" : ",") + std::string("\n        \"") + subject + "\"";
+  }
+  return "[" + text + "]";
+}
+
+std::string user_text(const std::string& user, const UserSubjects& subjects) {
+  return "    {user: \"" + user + "\", password: $password_" + user +
+         ", permissions: {\n      publish: " + subject_list(subjects.publish) +
+         "\n      subscribe: " + subject_list(subjects.subscribe) + "}}\n";
+}
+
+}  // namespace
+
+std::string nats_authorization(const AccessList& list, const std::vector<std::string>& others) {
+  std::set<std::string> users(others.begin(), others.end());
+  for (const auto& [user, rights] : list.users) users.insert(user);
+  std::string text = "include passwords.conf\nauthorization {\n  users: [\n";
+  for (const std::string& user : users) {
+    UserSubjects subjects;
+    add_rights(subjects, list.everybody, user);
+    const auto own = list.users.find(user);
+    if (own != list.users.end()) add_rights(subjects, own->second, user);
+    // What the carrier itself asks and hears.
+    const std::string inbox = inbox_prefix(user) + ".>";
+    subjects.publish.insert(inbox);
+    subjects.subscribe.insert(inbox);
+    text += user_text(user, subjects);
+  }
+  return text + "  ]\n}\n";
+}
+
+}  // namespace rr::gateway
