@@ -4,6 +4,7 @@
 #include <set>
 
 #include "gateway/access_list.hpp"
+#include "gateway/fleet.hpp"
 #include "gateway/kept_stream.hpp"
 #include "gateway/nats_subjects.hpp"
 #include "gateway/topics.hpp"
@@ -67,8 +68,10 @@ std::string user_text(const std::string& user, const UserSubjects& subjects) {
 
 }  // namespace
 
-std::string nats_authorization(const AccessList& list, const std::vector<std::string>& others) {
+std::string nats_authorization(const AccessList& list, const std::vector<std::string>& others,
+                               const std::vector<std::string>& watchers) {
   std::set<std::string> users(others.begin(), others.end());
+  users.insert(watchers.begin(), watchers.end());
   for (const auto& [user, rights] : list.users) users.insert(user);
   std::string text = "include passwords.conf\nauthorization {\n  users: [\n";
   for (const std::string& user : users) {
@@ -76,6 +79,10 @@ std::string nats_authorization(const AccessList& list, const std::vector<std::st
     add_rights(subjects, list.everybody, user);
     const auto own = list.users.find(user);
     if (own != list.users.end()) add_rights(subjects, own->second, user);
+    if (std::ranges::find(watchers, user) != watchers.end()) {
+      const auto filters = Fleet::filters();
+      add_rights(subjects, {{}, {filters.begin(), filters.end()}}, user);
+    }
     // What the carrier itself asks and hears.
     const std::string inbox = inbox_prefix(user) + ".>";
     subjects.publish.insert(inbox);

@@ -181,6 +181,11 @@ authorization {
   EXPECT_THAT(robot, HasSubstr("\n        \"rrkept.hall.r1.>\""));
   EXPECT_THAT(robot, HasSubstr("\n        \"$JS.API.STREAM.CREATE.RRKEPT\""));
   EXPECT_THAT(robot, Not(HasSubstr("rrkept.$reply")));
+  EXPECT_THAT(robot, Not(HasSubstr("rr.*.*.$life")));
+  const std::string watched = nats_authorization(list, {}, {"boss"});
+  EXPECT_THAT(watched, HasSubstr("{user: \"boss\", password: $password_boss"));
+  EXPECT_THAT(watched, HasSubstr("\"rr.*.*.$life.$beat\""));
+  EXPECT_THAT(watched, HasSubstr("\"$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.*.*.*.$streams\""));
 }
 
 }  // namespace

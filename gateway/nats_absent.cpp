@@ -5,6 +5,8 @@
 
 namespace rr::gateway {
 
+bool has_nats() { return false; }
+
 std::unique_ptr<Carrier> make_nats_carrier(BrokerOptions broker, const NatsLimits&) {
   throw Error(ErrorCode::not_implemented_error,
               "`" + broker.url + "`: this robdef-gateway has no NATS: libnats-dev was not " +

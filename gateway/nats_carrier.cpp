@@ -561,6 +561,8 @@ void NatsCarrier::check_files() const {
 
 }  // namespace
 
+bool has_nats() { return true; }
+
 std::unique_ptr<Carrier> make_nats_carrier(BrokerOptions broker, const NatsLimits& limits) {
   return std::make_unique<NatsCarrier>(std::move(broker), limits);
 }

@@ -34,4 +34,7 @@ struct NatsLimits {
 /// not_implemented_error where the library was not there when this was built.
 std::unique_ptr<Carrier> make_nats_carrier(BrokerOptions broker, const NatsLimits& limits = {});
 
+/// Whether the library was there when this was built.
+bool has_nats();
+
 }  // namespace rr::gateway

@@ -63,7 +63,9 @@ struct Peer {
 class Nats : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (NatsServer::program().empty()) GTEST_SKIP() << "nats-server is not installed";
+    if (!has_nats() || NatsServer::program().empty()) {
+      GTEST_SKIP() << "libnats or nats-server is not installed";
+    }
     server.configure({});
     server.start();
   }
@@ -230,6 +232,7 @@ TEST_F(Nats, TakesTheNextServerOfACluster) {
 }
 
 TEST(NatsUrls, OfClustersAreLists) {
+  if (!has_nats()) GTEST_SKIP() << "libnats is not installed";
   EXPECT_THROW(static_cast<void>(make_nats_carrier({"nats://a,http://b"})), Error);
   EXPECT_THROW(static_cast<void>(make_nats_carrier({"nats://a,"})), Error);
   EXPECT_THROW(static_cast<void>(make_nats_carrier({.url = "nats://a", .replicas = 0})), Error);

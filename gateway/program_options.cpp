@@ -47,6 +47,9 @@ class Words {
     if (options_.task == Task::access_list && options_.export_files.empty()) {
       refuse_word("`--acl` needs export files");
     }
+    if (!options_.list_watchers.empty() && options_.list_form != "nats") {
+      refuse_word("`--watcher` is for `--acl nats`");
+    }
     return std::move(options_);
   }
 
@@ -74,6 +77,8 @@ class Words {
       options_.list_users.push_back(options_.broker.user);
     } else if (word == "--password-file") {
       options_.broker.password = read_secret(value(word));
+    } else if (word == "--watcher") {
+      options_.list_watchers.push_back(value(word));
     } else if (word == "--token-file") {
       options_.broker.token = read_secret(value(word));
     } else if (word == "--credentials") {
@@ -130,9 +135,9 @@ const char* const program_help =
   robdef-gateway --serve SITE/NODE/SERVICE[=NAME] --broker URL --reader NAME
       Offers services of robots at a broker as ordinary services. Several --serve are allowed.
   robdef-gateway --acl mosquitto FILE...
-  robdef-gateway --acl nats [--user NAME]... FILE...
+  robdef-gateway --acl nats [--user NAME]... [--watcher NAME]... FILE...
       Prints the access list that the broker needs for these export files. That of NATS has the
-      users of the files and those that are named.
+      users of the files and those that are named; watchers may use --fleet.
   robdef-gateway --fleet --broker URL [--json]
       Prints which robots are alive, and how far their streams and readers are.
 

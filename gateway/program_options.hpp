@@ -18,9 +18,10 @@ struct ProgramOptions {
   std::string list_form;  ///< with Task::access_list: `mosquitto` or `nats`
   /// With Task::access_list: users besides those in the files.
   std::vector<std::string> list_users;
-  bool is_json = false;  ///< with Task::fleet
-  BrokerOptions broker;  ///< with Task::serve and Task::fleet
-  ServerOptions server;  ///< with Task::serve
+  std::vector<std::string> list_watchers;  ///< with Task::access_list: users of --fleet
+  bool is_json = false;                    ///< with Task::fleet
+  BrokerOptions broker;                    ///< with Task::serve and Task::fleet
+  ServerOptions server;                    ///< with Task::serve
 };
 
 /// The text of `robdef-gateway --help`.

@@ -28,9 +28,10 @@ struct BrokerKind {
   std::string unusual_value;     ///< what becomes of a property of `\xff\n`
   bool has_wide_filters = true;  ///< whether a user may subscribe to more than the user may receive
 
-  /// Whether its program is on this machine.
+  /// Whether its program is on this machine, and the library for it was.
   [[nodiscard]] bool is_installed() const {
-    return !(scheme == "nats" ? NatsServer::program() : MosquittoBroker::program()).empty();
+    if (scheme == "nats") return has_nats() && !NatsServer::program().empty();
+    return !MosquittoBroker::program().empty();
   }
   /// One that is started.
   [[nodiscard]] std::unique_ptr<RealBroker> start(const BrokerSetup& setup = {}) const {

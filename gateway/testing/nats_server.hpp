@@ -26,6 +26,17 @@ class NatsServer final : public RealBroker {
   explicit NatsServer(std::string more = "", bool has_stream = true)
       : more_(std::move(more)), has_stream_(has_stream) {}
 
+  /// Port for the other servers of a cluster.
+  [[nodiscard]] int route_port() const { return route_port_; }
+  /// Makes it one of a cluster from the next configure() on; `routes` are ports of all its servers.
+  void join(const std::vector<int>& routes) {
+    more_ = "server_name: \"s" + std::to_string(route_port_) +
+            "\"\ncluster { name: test, listen: \"127.0.0.1:" + std::to_string(route_port_) +
+            "\", routes: [";
+    for (const int port : routes) more_ += " \"nats://127.0.0.1:" + std::to_string(port) + "\"";
+    more_ += " ] }\n";
+  }
+
   void configure(const BrokerSetup& setup) override {
     std::ofstream file(path("nats.conf"));
     file << "listen: \"127.0.0.1:" << port() << "\"\nlog_file: \"" << path("log") << "\"\n"
@@ -64,6 +75,7 @@ class NatsServer final : public RealBroker {
 
   std::string more_;
   bool has_stream_;
+  int route_port_ = free_port();
 };
 
 }  // namespace rr::gateway::testing

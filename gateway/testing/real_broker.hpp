@@ -65,16 +65,15 @@ class RealBroker {
  protected:
   [[nodiscard]] virtual std::vector<std::string> command() const = 0;
   [[nodiscard]] int port() const { return port_; }
+  static int free_port() {
+    Node node;
+    return node.listen_tcp(0);
+  }
   [[nodiscard]] std::string path(const std::string& name) const {
     return folder_.path() + "/" + name;
   }
 
  private:
-  static int free_port() {
-    Node node;
-    return node.listen_tcp(0);
-  }
-
   Folder folder_;
   int port_;
   std::optional<Program> process_;
