@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "gateway/properties.hpp"
 #include "gateway/testing/broker_kinds.hpp"
 #include "gateway/testing/listener.hpp"
 #include "gateway/testing/rig.hpp"
@@ -222,6 +223,40 @@ TEST_P(BrokersAccess, BothGatewaysWorkWithIt) {
     rig.robot.bench().pipe("samples").send(1);
     return samples.try_receive().has_value();
   }));
+}
+
+TEST_P(BrokersAccess, HoldsRetainedMessagesToTheSameRights) {
+  start(some_rules);
+  Message life{"rr/hall/r1/$life", bytes_of("up")};
+  life.retained = true;
+  Person eve(*broker, "eve", {life.topic});
+  Person robot(*broker, "robot1");
+  ASSERT_EQ(eve.carrier->publish(life), Published::taken);
+  ASSERT_TRUE(comes_true([&] {
+    const auto refused = eve.listener.refused.items();
+    return std::ranges::find(refused, "the broker has refused a message to `" + life.topic +
+                                          "`: " + GetParam().refused_message) != refused.end();
+  }));
+  ASSERT_EQ(robot.carrier->publish(life), Published::taken);
+  ASSERT_TRUE(eve.listener.messages.wait_for(1));
+  Person later(*broker, "eve", {life.topic});
+  ASSERT_TRUE(later.listener.messages.wait_for(1));
+  EXPECT_TRUE(later.listener.messages.items()[0].retained);
+  EXPECT_EQ(eve.listener.messages.size(), 1U);
+}
+
+// What others ask is not for a user who may read all members.
+TEST_P(BrokersAccess, AWideSubscriptionHasNoRequestsOfOthers) {
+  start("[[service.allow]]\nmembers = [\"*\"]\naccess = [\"read\", \"call\"]\n");
+  const std::string r1 = "rr/hall/r1/bench/";
+  Person eve(*broker, "eve", {r1 + "#", r1 + "force"});
+  Person alice(*broker, "alice");
+  Person robot(*broker, "robot1", {r1 + "$call/#"});
+  ASSERT_EQ(alice.carrier->publish({r1 + "$call/alice/open", {}}), Published::taken);
+  ASSERT_TRUE(robot.listener.messages.wait_for(1));
+  ASSERT_EQ(robot.carrier->publish({r1 + "force", {}}), Published::taken);
+  ASSERT_TRUE(eve.listener.messages.wait_for(1));
+  EXPECT_THAT(eve.topics(), UnorderedElementsAre(r1 + "force"));
 }
 
 // A user that asks in the name of another one.

@@ -31,7 +31,21 @@ Subjects subjects_of(const std::string& filter) {
 struct UserSubjects {
   Subjects publish;
   Subjects subscribe;
+  Subjects denied;  ///< to subscribe to
 };
+
+/// A right to `rr.hall.r1.arm.*` lets a user subscribe to `rr.hall.r1.arm.>` as well: the server
+/// compares the letters. All values there are for everybody, but requests are not.
+void deny_requests(UserSubjects& all, const AccessRights& rights) {
+  for (const std::string& topic : rights.receive) {
+    if (!topic.ends_with("/+")) continue;
+    const std::string object = topic.substr(0, topic.size() - 2);
+    for (const Verb verb : all_verbs) {
+      const std::string requests = subject_of(object + "/$" + std::string(verb_name(verb))) + ".>";
+      if (!all.subscribe.contains(requests)) all.denied.insert(requests);
+    }
+  }
+}
 
 /// Those that retain messages may make the stream.
 void add_rights(UserSubjects& all, const AccessRights& rights, const std::string& user) {
@@ -63,7 +77,11 @@ std::string subject_list(const Subjects& subjects) {
 std::string user_text(const std::string& user, const UserSubjects& subjects) {
   return "    {user: \"" + user + "\", password: $password_" + user +
          ", permissions: {\n      publish: " + subject_list(subjects.publish) +
-         "\n      subscribe: " + subject_list(subjects.subscribe) + "}}\n";
+         "\n      subscribe: " +
+         (subjects.denied.empty() ? subject_list(subjects.subscribe)
+                                  : "{allow: " + subject_list(subjects.subscribe) +
+                                        ", deny: " + subject_list(subjects.denied) + "}") +
+         "}}\n";
 }
 
 }  // namespace
@@ -79,6 +97,9 @@ std::string nats_authorization(const AccessList& list, const std::vector<std::st
     add_rights(subjects, list.everybody, user);
     const auto own = list.users.find(user);
     if (own != list.users.end()) add_rights(subjects, own->second, user);
+    // When all that the user may receive is known.
+    deny_requests(subjects, list.everybody);
+    if (own != list.users.end()) deny_requests(subjects, own->second);
     if (std::ranges::find(watchers, user) != watchers.end()) {
       const auto filters = Fleet::filters();
       add_rights(subjects, {{}, {filters.begin(), filters.end()}}, user);

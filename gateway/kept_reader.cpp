@@ -2,8 +2,6 @@
 #include "gateway/kept_reader.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <iterator>
 #include <utility>
 
 #include "gateway/kept_stream.hpp"
@@ -11,7 +9,8 @@
 namespace rr::gateway {
 namespace {
 
-constexpr std::chrono::seconds reader_patience{5};
+/// A server of a cluster that was killed may have been given the request.
+constexpr std::chrono::seconds reader_patience{2};
 constexpr std::chrono::milliseconds ask_reader_again{500};
 /// After the last message, when fewer came than were promised: newer ones took their places.
 constexpr std::chrono::seconds reader_quiet{2};
@@ -27,38 +26,42 @@ std::string KeptReader::inbox_of(std::uint64_t number) const {
   return messages_ + "." + std::to_string(number);
 }
 
+std::string KeptReader::token_of(std::uint64_t number, const Part& part) {
+  return std::to_string(number) + "-" + std::to_string(part.attempt);
+}
+
+std::string KeptReader::name_of(std::uint64_t number, const Part& part) const {
+  return name_ + "-" + token_of(number, part);
+}
+
 std::vector<NatsMessage> KeptReader::requests(Clock::time_point now) {
   std::vector<NatsMessage> all;
   for (auto& [number, part] : parts_) {
     if (part.is_answered || now < part.due) continue;
     part.due = now + reader_patience;
-    const std::string name = name_ + "-" + std::to_string(number);
+    ++part.attempt;
+    part.messages.clear();
+    const std::string name = name_of(number, part);
     NatsMessage request{reader_create_subject(name, part.filter)};
     const std::string text = reader_create_text(name, part.filter, inbox_of(number));
     const auto* const bytes = reinterpret_cast<const std::byte*>(text.data());
     request.payload.assign(bytes, bytes + text.size());
-    request.reply = answers_ + "." + std::to_string(number);
+    request.reply = answers_ + "." + token_of(number, part);
     all.push_back(std::move(request));
   }
   return all;
-}
-
-KeptReader::Part* KeptReader::find(std::string_view number) {
-  std::uint64_t value = 0;
-  const char* const end = number.data() + number.size();
-  const auto result = std::from_chars(number.data(), end, value);
-  const auto part = result.ptr == end ? parts_.find(value) : parts_.end();
-  return part == parts_.end() ? nullptr : &part->second;
 }
 
 void KeptReader::note(Part& part) const {
   if (part.is_answered && part.messages.size() >= part.pending) part.is_done = true;
 }
 
-void KeptReader::take_answer(std::string_view number, const NatsMessage& answer,
+bool KeptReader::take_answer(std::string_view token, const NatsMessage& answer,
                              Clock::time_point now) {
-  Part* const part = find(number);
-  if (part == nullptr || part->is_answered) return;
+  const auto found = std::ranges::find_if(
+      parts_, [&](const auto& entry) { return token_of(entry.first, entry.second) == token; });
+  if (found == parts_.end() || found->second.is_answered) return false;
+  Part* const part = &found->second;
   const auto result = read_answer(answer.payload);
   const bool has_stream = !result || result->code != stream_not_found;
   if (has_stream && (answer.is_unanswered || !result || result->code != 0)) {
@@ -66,7 +69,7 @@ void KeptReader::take_answer(std::string_view number, const NatsMessage& answer,
                : result             ? result->description
                                     : "an answer of JetStream that is none";
     part->due = now + ask_reader_again;
-    return;
+    return false;
   }
   part->is_answered = true;
   part->heard = now;
@@ -74,12 +77,16 @@ void KeptReader::take_answer(std::string_view number, const NatsMessage& answer,
   part->pending = has_stream ? result->pending : 0;
   part->created = result->created;
   note(*part);
+  return true;
 }
 
 void KeptReader::take_message(std::string_view number, NatsMessage message, Clock::time_point now) {
-  Part* const part = find(number);
   const auto place = kept_place(message.reply);
-  if (part == nullptr || part->is_done || !place) return;
+  const auto found = std::ranges::find_if(
+      parts_, [&](const auto& entry) { return std::to_string(entry.first) == number; });
+  if (!place || found == parts_.end()) return;
+  Part* const part = &found->second;
+  if (part->is_done || place->reader != name_of(found->first, *part)) return;
   part->heard = now;
   // The age is known when the request is answered.
   part->messages.push_back({std::move(message), place->number, place->stored});
@@ -88,8 +95,7 @@ void KeptReader::take_message(std::string_view number, NatsMessage message, Cloc
 
 bool KeptReader::refuse(std::string_view subject) {
   for (auto& [number, part] : parts_) {
-    const std::string name = name_ + "-" + std::to_string(number);
-    if (reader_create_subject(name, part.filter) != subject) continue;
+    if (reader_create_subject(name_of(number, part), part.filter) != subject) continue;
     part.is_answered = true;
     part.is_done = true;
     return true;

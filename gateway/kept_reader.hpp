@@ -26,7 +26,7 @@ class KeptReader {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Answers arrive at `answers.<number>`, messages at `messages.<number>`. `name` is that of
+  /// Answers arrive at `answers.<token>`, messages at `messages.<number>`. `name` is that of
   /// readers at the broker, which must be no other's.
   KeptReader(std::string answers, std::string messages, std::string name)
       : answers_(std::move(answers)), messages_(std::move(messages)), name_(std::move(name)) {}
@@ -37,8 +37,8 @@ class KeptReader {
   [[nodiscard]] std::string inbox_of(std::uint64_t number) const;
   /// What is to be requested now.
   std::vector<NatsMessage> requests(Clock::time_point now);
-  /// An answer to a request.
-  void take_answer(std::string_view number, const NatsMessage& answer, Clock::time_point now);
+  /// An answer to a request. False when it has to be made again, or is none.
+  bool take_answer(std::string_view token, const NatsMessage& answer, Clock::time_point now);
   /// A message of the stream.
   void take_message(std::string_view number, NatsMessage message, Clock::time_point now);
   /// The broker does not permit a request. False when it is none of these.
@@ -53,6 +53,7 @@ class KeptReader {
  private:
   struct Part {
     std::string filter;
+    std::uint64_t attempt = 0;
     Clock::time_point due{};  // of the request
     bool is_answered = false;
     bool is_done = false;
@@ -62,7 +63,9 @@ class KeptReader {
     std::vector<KeptMessage> messages{};
   };
 
-  Part* find(std::string_view number);
+  /// `<number>-<attempt>`: a request that is late must not be mixed up with the next one.
+  static std::string token_of(std::uint64_t number, const Part& part);
+  [[nodiscard]] std::string name_of(std::uint64_t number, const Part& part) const;
   void note(Part& part) const;
 
   const std::string answers_;

@@ -111,7 +111,7 @@ std::optional<KeptPlace> kept_place(std::string_view reply) {
   const auto number = whole_number(parts[5]);
   const auto time = whole_number(parts[7]);
   if (!number || !time) return std::nullopt;
-  return KeptPlace{*number, std::chrono::nanoseconds(*time)};
+  return KeptPlace{std::string(parts[3]), *number, std::chrono::nanoseconds(*time)};
 }
 
 }  // namespace rr::gateway

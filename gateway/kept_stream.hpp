@@ -42,6 +42,7 @@ std::optional<StreamAnswer> read_answer(const Bytes& payload);
 
 /// What the stream says of a message that a reader delivers, in its reply subject.
 struct KeptPlace {
+  std::string reader;                  ///< its name
   std::uint64_t number = 0;            ///< in the stream
   std::chrono::nanoseconds stored{0};  ///< when, by the broker's clock, since 1970
 };

@@ -50,8 +50,9 @@ void print_access_list(const ProgramOptions& options) {
     files.push_back(read_export_file(path, Secrets::ignored));
   }
   const AccessList list = access_list(files);
-  std::cout << (options.list_form == "nats" ? nats_authorization(list, options.list_users, options.list_watchers)
-                                            : mosquitto_acl(list));
+  std::cout << (options.list_form == "nats"
+                    ? nats_authorization(list, options.list_users, options.list_watchers)
+                    : mosquitto_acl(list));
 }
 
 void print_fleet(const ProgramOptions& options) {

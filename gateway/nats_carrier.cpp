@@ -34,6 +34,7 @@ constexpr std::chrono::milliseconds nats_loop_time{100};
 constexpr std::chrono::seconds nats_farewell_time{2};
 constexpr std::chrono::seconds make_again{1};                             // the stream
 constexpr std::size_t most_flight_bytes = std::size_t{16} * 1024 * 1024;  // of messages in flight
+constexpr std::size_t most_held = 10'000;  // messages that come before all is known
 constexpr std::string_view state_header = "rr-state";
 constexpr std::string_view instance_header = "rr-instance";
 constexpr std::string_view number_header = "Nats-Sequence";
@@ -81,7 +82,9 @@ struct NatsSession {
   bool is_reading = true;                        // what is retained
   std::map<std::string, std::uint64_t> numbers;  // of the stream, by subject, while it reads
   std::uint64_t sent = 0;                        // messages
+  bool is_asked = false;                         // for the first echo
   bool is_begun = false;                         // the first echo has come
+  std::vector<NatsMessage> held;                 // messages that came before it
   std::optional<std::string> closed;
   Clock::time_point began = Clock::now();
   Clock::time_point beat{};
@@ -265,13 +268,16 @@ class NatsCarrier final : public Carrier {
     if (!session.is_reading) return;
     for (const NatsMessage& request : session.reader.requests(now)) session.link->publish(request);
     if (!session.reader.is_done(now)) return;
+    if (!session.is_begun) {
+      // What was sent until now the server has read when this comes back.
+      if (!std::exchange(session.is_asked, true)) ask_for_echo(session);
+      return;
+    }
     std::vector<KeptMessage> all = session.reader.take();
     session.kept_inboxes.clear();
     deliver_kept(session, std::move(all), now);
     session.is_reading = false;
     session.numbers.clear();
-    // What was sent until now the server has read when this comes back.
-    if (!session.is_begun) ask_for_echo(session);
   }
 
   /// Beats first: they say which lives are over.
@@ -338,7 +344,7 @@ class NatsCarrier final : public Carrier {
     if (is_kept) {
       session.reader.take_message(last, std::move(message), now);
     } else if (what.starts_with("in.reader.")) {
-      session.reader.take_answer(last, message, now);
+      if (session.reader.take_answer(last, message, now)) session.began = now;
     } else if (what.starts_with("in.stored.")) {
       take_stored(session, last, message);
     } else if (what == "in.made") {
@@ -388,6 +394,9 @@ class NatsCarrier final : public Carrier {
     if (!std::exchange(session.is_begun, true)) {
       was_connected_ = true;
       handler_->on_connected();
+      for (NatsMessage& message : std::exchange(session.held, {})) {
+        take_other(session, std::move(message));
+      }
     }
     if (has_room) handler_->on_room();
   }
@@ -395,6 +404,10 @@ class NatsCarrier final : public Carrier {
   void take_other(NatsSession& session, NatsMessage message) {
     // A reader that somebody else has sent here: only robots publish values.
     if (message.reply.starts_with(own_reply)) return;
+    if (!session.is_begun) {
+      if (session.held.size() < most_held) session.held.push_back(std::move(message));
+      return;
+    }
     if (session.is_reading && is_old(session, message)) return;
     const BeatHeaders headers(message);
     auto made = message_of(std::move(message));

@@ -17,7 +17,7 @@ struct NatsLimits {
   std::chrono::milliseconds retry{100};
   std::chrono::milliseconds max_retry{3'000};
   std::chrono::seconds keep_alive{10};  ///< after this without an answer the link has failed
-  /// Until the server has answered what is retained.
+  /// Without an answer to what is retained; then the next server is tried.
   std::chrono::milliseconds beginning{20'000};
   std::chrono::milliseconds beat{2'000};     ///< between two beats of a life
   std::chrono::milliseconds silence{7'000};  ///< of a life, after which it is lost

@@ -73,7 +73,7 @@ TEST_F(NatsCluster, NothingIsLostWhenServersAreKilled) {
     const double wanted = static_cast<double>(killed) + 1;
     rig.robot.bench().wire("force").set_in(wanted);
     // Two of three go on.
-    EXPECT_TRUE(got.wait_for(last)) << killed;
+    ASSERT_TRUE(got.wait_for(last)) << killed << ::testing::PrintToString(rig.log.items());
     EXPECT_EQ(bench->call("add", {1, 2}).as<double>(), 3);
     EXPECT_TRUE(comes_true([&] {
       const auto value = force.try_in();

@@ -194,7 +194,9 @@ class NatsLink::Ears {
     const char* text = nullptr;
     const natsStatus status = natsConnection_GetLastError(connection, &text);
     const bool has_text = text != nullptr && *text != '\0';
-    self.mailbox_->close(has_text ? text : natsStatus_GetText(status));
+    const char* const known =
+        status == NATS_OK ? "the connection was lost" : natsStatus_GetText(status);
+    self.mailbox_->close(has_text ? text : known);
     const MutexLock lock(self.mutex_);
     self.is_closed_ = true;
     self.changed_.notify_all();

@@ -71,9 +71,11 @@ class Nats : public ::testing::Test {
   }
   /// What a new reader of a topic gets first.
   [[nodiscard]] std::string newest(const std::string& topic) const {
-    Peer reader(server, {topic});
-    const auto all = reader.texts();
-    return all.empty() ? "nothing" : all[0];
+    // What is retained comes before what the reader itself sends.
+    Peer reader(server, {topic, "echo"});
+    reader.publish({"echo", bytes_of("nothing")});
+    EXPECT_TRUE(reader.listener.messages.wait_for(1));
+    return reader.texts()[0];
   }
 
   NatsServer server;
@@ -94,12 +96,34 @@ TEST_F(Nats, RetainsTheNewestOfEachTopic) {
   }));
   EXPECT_EQ(newest("rr/hall/a"), "3*");
   Peer later(server, {"rr/hall/#", "rr/other/#"});
+  ASSERT_TRUE(later.listener.messages.wait_for(2));
   EXPECT_THAT(later.texts(), ::testing::UnorderedElementsAre("3*", "4*"));
   // A filter that is added later has them, too.
   Peer last(server, {});
   last.carrier->subscribe("rr/hall/+");
   ASSERT_TRUE(last.listener.messages.wait_for(2));
   EXPECT_THAT(last.texts(), ::testing::UnorderedElementsAre("3*", "4*"));
+}
+
+// A gateway that asks for a node looks at nothing before that.
+TEST_F(Nats, WhatIsRetainedComesAfterTheConnection) {
+  struct Order final : CarrierHandler {
+    void on_message(Message message) override { words.add(text_of(message.payload)); }
+    void on_connected() override { words.add("connected"); }
+    void on_disconnected(const std::string&) override {}
+    void on_room() override {}
+    void on_refused(const Refusal&) override {}
+    testing::Kept<std::string> words;
+  } order;
+  Peer writer(server, {});
+  writer.publish(retained(life_topic, "up"));
+  ASSERT_TRUE(comes_true([&] { return newest(life_topic) == "up*"; }));
+  const auto carrier = make_nats_carrier({server.url(false)}, quick);
+  carrier->subscribe(life_topic);
+  carrier->start(order, {});
+  ASSERT_TRUE(order.words.wait_for(2));
+  EXPECT_THAT(order.words.items(), ::testing::ElementsAre("connected", "up"));
+  carrier->stop({});
 }
 
 TEST_F(Nats, RetainsOnlyBelowItsTopics) {
@@ -147,6 +171,7 @@ TEST_F(Nats, RetainedMessagesOutliveAServerThatIsKilled) {
     server.kill();
     server.start();
     Peer after(server, {"rr/hall/#"});
+    ASSERT_TRUE(after.listener.messages.wait_for(50));
     EXPECT_THAT(after.texts(),
                 ::testing::AllOf(::testing::SizeIs(50), ::testing::Each(text + "*")));
   }

@@ -33,8 +33,12 @@ class NatsServer final : public RealBroker {
     more_ = "server_name: \"s" + std::to_string(route_port_) +
             "\"\ncluster { name: test, listen: \"127.0.0.1:" + std::to_string(route_port_) +
             "\", routes: [";
-    for (const int port : routes) more_ += " \"nats://127.0.0.1:" + std::to_string(port) + "\"";
-    more_ += " ] }\n";
+    std::string list;
+    for (const int port : routes) {
+      list += (list.empty() ? "\"nats://127.0.0.1:" : ", \"nats://127.0.0.1:") +
+              std::to_string(port) + "\"";
+    }
+    more_ += list + "] }\n";
   }
 
   void configure(const BrokerSetup& setup) override {
