@@ -171,11 +171,12 @@ class NatsLink::Ears {
     message.heard_at = to.subject;
     to.mailbox->add(std::move(message));
   }
-  /// Until the last call of the library, which tells that the connection is closed.
-  void wait() {
+  /// Until the last call of the library, which tells that the connection is closed. False when it
+  /// does not come.
+  bool wait() {
     const MutexLock lock(mutex_);
     const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(closing_time_ms);
-    changed_.wait_until(mutex_, end, [this]() RR_REQUIRES(mutex_) { return is_closed_; });
+    return changed_.wait_until(mutex_, end, [this]() RR_REQUIRES(mutex_) { return is_closed_; });
   }
 
  private:
@@ -241,7 +242,8 @@ NatsLink::NatsLink(const BrokerOptions& broker, const BrokerPlace& place,
 
 NatsLink::~NatsLink() {
   natsConnection_Close(connection_);
-  ears_->wait();
+  // The library may still call what it has not called yet: rather a leak than that.
+  if (!ears_->wait()) static_cast<void>(ears_.release());
   natsConnection_Destroy(connection_);
 }
 

@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
 #include <thread>
 
 #include "gateway/fleet_query.hpp"
+#include "gateway/kept_stream.hpp"
 #include "gateway/nats_carrier.hpp"
+#include "gateway/nats_link.hpp"
 #include "gateway/properties.hpp"
 #include "gateway/testing/listener.hpp"
 #include "gateway/testing/nats_server.hpp"
@@ -242,6 +245,47 @@ TEST_F(Nats, AServerWithoutJetStreamIsReported) {
             plain.url(false) + ": JetStream: nobody answers, perhaps it is not enabled");
   EXPECT_EQ(listener.connected.size(), 0U);
   carrier->stop({});
+}
+
+TEST_F(Nats, ATokenTakesThePlaceOfAUser) {
+  NatsServer strict("authorization { token: \"right\" }\n");
+  strict.configure({});
+  strict.start();
+  const auto failure = [&](const std::string& token) {
+    Listener listener;
+    const auto carrier = make_nats_carrier({.url = strict.url(false), .token = token}, quick);
+    carrier->start(listener, {});
+    EXPECT_TRUE(
+        comes_true([&] { return listener.connected.size() + listener.reasons.size() > 0; }));
+    carrier->stop({});
+    return listener.connected.size() > 0 ? "none" : listener.reasons.items()[0];
+  };
+  EXPECT_EQ(failure("right"), "none");
+  EXPECT_EQ(failure("wrong"),
+            strict.url(false) + ": the broker refuses the token: Authorization Violation");
+}
+
+// Each user of the stream may say where its messages go.
+TEST_F(Nats, WhatTheStreamDeliversElsewhereIsNotHeard) {
+  Peer writer(server, {});
+  writer.publish(retained("rr/hall/a", "1"));
+  ASSERT_TRUE(comes_true([&] { return newest("rr/hall/a") == "1*"; }));
+  Peer victim(server, {"rr/hall/target"});
+  constexpr std::array<BrokerScheme, 1> schemes{{{"nats", false, 4222}}};
+  const BrokerOptions options{server.url(false)};
+  const auto mailbox = std::make_shared<NatsMailbox>();
+  NatsLink link(options, place_of(options, schemes), seconds(10), mailbox);
+  const auto own = link.subscribe("rr.hall.target");
+  NatsMessage request{reader_create_subject("elsewhere", "rrkept.hall.a"), "rr.hall.answer"};
+  request.payload = bytes_of(reader_create_text("elsewhere", "rrkept.hall.a", "rr.hall.target"));
+  ASSERT_TRUE(link.publish(request));
+  ASSERT_TRUE(comes_true([&] {
+    const auto mail = mailbox->wait(std::chrono::steady_clock::now() + milliseconds(100));
+    return !mail.messages.empty() && text_of(mail.messages[0].payload) == "1";
+  }));
+  writer.publish({"rr/hall/target", bytes_of("2")});
+  ASSERT_TRUE(victim.listener.messages.wait_for(1));
+  EXPECT_THAT(victim.texts(), ::testing::ElementsAre("2"));
 }
 
 TEST_F(Nats, TakesTheNextServerOfACluster) {
