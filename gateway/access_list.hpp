@@ -42,8 +42,8 @@ std::string mosquitto_acl(const AccessList& list);
 /// The list as an `authorization` block of a server of NATS. It has no rights for any user, so
 /// everybody is the users of the list and `others`. Those in `watchers` also see the whole fleet,
 /// for which a user of mosquitto needs no right of its own. The password of user `eve` is the
-/// variable
-/// `$password_eve`, which the file `passwords.conf` beside it has.
+/// variable `$password_eve`, which the file `passwords.conf` beside it has. Throws rr::Error
+/// (invalid_configuration) for a user with other letters than names in topics have.
 std::string nats_authorization(const AccessList& list, const std::vector<std::string>& others,
                                const std::vector<std::string>& watchers = {});
 

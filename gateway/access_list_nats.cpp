@@ -8,6 +8,7 @@
 #include "gateway/kept_stream.hpp"
 #include "gateway/nats_subjects.hpp"
 #include "gateway/topics.hpp"
+#include "rr/error.hpp"
 
 namespace rr::gateway {
 namespace {
@@ -93,6 +94,11 @@ std::string nats_authorization(const AccessList& list, const std::vector<std::st
   for (const auto& [user, rights] : list.users) users.insert(user);
   std::string text = "include passwords.conf\nauthorization {\n  users: [\n";
   for (const std::string& user : users) {
+    // The name stands in the configuration and in subjects.
+    if (!is_level_name(user)) {
+      throw Error(ErrorCode::invalid_configuration,
+                  "`" + user + "` is no user for NATS: 1 to 64 letters, digits, `_` or `-`");
+    }
     UserSubjects subjects;
     add_rights(subjects, list.everybody, user);
     const auto own = list.users.find(user);

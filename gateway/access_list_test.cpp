@@ -182,6 +182,9 @@ authorization {
   EXPECT_THAT(robot, HasSubstr("\n        \"$JS.API.STREAM.CREATE.RRKEPT\""));
   EXPECT_THAT(robot, Not(HasSubstr("rrkept.$reply")));
   EXPECT_THAT(robot, Not(HasSubstr("rr.*.*.$life")));
+  for (const char* wrong : {"", "a b", "a\"", "a.b", "$a"}) {
+    EXPECT_THROW(static_cast<void>(nats_authorization(list, {wrong})), Error) << wrong;
+  }
   const std::string watched = nats_authorization(list, {}, {"boss"});
   EXPECT_THAT(watched, HasSubstr("{user: \"boss\", password: $password_boss"));
   EXPECT_THAT(watched, HasSubstr("\"rr.*.*.$life.$beat\""));

@@ -132,9 +132,9 @@ void read_headers(natsMsg* message, Properties& headers) {
     int value_count = 0;
     if (natsMsgHeader_Values(message, names[i], &values, &value_count) != NATS_OK) continue;
     for (int k = 0; k < value_count; ++k) headers.emplace_back(names[i], values[k]);
-    std::free(values);
+    std::free(static_cast<void*>(values));
   }
-  std::free(names);
+  std::free(static_cast<void*>(names));
 }
 
 NatsMessage taken_message(natsMsg* message) {
@@ -243,7 +243,9 @@ NatsLink::NatsLink(const BrokerOptions& broker, const BrokerPlace& place,
 NatsLink::~NatsLink() {
   natsConnection_Close(connection_);
   // The library may still call what it has not called yet: rather a leak than that.
-  if (!ears_->wait()) static_cast<void>(ears_.release());
+  if (!ears_->wait()) {
+    [[maybe_unused]] const Ears* const leaked = ears_.release();
+  }
   natsConnection_Destroy(connection_);
 }
 

@@ -139,9 +139,8 @@ std::optional<std::chrono::seconds> expiry_of(const NatsMessage& message) {
   const auto text = header_of(message, expiry_header);
   if (!text) return std::nullopt;
   std::uint32_t seconds = 0;
-  const char* const end = text->data() + text->size();
-  const auto result = std::from_chars(text->data(), end, seconds);
-  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
+  const auto result = std::from_chars(text->data(), text->data() + text->size(), seconds);
+  if (result.ec != std::errc() || result.ptr != text->data() + text->size()) return std::nullopt;
   return std::chrono::seconds(seconds);
 }
 
