@@ -20,8 +20,8 @@ struct KeptMessage {
   std::chrono::nanoseconds age{0};  ///< by the broker's clock
 };
 
-/// Reads the newest messages of a stream, for several filters at once. No threads, no clock: who
-/// owns it listens at inboxes and sends requests.
+/// Reads the newest messages of a stream, for several filters at once. No threads, no clock: its
+/// owner listens at inboxes and sends requests.
 class KeptReader {
  public:
   using Clock = std::chrono::steady_clock;

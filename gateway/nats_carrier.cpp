@@ -402,7 +402,7 @@ class NatsCarrier final : public Carrier {
   }
 
   void take_other(NatsSession& session, NatsMessage message) {
-    // A reader that somebody else has sent here: only robots publish values.
+    // Another user has let the stream deliver here.
     if (message.reply.starts_with(own_reply)) return;
     if (!session.is_begun) {
       if (session.held.size() < most_held) session.held.push_back(std::move(message));

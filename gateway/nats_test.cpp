@@ -203,7 +203,7 @@ TEST_F(Nats, ALifeThatBeatsIsNotLost) {
   std::this_thread::sleep_for(milliseconds(1'500));
   // Perhaps twice, when the stream has just been made.
   EXPECT_THAT(reader.texts(), ::testing::Each("up"));
-  // Who comes later sees it as it is.
+  // A reader that comes later sees it as it is.
   EXPECT_EQ(newest(life_topic), "up*");
 }
 
