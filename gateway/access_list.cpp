@@ -11,8 +11,6 @@
 namespace rr::gateway {
 namespace {
 
-constexpr const char* any_user = "%u";
-
 struct VerbAccess {
   Verb verb;
   Allowed access;
@@ -72,7 +70,7 @@ class Collector {
  private:
   void add_rule(const ServiceAddress& address, const ExportRule& rule, const std::string& robot) {
     if (rule.users.empty()) {
-      add_rule_for(any_user, list_.everybody, address, rule);
+      add_rule_for(std::string(any_user), list_.everybody, address, rule);
       list_.users[robot].publish.insert("rr/$reply/#");
       add_values(list_.everybody, address, rule);
     }

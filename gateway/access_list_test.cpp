@@ -143,5 +143,53 @@ TEST(GatewayAccessList, NeedsAUserForEachRobot) {
             "hall/r2: another robot has the user `robot`, too");
 }
 
+TEST(GatewayAccessList, IsWrittenForNats) {
+  const AccessList list = access_list({file_of("r1", "robot1", rule("", "\"pose\"", "\"read\""))});
+  EXPECT_EQ(nats_authorization(list, {"eve"}),
+            R"(include passwords.conf
+authorization {
+  users: [
+    {user: "eve", password: $password_eve, permissions: {
+      publish: [
+        "$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.hall.r1.$life",
+        "$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.hall.r1.$life.$beat",
+        "$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.hall.r1.arm.$def",
+        "$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.hall.r1.arm.$def.>",
+        "$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.hall.r1.arm.$life",
+        "$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.hall.r1.arm.$life.$beat",
+        "$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.hall.r1.arm.$streams",
+        "$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.hall.r1.arm.pose",
+        "_INBOX.eve.>",
+        "rr.hall.r1.arm.$confirm.eve.pose",
+        "rr.hall.r1.arm.$get.eve.pose",
+        "rr.hall.r1.arm.$stream.eve.pose"]
+      subscribe: [
+        "_INBOX.eve.>",
+        "rr.$reply.eve",
+        "rr.$reply.eve.>",
+        "rr.hall.r1.$life",
+        "rr.hall.r1.$life.$beat",
+        "rr.hall.r1.arm.$def",
+        "rr.hall.r1.arm.$def.>",
+        "rr.hall.r1.arm.$life",
+        "rr.hall.r1.arm.$life.$beat",
+        "rr.hall.r1.arm.$streams",
+        "rr.hall.r1.arm.pose"]}}
+)" + nats_authorization(list, {}).substr(
+         std::string("include passwords.conf\nauthorization {\n  users: [\n").size()));
+  const std::string robot = nats_authorization(list, {});
+  EXPECT_THAT(robot, HasSubstr("\n        \"rrkept.hall.r1.>\""));
+  EXPECT_THAT(robot, HasSubstr("\n        \"$JS.API.STREAM.CREATE.RRKEPT\""));
+  EXPECT_THAT(robot, Not(HasSubstr("rrkept.$reply")));
+  EXPECT_THAT(robot, Not(HasSubstr("rr.*.*.$life")));
+  for (const char* wrong : {"", "a b", "a\"", "a.b", "$a"}) {
+    EXPECT_THROW(static_cast<void>(nats_authorization(list, {wrong})), Error) << wrong;
+  }
+  const std::string watched = nats_authorization(list, {}, {"boss"});
+  EXPECT_THAT(watched, HasSubstr("{user: \"boss\", password: $password_boss"));
+  EXPECT_THAT(watched, HasSubstr("\"rr.*.*.$life.$beat\""));
+  EXPECT_THAT(watched, HasSubstr("\"$JS.API.CONSUMER.CREATE.RRKEPT.*.rrkept.*.*.*.$streams\""));
+}
+
 }  // namespace
 }  // namespace rr::gateway

@@ -9,12 +9,15 @@ namespace rr::gateway {
 
 /// How a broker is reached: `[broker]` of an export file, or the command line.
 struct BrokerOptions {
-  std::string url;            ///< `mqtt://host:port`, or `mqtts://host:port` for TLS
+  std::string url;            ///< `mqtt://host:port`; `mqtts`, `nats` or `tls` in its place
   std::string user{};         ///< empty: none
   std::string password{};     ///< of the user
   std::string authority{};    ///< PEM file of certificate authorities; empty: those of the system
   std::string certificate{};  ///< PEM file with a certificate of this side; empty: none
   std::string key{};          ///< PEM file with its key; empty: in the file of the certificate
+  std::string token{};        ///< NATS: in place of user and password; empty: none
+  std::string credentials{};  ///< NATS: file with a token and a key of a user; empty: none
+  int replicas = 1;           ///< NATS: servers of a cluster that have what is retained
 };
 
 /// The parts of a broker's URL.

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-/// What a gateway needs of a broker. MQTT 5 has it (gateway/mqtt_carrier.hpp); others may be
-/// written outside of this tree.
+/// What a gateway needs of a broker. MQTT 5 has it (gateway/mqtt_carrier.hpp) and NATS
+/// (gateway/nats_carrier.hpp); others may be written outside of this tree.
 namespace rr::gateway {
 
 /// Owned bytes.
@@ -88,7 +88,7 @@ class Carrier {
   /// As stop().
   virtual ~Carrier() = default;
 
-  /// Connects, again and again, until stop(). `life` is published by the broker when it loses this
+  /// Connects, again and again, until stop(). `life` reaches its readers when the broker loses this
   /// side without a stop(); nothing for an empty topic. Once. Does not wait.
   virtual void start(CarrierHandler& handler, Message life) = 0;
   /// Publishes `farewell`, ends the connection, and returns when the handler is not called any

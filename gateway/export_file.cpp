@@ -124,6 +124,16 @@ class FileReader {
     }
   }
 
+  /// Of a stream in a cluster: more than half of them have to be there.
+  int replicas(const Toml& value) {
+    const std::string given = text(value);
+    for (const int count : {1, 3, 5}) {
+      if (given == std::to_string(count)) return count;
+    }
+    if (value.kind == Kind::text) mistake(value.span, "`replicas` is \"1\", \"3\" or \"5\"");
+    return 1;
+  }
+
   void read_broker(const Toml& table) {
     for (const Toml::Entry& entry : entries(table)) {
       if (entry.key == "url") {
@@ -138,6 +148,12 @@ class FileReader {
         file_.broker.certificate = file_name(entry.value);
       } else if (entry.key == "key") {
         file_.broker.key = file_name(entry.value);
+      } else if (entry.key == "token_file") {
+        file_.broker.token = secret(entry.value);
+      } else if (entry.key == "credentials") {
+        file_.broker.credentials = file_name(entry.value);
+      } else if (entry.key == "replicas") {
+        file_.broker.replicas = replicas(entry.value);
       } else {
         unknown(entry, "[broker]");
       }

@@ -149,5 +149,20 @@ TEST(GatewayExportRules, WhatIsNotListedIsNotAllowed) {
   EXPECT_EQ(find_rule(arm, "alice", "", "open", calling), nullptr);
 }
 
+TEST(GatewayExportFile, NamesWhatANatsServerNeeds) {
+  const std::string rest = "[[service]]\nname = \"arm\"\nurl = \"x\"\n";
+  const std::string head =
+      "site = \"h\"\nnode = \"r\"\nstate = \"s\"\n[broker]\n"
+      "url = \"tls://hub\"\n";
+  const ExportFile file = parse_export_file(
+      "/etc/x.toml", head + "credentials = \"r.creds\"\nreplicas = \"3\"\n" + rest);
+  EXPECT_EQ(file.broker.credentials, "/etc/r.creds");
+  EXPECT_EQ(file.broker.replicas, 3);
+  for (const char* wrong : {"replicas = \"2\"", "replicas = \"x\"", "replicas = 3"}) {
+    EXPECT_THROW(static_cast<void>(parse_export_file("x.toml", head + wrong + "\n" + rest)), Error)
+        << wrong;
+  }
+}
+
 }  // namespace
 }  // namespace rr::gateway

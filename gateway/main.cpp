@@ -5,9 +5,9 @@
 
 #include "cli/end_signals.hpp"
 #include "gateway/access_list.hpp"
+#include "gateway/carriers.hpp"
 #include "gateway/exporter.hpp"
 #include "gateway/fleet_query.hpp"
-#include "gateway/mqtt_carrier.hpp"
 #include "gateway/program_options.hpp"
 #include "gateway/server.hpp"
 #include "rr/error.hpp"
@@ -34,7 +34,7 @@ void wait_for(const robdef::EndSignals& signals) {
 
 void run_export(const std::string& path, const robdef::EndSignals& signals) {
   ExportFile file = read_export_file(path);
-  const auto carrier = make_mqtt_carrier(file.broker);
+  const auto carrier = make_carrier(file.broker);
   std::atomic<bool> is_refused{false};
   const Exporter exporter(std::move(file), *carrier, log,
                           [&](const std::string&) { is_refused = true; });
@@ -49,13 +49,16 @@ void print_access_list(const ProgramOptions& options) {
   for (const std::string& path : options.export_files) {
     files.push_back(read_export_file(path, Secrets::ignored));
   }
-  std::cout << mosquitto_acl(access_list(files));
+  const AccessList list = access_list(files);
+  std::cout << (options.list_form == "nats"
+                    ? nats_authorization(list, options.list_users, options.list_watchers)
+                    : mosquitto_acl(list));
 }
 
 void print_fleet(const ProgramOptions& options) {
   constexpr std::chrono::seconds limit{10};
   constexpr std::chrono::seconds quiet{1};
-  const auto carrier = make_mqtt_carrier(options.broker);
+  const auto carrier = make_carrier(options.broker);
   const Fleet fleet = ask_for_fleet(*carrier, limit, quiet);
   std::cout << (options.is_json ? fleet.json() : fleet.text());
 }
@@ -63,7 +66,7 @@ void print_fleet(const ProgramOptions& options) {
 void run_serve(const ProgramOptions& options, SetupOptions setup,
                const robdef::EndSignals& signals) {
   const NodeSetup node(std::move(setup));
-  const auto carrier = make_mqtt_carrier(options.broker);
+  const auto carrier = make_carrier(options.broker);
   const Server server(options.server, node.node(), *carrier, log);
   wait_for(signals);
 }

@@ -16,8 +16,8 @@
 #include <thread>
 #include <utility>
 
+#include "gateway/broker_tls.hpp"
 #include "gateway/mqtt_properties.hpp"
-#include "gateway/mqtt_tls.hpp"
 #include "rr/error.hpp"
 #include "rr/mutex.hpp"
 
@@ -51,7 +51,7 @@ class MqttCarrier final : public Carrier {
     static const int initialized = mosquitto_lib_init();
     static_cast<void>(initialized);
     // A file that cannot be used is reported at once.
-    if (place_.is_encrypted) tls_ = std::make_unique<MqttTls>(broker_, place_.host);
+    if (place_.is_encrypted) tls_ = std::make_unique<BrokerTls>(broker_, place_.host);
   }
   ~MqttCarrier() override { stop({}); }
 
@@ -223,12 +223,14 @@ class MqttCarrier final : public Carrier {
     tls_reason_.clear();
     if (!place_.is_encrypted) return true;
     try {
-      tls_ = std::make_unique<MqttTls>(broker_, place_.host);
+      tls_ = std::make_unique<BrokerTls>(broker_, place_.host);
     } catch (const Error& error) {
       reason_ = error.message();
       return false;
     }
-    tls_->use_in(client);
+    // The context as it is: the library would replace the check of certificates by its own.
+    mosquitto_int_option(client, MOSQ_OPT_SSL_CTX_WITH_DEFAULTS, 0);
+    mosquitto_void_option(client, MOSQ_OPT_SSL_CTX, tls_->context());
     mosquitto_log_callback_set(client, on_log);
     return true;
   }
@@ -342,7 +344,7 @@ class MqttCarrier final : public Carrier {
   Mutex mutex_ RR_ACQUIRED_BEFORE(filters_mutex_);
   Condition changed_;
   std::atomic<bool> ends_{false};
-  std::unique_ptr<MqttTls> tls_;  // of the carrier's thread; outlives the client
+  std::unique_ptr<BrokerTls> tls_;  // of the carrier's thread; outlives the client
   Client client_;  // written by the carrier's thread, with mutex_; others read it with mutex_
   std::atomic<bool> is_accepted_{false};   // by the broker
   std::atomic<bool> is_connected_{false};  // and it knows the subscriptions

@@ -47,6 +47,9 @@ class Words {
     if (options_.task == Task::access_list && options_.export_files.empty()) {
       refuse_word("`--acl` needs export files");
     }
+    if (!options_.list_watchers.empty() && options_.list_form != "nats") {
+      refuse_word("`--watcher` is for `--acl nats`");
+    }
     return std::move(options_);
   }
 
@@ -71,8 +74,15 @@ class Words {
       options_.server.reader = value(word);
     } else if (word == "--user") {
       options_.broker.user = value(word);
+      options_.list_users.push_back(options_.broker.user);
     } else if (word == "--password-file") {
       options_.broker.password = read_secret(value(word));
+    } else if (word == "--watcher") {
+      options_.list_watchers.push_back(value(word));
+    } else if (word == "--token-file") {
+      options_.broker.token = read_secret(value(word));
+    } else if (word == "--credentials") {
+      options_.broker.credentials = value(word);
     } else if (word == "--authority") {
       options_.broker.authority = value(word);
     } else if (word == "--certificate") {
@@ -86,7 +96,7 @@ class Words {
     } else if (word == "--acl") {
       options_.task = Task::access_list;
       options_.list_form = value(word);
-      if (options_.list_form != "mosquitto") {
+      if (options_.list_form != "mosquitto" && options_.list_form != "nats") {
         refuse_word("`" + options_.list_form + "` is no form of access lists");
       }
     } else {
@@ -118,22 +128,26 @@ class Words {
 }  // namespace
 
 const char* const program_help =
-    R"(Brings robots to an MQTT 5 broker, and back: docs/howto/fleet.md.
+    R"(Brings robots to a broker of MQTT 5 or NATS, and back: docs/howto/fleet.md.
 
   robdef-gateway FILE
       Exports services of a robot to a broker, as the export file says.
   robdef-gateway --serve SITE/NODE/SERVICE[=NAME] --broker URL --reader NAME
       Offers services of robots at a broker as ordinary services. Several --serve are allowed.
   robdef-gateway --acl mosquitto FILE...
-      Prints the access list that the broker needs for these export files.
+  robdef-gateway --acl nats [--user NAME]... [--watcher NAME]... FILE...
+      Prints the access list that the broker needs for these export files. That of NATS has the
+      users of the files and those that are named; watchers may use --fleet.
   robdef-gateway --fleet --broker URL [--json]
       Prints which robots are alive, and how far their streams and readers are.
 
-  --broker URL           mqtt://host:port, or mqtts://host:port for TLS
+  --broker URL           mqtt://host:port or nats://host:port; mqtts:// or tls:// for TLS
   --reader NAME          the name by which export files declare this reader
   --user NAME            user of the broker; without it the reader's name stands in topics
   --password-file FILE   that user's password
-  --authority FILE       certificate authorities of the broker (mqtts); without it those of the system
+  --token-file FILE      NATS: a token in place of user and password
+  --credentials FILE     NATS: credentials in place of user and password
+  --authority FILE       certificate authorities of the broker; without it those of the system
   --certificate FILE     certificate of this side, where the broker asks for one
   --key FILE             its key, where that is not in the same file
   --robotraconteur-...   flags of the node that serves, as --robotraconteur-tcp-port=2355

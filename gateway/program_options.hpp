@@ -15,10 +15,13 @@ struct ProgramOptions {
   Task task = Task::help;
   /// With Task::export_file one, with Task::access_list one or more.
   std::vector<std::string> export_files;
-  std::string list_form;  ///< with Task::access_list: `mosquitto`
-  bool is_json = false;   ///< with Task::fleet
-  BrokerOptions broker;   ///< with Task::serve and Task::fleet
-  ServerOptions server;   ///< with Task::serve
+  std::string list_form;  ///< with Task::access_list: `mosquitto` or `nats`
+  /// With Task::access_list: users besides those in the files.
+  std::vector<std::string> list_users;
+  std::vector<std::string> list_watchers;  ///< with Task::access_list: users of --fleet
+  bool is_json = false;                    ///< with Task::fleet
+  BrokerOptions broker;                    ///< with Task::serve and Task::fleet
+  ServerOptions server;                    ///< with Task::serve
 };
 
 /// The text of `robdef-gateway --help`.

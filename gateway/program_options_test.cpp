@@ -39,6 +39,16 @@ TEST(GatewayOptions, AccessListsAreMadeOfFiles) {
   EXPECT_EQ(options.export_files, (std::vector<std::string>{"one", "two"}));
 }
 
+TEST(GatewayOptions, AccessListsOfNatsNameUsers) {
+  const auto options = read_options(
+      {"--acl", "nats", "--user", "desk", "--user", "guest", "--watcher", "boss", "one", "two"});
+  EXPECT_EQ(options.task, Task::access_list);
+  EXPECT_EQ(options.list_form, "nats");
+  EXPECT_EQ(options.list_users, (std::vector<std::string>{"desk", "guest"}));
+  EXPECT_EQ(options.list_watchers, std::vector<std::string>{"boss"});
+  EXPECT_EQ(options.export_files, (std::vector<std::string>{"one", "two"}));
+}
+
 TEST(GatewayOptions, FleetsAreShown) {
   const auto options = read_options({"--fleet", "--broker", "mqtt://hub", "--json"});
   EXPECT_EQ(options.task, Task::fleet);
@@ -58,7 +68,8 @@ TEST(GatewayOptions, WhatIsMissingOrUnknownIsRefused) {
         {"--json", "one"},
         {"--acl"},
         {"--acl", "mosquitto"},
-        {"--acl", "nats", "one"},
+        {"--acl", "emqx", "one"},
+        {"--acl", "mosquitto", "--watcher", "guest", "one"},
         {"one", "--serve", "a/b/c", "--broker", "x", "--reader", "y"}}) {
     EXPECT_THROW(static_cast<void>(read_options(words)), Error) << words[0];
   }

@@ -176,6 +176,15 @@ bool is_reply_topic(std::string_view topic, std::string_view user) {
   return topic.starts_with(base) && is_level_name(topic.substr(base.size()));
 }
 
+bool may_be_retained(std::string_view filter) {
+  return std::ranges::none_of(split(filter, '/'), [](std::string_view level) {
+    if (level == "$claim" || level == "$reply") return true;
+    return level.starts_with('$') && std::ranges::find(verbs, level.substr(1), [](const auto& row) {
+                                       return row.second;
+                                     }) != verbs.end();
+  });
+}
+
 bool topic_matches(std::string_view filter, std::string_view topic) {
   const auto wanted = split(filter, '/');
   const auto levels = split(topic, '/');

@@ -92,6 +92,9 @@ std::string reply_topic(std::string_view user, std::string_view instance);
 /// Whether answers to `user` may go there.
 bool is_reply_topic(std::string_view topic, std::string_view user);
 
+/// Whether messages of a topic or filter may be retained: not requests, claims and answers.
+bool may_be_retained(std::string_view filter);
+
 /// Whether a topic fits a filter of MQTT (`+`, `#`).
 bool topic_matches(std::string_view filter, std::string_view topic);
 

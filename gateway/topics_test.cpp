@@ -77,5 +77,15 @@ TEST(GatewayTopics, FiltersAreThoseOfMqtt) {
   EXPECT_FALSE(topic_matches("a/b/c", "a/b"));
 }
 
+TEST(GatewayTopics, OfRequestsAndAnswersAreNotRetained) {
+  for (const char* filter :
+       {"rr/h/r/$claim", "rr/h/r/s/$get/#", "rr/h/r/s/$confirm/desk/force", "rr/$reply/desk/1"}) {
+    EXPECT_FALSE(may_be_retained(filter)) << filter;
+  }
+  for (const char* filter : {"rr/+/+/$life", "rr/h/r/s/$def/#", "rr/h/r/s/force", "rr/h/r/s/get"}) {
+    EXPECT_TRUE(may_be_retained(filter)) << filter;
+  }
+}
+
 }  // namespace
 }  // namespace rr::gateway

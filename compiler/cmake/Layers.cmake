@@ -124,6 +124,7 @@ set(robdef_outside_headers
   "^toml\\+\\+/| compiler/project/toml_file.cpp"
   "^(mex\\.h|octave/)| runtime/matlab conformance/runners/matlab"
   "^(mosquitto|mqtt_protocol)\\.h$| gateway/mqtt_carrier.cpp gateway/mqtt_properties.hpp runtime/cpp/bench/fan_out_mosquitto.cpp"
+  "^nats/| gateway/nats_link.cpp"
   "^histedit\\.h$| cli/live/line_reader.cpp"
   "^png\\.h$| examples")
 

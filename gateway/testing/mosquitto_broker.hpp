@@ -1,48 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <string>
+#include <vector>
 
-#include "gateway/testing/folder.hpp"
-#include "gateway/testing/program.hpp"
-#include "gateway/testing/waiting.hpp"
-#include "rr/node.hpp"
+#include "gateway/testing/real_broker.hpp"
 
 namespace rr::gateway::testing {
 
-/// A file of users and passwords for `password_file`, of lines `user:password`.
-inline std::string make_passwords(const Folder& folder, const std::string& lines) {
-  const std::string path = folder.path() + "/passwords";
-  std::ofstream(path) << lines;
-  if (!exited_with(Program({"mosquitto_passwd", "-U", path}).wait(), 0)) {
-    throw std::runtime_error("no passwords were made");
-  }
-  return path;
-}
-
-/// Whether a program of this machine takes connections at a port.
-inline bool listens(int port) {
-  const int descriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  const int result =
-      ::connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address);
-  ::close(descriptor);
-  return result == 0;
-}
-
-/// A real broker at a free port of this machine, which keeps nothing on disk.
-class MosquittoBroker {
+/// Mosquitto, which keeps nothing on disk.
+class MosquittoBroker final : public RealBroker {
  public:
   /// Empty when it is not installed.
   static std::string program() {
@@ -52,33 +21,43 @@ class MosquittoBroker {
     return {};
   }
 
-  explicit MosquittoBroker(const std::string& configuration = "allow_anonymous true\n")
-      : port_(free_port()) {
-    std::ofstream(folder_.path() + "/mosquitto.conf")
-        << "listener " << port_ << " 127.0.0.1\n"
-        << configuration << "persistence false\nlog_dest none\nuser root\n";
-    start();
+  void configure(const BrokerSetup& setup) override {
+    std::ofstream file(path("mosquitto.conf"));
+    file << "listener " << port() << " 127.0.0.1\npersistence false\nlog_dest none\nuser root\n"
+         << "allow_anonymous "
+         << (setup.users.empty() && setup.client_authority.empty() ? "true" : "false") << "\n";
+    if (!setup.users.empty()) {
+      write_passwords(setup);
+      file << "password_file " << path("passwords") << "\n";
+    }
+    if (!setup.access_list.empty()) {
+      std::ofstream(path("acl")) << setup.access_list;
+      file << "acl_file " << path("acl") << "\n";
+    }
+    if (!setup.certificate.empty()) {
+      file << "certfile " << setup.certificate << "\nkeyfile " << setup.certificate << "\n";
+    }
+    if (!setup.client_authority.empty()) {
+      file << "require_certificate true\nuse_identity_as_username true\ncafile "
+           << setup.client_authority << "\n";
+    }
   }
-
-  /// Returns when it takes connections.
-  void start() {
-    process_.emplace(std::vector<std::string>{program(), "-c", folder_.path() + "/mosquitto.conf"});
-    if (!comes_true([&] { return listens(port_); })) throw std::runtime_error("no broker");
-  }
-  void kill() { process_->end(SIGKILL); }
-  [[nodiscard]] std::string url(const std::string& scheme = "mqtt") const {
-    return scheme + "://127.0.0.1:" + std::to_string(port_);
+  [[nodiscard]] std::string url(bool is_encrypted) const override {
+    return (is_encrypted ? "mqtts://127.0.0.1:" : "mqtt://127.0.0.1:") + std::to_string(port());
   }
 
  private:
-  static int free_port() {
-    Node node;
-    return node.listen_tcp(0);
+  [[nodiscard]] std::vector<std::string> command() const override {
+    return {program(), "-c", path("mosquitto.conf")};
   }
-
-  Folder folder_;
-  int port_;
-  std::optional<Program> process_;
+  void write_passwords(const BrokerSetup& setup) const {
+    std::ofstream file(path("passwords"));
+    for (const auto& [user, password] : setup.users) file << user << ":" << password << "\n";
+    file.close();
+    if (!exited_with(Program({"mosquitto_passwd", "-U", path("passwords")}).wait(), 0)) {
+      throw std::runtime_error("no passwords were made");
+    }
+  }
 };
 
 }  // namespace rr::gateway::testing

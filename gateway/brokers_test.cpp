@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same as gateways_test.cpp over a real broker, which is killed meanwhile.
+// The same as gateways_test.cpp over real brokers, which are killed meanwhile.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <future>
+#include <memory>
 #include <string>
 #include <thread>
 
-#include "gateway/mqtt_carrier.hpp"
 #include "gateway/properties.hpp"
+#include "gateway/testing/broker_kinds.hpp"
 #include "gateway/testing/listener.hpp"
-#include "gateway/testing/mosquitto_broker.hpp"
 #include "gateway/testing/rig.hpp"
 
 namespace rr::gateway {
@@ -22,18 +22,19 @@ using testing::comes_true;
 using testing::Folder;
 using testing::Kept;
 using testing::Listener;
-using testing::MosquittoBroker;
+using testing::OverBroker;
 using testing::Program;
+using testing::RealBroker;
 using testing::Rig;
 
-class Mosquitto : public ::testing::Test {
+class Brokers : public OverBroker {
  protected:
   void SetUp() override {
-    if (MosquittoBroker::program().empty()) GTEST_SKIP() << "mosquitto is not installed";
-    broker.emplace();
+    OverBroker::SetUp();
+    if (!IsSkipped()) broker = GetParam().start();
   }
   Rig& make_rig() {
-    return rig.emplace([this] { return make_mqtt_carrier({broker->url()}); });
+    return rig.emplace([this] { return make_carrier({broker->url()}); });
   }
   /// An export file of the robot, all of whose members may be read and called.
   [[nodiscard]] std::string write_export(const Folder& folder,
@@ -53,15 +54,15 @@ class Mosquitto : public ::testing::Test {
     broker->start();
   }
 
-  std::optional<MosquittoBroker> broker;
+  std::unique_ptr<RealBroker> broker;
   std::optional<Rig> rig;
 };
 
-TEST_F(Mosquitto, CarriesMessagesAsTheyAre) {
+TEST_P(Brokers, CarriesMessagesAsTheyAre) {
   Listener one;
   Listener two;
-  const auto from = make_mqtt_carrier({broker->url()});
-  const auto to = make_mqtt_carrier({broker->url()});
+  const auto from = make_carrier({broker->url()});
+  const auto to = make_carrier({broker->url()});
   to->subscribe("a/#");
   from->start(one, {"life/one", bytes_of("lost")});
   to->start(two, {"life/two", bytes_of("lost")});
@@ -77,7 +78,7 @@ TEST_F(Mosquitto, CarriesMessagesAsTheyAre) {
   EXPECT_EQ(got.topic, "a/b");
   EXPECT_EQ(got.payload, message.payload);
   EXPECT_EQ(got.find("type"), "double");
-  EXPECT_EQ(got.find("bad"), "??");
+  EXPECT_EQ(got.find("bad"), GetParam().unusual_value);
   EXPECT_EQ(got.find("empty"), "");
   EXPECT_EQ(got.response_topic, message.response_topic);
   EXPECT_EQ(got.correlation, message.correlation);
@@ -85,9 +86,9 @@ TEST_F(Mosquitto, CarriesMessagesAsTheyAre) {
   to->stop({});
 }
 
-TEST_F(Mosquitto, TakesNoMoreThanTheBrokerAcknowledges) {
+TEST_P(Brokers, TakesNoMoreThanTheBrokerAcknowledges) {
   Listener listener;
-  const auto carrier = make_mqtt_carrier({broker->url()}, {.in_flight = 10});
+  const auto carrier = GetParam().narrow_carrier({broker->url()}, 10);
   carrier->start(listener, {"life", {}});
   ASSERT_TRUE(listener.connected.wait_for(1));
   int taken = 0;
@@ -98,11 +99,11 @@ TEST_F(Mosquitto, TakesNoMoreThanTheBrokerAcknowledges) {
   carrier->stop({});
 }
 
-TEST_F(Mosquitto, PublishesTheFarewellAndNotTheWill) {
+TEST_P(Brokers, PublishesTheFarewellAndNotTheWill) {
   Listener one;
   Listener two;
-  const auto from = make_mqtt_carrier({broker->url()});
-  const auto to = make_mqtt_carrier({broker->url()});
+  const auto from = make_carrier({broker->url()});
+  const auto to = make_carrier({broker->url()});
   to->subscribe("life");
   to->start(two, {"other", {}});
   from->start(one, {"life", bytes_of("lost")});
@@ -114,9 +115,9 @@ TEST_F(Mosquitto, PublishesTheFarewellAndNotTheWill) {
   to->stop({});
 }
 
-TEST_F(Mosquitto, ConnectsAgain) {
+TEST_P(Brokers, ConnectsAgain) {
   Listener listener;
-  const auto carrier = make_mqtt_carrier({broker->url()});
+  const auto carrier = make_carrier({broker->url()});
   carrier->subscribe("a");
   carrier->start(listener, {"life", {}});
   ASSERT_TRUE(listener.connected.wait_for(1));
@@ -129,28 +130,28 @@ TEST_F(Mosquitto, ConnectsAgain) {
   carrier->stop({});
 }
 
-TEST_F(Mosquitto, SaysWhyItIsRefused) {
-  const MosquittoBroker strict("allow_anonymous false\n");
+TEST_P(Brokers, SaysWhyItIsRefused) {
+  const auto strict = GetParam().start({.users = {{"eve", "right"}}});
   Listener listener;
-  const auto carrier = make_mqtt_carrier({strict.url(), "eve", "wrong"});
+  const auto carrier = make_carrier({strict->url(), "eve", "wrong"});
   carrier->start(listener, {"life", {}});
   EXPECT_TRUE(comes_true([&] {
     const auto reasons = listener.reasons.items();
-    return !reasons.empty() && reasons.back().find("Not authorized") != std::string::npos;
+    return !reasons.empty() && reasons.back().find(GetParam().refused_user) != std::string::npos;
   })) << (listener.reasons.size() ? listener.reasons.items().back() : "nothing");
   EXPECT_EQ(listener.connected.size(), 0U);
   EXPECT_EQ(carrier->publish({"a", {}}), Published::later);
   carrier->stop({});
 }
 
-TEST_F(Mosquitto, WrongUrlsAreRefused) {
-  for (const char* url :
-       {"", "mqtt://", "http://a", "mqtt://a:0", "mqtt://a:70000", "mqtt://a:x"}) {
-    EXPECT_THROW(static_cast<void>(make_mqtt_carrier({url})), Error) << url;
+TEST_P(Brokers, WrongUrlsAreRefused) {
+  for (const char* rest : {"", "a:0", "a:70000", "a:x", "a@b", "a/b"}) {
+    const std::string url = GetParam().scheme + "://" + rest;
+    EXPECT_THROW(static_cast<void>(make_carrier({url})), Error) << url;
   }
 }
 
-TEST_F(Mosquitto, MembersWorkThroughBothGateways) {
+TEST_P(Brokers, MembersWorkThroughBothGateways) {
   Rig& all = make_rig();
   const auto bench = all.connect();
   bench->set("speed", 0.25);
@@ -173,7 +174,7 @@ TEST_F(Mosquitto, MembersWorkThroughBothGateways) {
 }
 
 // 10,000 packets while the broker is killed three times, and its retained messages with it.
-TEST_F(Mosquitto, NothingIsLostWhenTheBrokerIsKilled) {
+TEST_P(Brokers, NothingIsLostWhenTheBrokerIsKilled) {
   Rig& all = make_rig();
   const auto bench = all.connect();
   auto samples = bench->pipe("samples").connect();
@@ -213,7 +214,7 @@ TEST_F(Mosquitto, NothingIsLostWhenTheBrokerIsKilled) {
   EXPECT_EQ(all.robot.counted(), before + 1);
 }
 
-TEST_F(Mosquitto, WiresHaveTheNewestValueAfterTheBrokerWasKilled) {
+TEST_P(Brokers, WiresHaveTheNewestValueAfterTheBrokerWasKilled) {
   Rig& all = make_rig();
   const auto bench = all.connect();
   auto force = bench->wire("force").connect();
@@ -233,7 +234,7 @@ TEST_F(Mosquitto, WiresHaveTheNewestValueAfterTheBrokerWasKilled) {
 
 /// A serving gateway, and a client of it.
 struct FarBench {
-  explicit FarBench(const MosquittoBroker& broker) : carrier(make_mqtt_carrier({broker.url()})) {
+  explicit FarBench(const RealBroker& broker) : carrier(make_carrier({broker.url()})) {
     const std::string url =
         "rr+tcp://localhost:" + std::to_string(server_node.listen_tcp(0)) + "/?service=far";
     ServerOptions options;
@@ -258,12 +259,12 @@ struct FarBench {
 };
 
 // The programs themselves; the one beside the robot is killed.
-TEST_F(Mosquitto, TheProgramGoesOnAfterItWasKilled) {
+TEST_P(Brokers, TheProgramGoesOnAfterItWasKilled) {
   const testing::BenchService robot;
   const Folder folder;
   const std::string path = write_export(folder, robot);
   Listener life;
-  const auto watcher = make_mqtt_carrier({broker->url()});
+  const auto watcher = make_carrier({broker->url()});
   watcher->subscribe("rr/hall/robot/$life");
   watcher->start(life, {"other", {}});
   const auto newest_life = [&] {
@@ -287,22 +288,20 @@ TEST_F(Mosquitto, TheProgramGoesOnAfterItWasKilled) {
 }
 
 // The broker is started again with another password of the serving gateway.
-TEST_F(Mosquitto, ACallSaysThatTheBrokerRefusesTheGateway) {
-  const Folder folder;
-  const std::string users = testing::make_passwords(folder, "robot:one\nhub:two\n");
-  MosquittoBroker strict("allow_anonymous false\npassword_file " + users + "\n");
+TEST_P(Brokers, ACallSaysThatTheBrokerRefusesTheGateway) {
+  const auto strict = GetParam().start({.users = {{"robot", "one"}, {"hub", "two"}}});
   int made = 0;
   Rig all(
       [&] {
-        return ++made == 1 ? make_mqtt_carrier({strict.url(), "robot", "one"})
-                           : make_mqtt_carrier({strict.url(), "hub", "two"});
+        return ++made == 1 ? make_carrier({strict->url(), "robot", "one"})
+                           : make_carrier({strict->url(), "hub", "two"});
       },
       milliseconds(1'000));
   const auto bench = all.connect();
   EXPECT_EQ(bench->call("count").as<int>(), 1);
-  strict.kill();
-  testing::make_passwords(folder, "robot:one\nhub:three\n");
-  strict.start();
+  strict->kill();
+  strict->configure({.users = {{"robot", "one"}, {"hub", "three"}}});
+  strict->start();
   std::string text;
   EXPECT_TRUE(comes_true([&] {
     try {
@@ -310,14 +309,14 @@ TEST_F(Mosquitto, ACallSaysThatTheBrokerRefusesTheGateway) {
     } catch (const Error& error) {
       text = error.message();
     }
-    return text.find("no connection to the broker: " + strict.url() +
-                     ": the broker refuses user `hub` or the password: Not authorized") !=
-           std::string::npos;
+    return text.find("no connection to the broker: " + strict->url() +
+                     ": the broker refuses user `hub` or the password: " +
+                     GetParam().refused_user) != std::string::npos;
   })) << text;
 }
 
 // A limit of the process on the size of files stands for a disk that is full.
-TEST_F(Mosquitto, AFullDiskLosesPacketsAsAGapAndRefusesCalls) {
+TEST_P(Brokers, AFullDiskLosesPacketsAsAGapAndRefusesCalls) {
   const testing::BenchService robot;
   const Folder folder;
   const std::string path = write_export(folder, robot);
@@ -355,12 +354,12 @@ TEST_F(Mosquitto, AFullDiskLosesPacketsAsAGapAndRefusesCalls) {
   EXPECT_TRUE(testing::exited_with(gateway.end(SIGTERM), 0));
 }
 
-TEST_F(Mosquitto, ASecondProgramForARobotEnds) {
+TEST_P(Brokers, ASecondProgramForARobotEnds) {
   const testing::BenchService robot;
   const Folder one;
   const Folder two;
   Listener life;
-  const auto watcher = make_mqtt_carrier({broker->url()});
+  const auto watcher = make_carrier({broker->url()});
   watcher->subscribe("rr/hall/robot/$life");
   watcher->start(life, {"other", {}});
   Program first({ROBDEF_GATEWAY, write_export(one, robot)});
@@ -372,6 +371,9 @@ TEST_F(Mosquitto, ASecondProgramForARobotEnds) {
   EXPECT_TRUE(testing::exited_with(first.end(SIGTERM), 0));
   watcher->stop({});
 }
+
+INSTANTIATE_TEST_SUITE_P(All, Brokers, ::testing::ValuesIn(testing::broker_kinds()),
+                         testing::name_of_kind);
 
 }  // namespace
 }  // namespace rr::gateway

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A real broker with the access list that the program prints.
+// Real brokers with the access lists that the program prints.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,27 +12,30 @@
 #include <utility>
 #include <vector>
 
-#include "gateway/mqtt_carrier.hpp"
+#include "gateway/properties.hpp"
+#include "gateway/testing/broker_kinds.hpp"
 #include "gateway/testing/listener.hpp"
-#include "gateway/testing/mosquitto_broker.hpp"
 #include "gateway/testing/rig.hpp"
 
 namespace rr::gateway {
 namespace {
 
+using testing::BrokerSetup;
 using testing::comes_true;
 using testing::Folder;
 using testing::Listener;
-using testing::MosquittoBroker;
+using testing::OverBroker;
 using testing::Program;
+using testing::RealBroker;
 using testing::Rig;
 using ::testing::UnorderedElementsAre;
 
-/// A connection of a user that subscribes to everything.
+/// A connection of a user.
 struct Person {
-  Person(const MosquittoBroker& broker, const std::string& name)
-      : carrier(make_mqtt_carrier({broker.url(), name, "secret-" + name})) {
-    carrier->subscribe("#");
+  Person(const RealBroker& broker, const std::string& name,
+         const std::vector<std::string>& filters = {})
+      : carrier(make_carrier({broker.url(), name, "secret-" + name})) {
+    for (const std::string& filter : filters) carrier->subscribe(filter);
     carrier->start(listener, {"life/" + name, {}});
     EXPECT_TRUE(listener.connected.wait_for(1)) << name;
   }
@@ -47,31 +50,33 @@ struct Person {
   std::unique_ptr<Carrier> carrier;
 };
 
-class MosquittoAccess : public ::testing::Test {
+class BrokersAccess : public OverBroker {
  protected:
-  void SetUp() override {
-    if (MosquittoBroker::program().empty()) GTEST_SKIP() << "mosquitto is not installed";
-  }
-
   /// `more` are lines of the export file of robot `r1`.
   void start(const std::string& rules) {
     write("r1.toml", "robot1", "r1", rules);
     write("r2.toml", "robot2", "r2", rules);
-    std::string lines;
     for (const char* name : {"robot1", "robot2", "hub", "alice", "eve", "admin"}) {
-      lines += std::string(name) + ":secret-" + name + "\n";
+      setup.users[name] = "secret-" + std::string(name);
     }
-    const std::string users = testing::make_passwords(folder, lines);
-    Program program({ROBDEF_GATEWAY, "--acl", "mosquitto", folder.path() + "/r1.toml",
-                     folder.path() + "/r2.toml"});
-    ASSERT_TRUE(testing::exited_with(program.wait(), 0));
-    std::ofstream list(folder.path() + "/acl");
-    for (const std::string& line : program.lines()) list << line << "\n";
-    // The test looks at everything.
-    list << "user admin\ntopic readwrite #\n";
-    list.close();
-    broker.emplace("allow_anonymous false\npassword_file " + users + "\nacl_file " + folder.path() +
-                   "/acl\n");
+    setup.access_list = printed({"r1.toml", "r2.toml"});
+    broker = GetParam().start(setup);
+  }
+  /// What the program prints for export files; the user `admin` looks at everything.
+  [[nodiscard]] std::string printed(const std::vector<std::string>& files) const {
+    const bool is_nats = GetParam().list_form == "nats";
+    std::vector<std::string> words{ROBDEF_GATEWAY, "--acl", GetParam().list_form};
+    // Those of the list itself, and the others.
+    if (is_nats) words.insert(words.end(), {"--user", "hub", "--user", "eve", "--user", "alice"});
+    for (const std::string& file : files) words.push_back(folder.path() + "/" + file);
+    Program program(words);
+    EXPECT_TRUE(testing::exited_with(program.wait(), 0));
+    std::string text;
+    for (const std::string& line : program.lines()) {
+      text += line + "\n";
+      if (line == "  users: [") text += "    {user: \"admin\", password: $password_admin}\n";
+    }
+    return is_nats ? text : text + "user admin\ntopic readwrite #\n";
   }
   void write(const std::string& name, const std::string& user, const std::string& node,
              const std::string& rules) {
@@ -82,7 +87,8 @@ class MosquittoAccess : public ::testing::Test {
   }
 
   Folder folder;
-  std::optional<MosquittoBroker> broker;
+  BrokerSetup setup;
+  std::unique_ptr<RealBroker> broker;
 };
 
 constexpr const char* some_rules =
@@ -90,9 +96,9 @@ constexpr const char* some_rules =
     "[[service.allow]]\npath = \"tools[*]\"\nmembers = [\"open\"]\naccess = [\"call\"]\n"
     "users = [\"alice\"]\n";
 
-TEST_F(MosquittoAccess, LetsRequestsPassThatTheExportLists) {
+TEST_P(BrokersAccess, LetsRequestsPassThatTheExportLists) {
   start(some_rules);
-  Person admin(*broker, "admin");
+  Person admin(*broker, "admin", {"rr/#", "other"});
   const std::string r1 = "rr/hall/r1/bench/";
   const std::vector<std::pair<std::string, std::string>> requests{
       {"eve", r1 + "$get/eve/speed"},
@@ -141,7 +147,7 @@ TEST_F(MosquittoAccess, LetsRequestsPassThatTheExportLists) {
   EXPECT_EQ(refused, requests.size() - passing);
 }
 
-TEST_F(MosquittoAccess, ARefusalNamesTheTopicHoweverFastItIs) {
+TEST_P(BrokersAccess, ARefusalNamesTheTopicHoweverFastItIs) {
   start(some_rules);
   Person eve(*broker, "eve");
   constexpr std::size_t count = 3000;
@@ -149,23 +155,38 @@ TEST_F(MosquittoAccess, ARefusalNamesTheTopicHoweverFastItIs) {
   for (std::size_t i = 0; i < count; ++i) {
     const std::string topic = "secret/" + std::to_string(i);
     ASSERT_TRUE(comes_true([&] { return eve.carrier->publish({topic, {}}) == Published::taken; }));
-    expected.insert(Refusal{topic, "Not authorized"}.text());
+    expected.insert("`" + topic + "`");
   }
-  ASSERT_TRUE(eve.listener.refused.wait_for(count));
-  const std::vector<std::string> refused = eve.listener.refused.items();
-  EXPECT_EQ(std::set<std::string>(refused.begin(), refused.end()), expected);
+  std::set<std::string> named;
+  EXPECT_TRUE(comes_true([&] {
+    for (const std::string& text : eve.listener.refused.items()) {
+      const std::size_t begin = std::min(text.find('`'), text.size());
+      named.insert(text.substr(begin, text.rfind('`') + 1 - begin));
+    }
+    return named.size() >= count;
+  }));
+  EXPECT_EQ(named, expected);
 }
 
-TEST_F(MosquittoAccess, GivesUsersWhatTheExportLists) {
+TEST_P(BrokersAccess, GivesUsersWhatTheExportLists) {
   start(some_rules);
-  Person eve(*broker, "eve");
-  Person alice(*broker, "alice");
-  Person robot(*broker, "robot1");
-  Person admin(*broker, "admin");
-  for (const char* topic :
-       {"rr/hall/r1/bench/force", "rr/hall/r1/bench/secret", "rr/hall/r1/bench/tools[a]/open",
-        "rr/hall/r1/$life", "rr/hall/r2/bench/$def/x", "rr/$reply/eve/1", "rr/$reply/alice/1",
-        "rr/hall/r1/bench/$get/eve/speed", "rr/hall/r2/bench/$get/eve/speed", "other"}) {
+  const std::vector<std::string> topics{"rr/hall/r1/bench/force",
+                                        "rr/hall/r1/bench/secret",
+                                        "rr/hall/r1/bench/tools[a]/open",
+                                        "rr/hall/r1/$life",
+                                        "rr/hall/r2/bench/$def/x",
+                                        "rr/$reply/eve/1",
+                                        "rr/$reply/alice/1",
+                                        "rr/hall/r1/bench/$get/eve/speed",
+                                        "rr/hall/r2/bench/$get/eve/speed",
+                                        "other"};
+  // Where the broker looks at the subscription, each of them is asked for.
+  const auto filters = GetParam().has_wide_filters ? std::vector<std::string>{"#"} : topics;
+  Person eve(*broker, "eve", filters);
+  Person alice(*broker, "alice", filters);
+  Person robot(*broker, "robot1", filters);
+  Person admin(*broker, "admin", {"rr/#", "other"});
+  for (const std::string& topic : topics) {
     ASSERT_EQ(admin.carrier->publish({topic, {}}), Published::taken);
   }
   ASSERT_TRUE(admin.listener.messages.wait_for(10));
@@ -183,25 +204,24 @@ TEST_F(MosquittoAccess, GivesUsersWhatTheExportLists) {
                                    "rr/hall/r2/bench/$def/x", "rr/hall/r1/bench/$get/eve/speed"));
 }
 
-TEST_F(MosquittoAccess, BothGatewaysWorkWithIt) {
+TEST_P(BrokersAccess, BothGatewaysWorkWithIt) {
   start(
       "[[service.allow]]\nmembers = [\"*\"]\naccess = [\"read\", \"write\", \"call\"]\n"
       "[[service.allow]]\npath = \"tools[*]\"\nmembers = [\"width\"]\naccess = [\"read\"]\n");
   int made = 0;
   // The bench of the test is hall/robot; its list is that of r1 with another name.
-  std::ofstream list(folder.path() + "/acl", std::ios::app);
   write("robot.toml", "robot1", "robot",
         "[[service.allow]]\nmembers = [\"*\"]\naccess = [\"read\", \"write\", \"call\"]\n"
         "[[service.allow]]\npath = \"tools[*]\"\nmembers = [\"width\"]\naccess = [\"read\"]\n");
-  Program program({ROBDEF_GATEWAY, "--acl", "mosquitto", folder.path() + "/robot.toml"});
-  ASSERT_TRUE(testing::exited_with(program.wait(), 0));
-  for (const std::string& line : program.lines()) list << line << "\n";
-  list.close();
+  setup.access_list = printed({"robot.toml"});
+  // A server of NATS refuses passwords that no user has.
+  setup.users.erase("robot2");
   broker->kill();
+  broker->configure(setup);
   broker->start();
   Rig rig([&] {
     const std::string user = ++made == 1 ? "robot1" : "hub";
-    return make_mqtt_carrier({broker->url(), user, "secret-" + user});
+    return make_carrier({broker->url(), user, "secret-" + user});
   });
   const auto bench = rig.connect();
   EXPECT_EQ(bench->call("count").as<int>(), 1);
@@ -213,7 +233,8 @@ TEST_F(MosquittoAccess, BothGatewaysWorkWithIt) {
     EXPECT_EQ(error.code(), ErrorCode::permission_denied);
     EXPECT_EQ(error.message(),
               "the broker has refused a message to "
-              "`rr/hall/robot/bench/$call/hub/tools[left%20hand]/open`: Not authorized");
+              "`rr/hall/robot/bench/$call/hub/tools[left%20hand]/open`: " +
+                  GetParam().refused_message);
   }
   bench->set("speed", 0.25);
   EXPECT_EQ(bench->get("speed").as<double>(), 0.25);
@@ -225,10 +246,44 @@ TEST_F(MosquittoAccess, BothGatewaysWorkWithIt) {
   }));
 }
 
-// A user that asks in the name of another one.
-TEST_F(MosquittoAccess, AForgedUserIsDenied) {
+TEST_P(BrokersAccess, HoldsRetainedMessagesToTheSameRights) {
   start(some_rules);
-  Person admin(*broker, "admin");
+  Message life{"rr/hall/r1/$life", bytes_of("up")};
+  life.retained = true;
+  Person eve(*broker, "eve", {life.topic});
+  Person robot(*broker, "robot1");
+  ASSERT_EQ(eve.carrier->publish(life), Published::taken);
+  ASSERT_TRUE(comes_true([&] {
+    const auto refused = eve.listener.refused.items();
+    return std::ranges::find(refused, "the broker has refused a message to `" + life.topic +
+                                          "`: " + GetParam().refused_message) != refused.end();
+  }));
+  ASSERT_EQ(robot.carrier->publish(life), Published::taken);
+  ASSERT_TRUE(eve.listener.messages.wait_for(1));
+  Person later(*broker, "eve", {life.topic});
+  ASSERT_TRUE(later.listener.messages.wait_for(1));
+  EXPECT_TRUE(later.listener.messages.items()[0].retained);
+  EXPECT_EQ(eve.listener.messages.size(), 1U);
+}
+
+// What others ask is not for a user who may read all members.
+TEST_P(BrokersAccess, AWideSubscriptionHasNoRequestsOfOthers) {
+  start("[[service.allow]]\nmembers = [\"*\"]\naccess = [\"read\", \"call\"]\n");
+  const std::string r1 = "rr/hall/r1/bench/";
+  Person eve(*broker, "eve", {r1 + "#", r1 + "force"});
+  Person alice(*broker, "alice");
+  Person robot(*broker, "robot1", {r1 + "$call/#"});
+  ASSERT_EQ(alice.carrier->publish({r1 + "$call/alice/open", {}}), Published::taken);
+  ASSERT_TRUE(robot.listener.messages.wait_for(1));
+  ASSERT_EQ(robot.carrier->publish({r1 + "force", {}}), Published::taken);
+  ASSERT_TRUE(eve.listener.messages.wait_for(1));
+  EXPECT_THAT(eve.topics(), UnorderedElementsAre(r1 + "force"));
+}
+
+// A user that asks in the name of another one.
+TEST_P(BrokersAccess, AForgedUserIsDenied) {
+  start(some_rules);
+  Person admin(*broker, "admin", {"rr/#", "other"});
   Person eve(*broker, "eve");
   Message request{"rr/hall/r1/bench/$call/alice/tools[left]/open", {}};
   request.correlation = Bytes(4);
@@ -237,13 +292,16 @@ TEST_F(MosquittoAccess, AForgedUserIsDenied) {
   ASSERT_TRUE(comes_true([&] {
     const auto refused = eve.listener.refused.items();
     return std::ranges::find(refused, "the broker has refused a message to `" + request.topic +
-                                          "`: Not authorized") != refused.end();
+                                          "`: " + GetParam().refused_message) != refused.end();
   }));
   Person alice(*broker, "alice");
   ASSERT_EQ(alice.carrier->publish(request), Published::taken);
   ASSERT_TRUE(admin.listener.messages.wait_for(1));
   EXPECT_EQ(admin.listener.messages.size(), 1U);
 }
+
+INSTANTIATE_TEST_SUITE_P(All, BrokersAccess, ::testing::ValuesIn(testing::broker_kinds()),
+                         testing::name_of_kind);
 
 }  // namespace
 }  // namespace rr::gateway

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gateway/mqtt_tls.hpp"
+#include "gateway/broker_tls.hpp"
 
-#include <mosquitto.h>
 #include <openssl/err.h>
 #include <openssl/ssl.h>
 #include <openssl/x509_vfy.h>
@@ -36,9 +35,9 @@ void expect_host(X509_STORE_CTX* store, const std::string& host) {
 
 }  // namespace
 
-void MqttTls::Freed::operator()(ssl_ctx_st* context) const { SSL_CTX_free(context); }
+void BrokerTls::Freed::operator()(ssl_ctx_st* context) const { SSL_CTX_free(context); }
 
-MqttTls::MqttTls(const BrokerOptions& broker, std::string host)
+BrokerTls::BrokerTls(const BrokerOptions& broker, std::string host)
     : host_(std::move(host)),
       authority_(broker.authority),
       context_(SSL_CTX_new(TLS_client_method())) {
@@ -49,7 +48,7 @@ MqttTls::MqttTls(const BrokerOptions& broker, std::string host)
   read_authority(broker);
   read_certificate(broker);
   const auto verify = [](X509_STORE_CTX* store, void* user) {
-    auto& self = *static_cast<MqttTls*>(user);
+    auto& self = *static_cast<BrokerTls*>(user);
     expect_host(store, self.host_);
     if (X509_verify_cert(store) == 1) return 1;
     const int error = X509_STORE_CTX_get_error(store);
@@ -65,9 +64,9 @@ MqttTls::MqttTls(const BrokerOptions& broker, std::string host)
   SSL_CTX_set_cert_verify_callback(context_.get(), verify, this);
 }
 
-MqttTls::~MqttTls() = default;
+BrokerTls::~BrokerTls() = default;
 
-void MqttTls::read_authority(const BrokerOptions& broker) {
+void BrokerTls::read_authority(const BrokerOptions& broker) {
   if (broker.authority.empty()) {
     SSL_CTX_set_default_verify_paths(context_.get());
   } else if (SSL_CTX_load_verify_locations(context_.get(), broker.authority.c_str(), nullptr) !=
@@ -76,7 +75,7 @@ void MqttTls::read_authority(const BrokerOptions& broker) {
   }
 }
 
-void MqttTls::read_certificate(const BrokerOptions& broker) {
+void BrokerTls::read_certificate(const BrokerOptions& broker) {
   if (broker.certificate.empty()) {
     if (broker.key.empty()) return;
     throw Error(ErrorCode::invalid_configuration, broker.key + ": a key without a `certificate`");
@@ -88,12 +87,6 @@ void MqttTls::read_certificate(const BrokerOptions& broker) {
   if (SSL_CTX_use_PrivateKey_file(context_.get(), key.c_str(), SSL_FILETYPE_PEM) != 1) {
     refuse_file(key, "no key of the certificate");
   }
-}
-
-void MqttTls::use_in(mosquitto* client) const {
-  // The context as it is: the library would replace the check of certificates by its own.
-  mosquitto_int_option(client, MOSQ_OPT_SSL_CTX_WITH_DEFAULTS, 0);
-  mosquitto_void_option(client, MOSQ_OPT_SSL_CTX, context_.get());
 }
 
 std::string tls_reason(const std::string& line) {

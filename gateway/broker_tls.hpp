@@ -6,23 +6,22 @@
 
 #include "gateway/broker_options.hpp"
 
-struct mosquitto;
 struct ssl_ctx_st;
 
 namespace rr::gateway {
 
-/// TLS of one connection to a broker of MQTT: authorities, the certificate of this side, and what
+/// TLS of one connection to a broker: authorities, the certificate of this side, and what
 /// was wrong with the broker's. The broker's certificate must be of an authority and for its host.
-class MqttTls {
+class BrokerTls {
  public:
   /// Reads the files. Throws rr::Error (invalid_configuration) that names the file.
-  MqttTls(const BrokerOptions& broker, std::string host);
-  ~MqttTls();
-  MqttTls(const MqttTls&) = delete;
-  MqttTls& operator=(const MqttTls&) = delete;
+  BrokerTls(const BrokerOptions& broker, std::string host);
+  ~BrokerTls();
+  BrokerTls(const BrokerTls&) = delete;
+  BrokerTls& operator=(const BrokerTls&) = delete;
 
-  /// Before it connects. This must outlive it.
-  void use_in(mosquitto* client) const;
+  /// For a client of the broker. This must outlive it.
+  [[nodiscard]] ssl_ctx_st* context() const { return context_.get(); }
   /// Why the broker's certificate was refused; empty when it was not.
   [[nodiscard]] const std::string& trouble() const { return trouble_; }
 
@@ -39,7 +38,7 @@ class MqttTls {
   std::string trouble_;
 };
 
-/// What a line of the library's log about TLS means to a person; empty when it says nothing.
+/// What a line of a library about TLS means to a person; empty when it says nothing.
 std::string tls_reason(const std::string& line);
 
 }  // namespace rr::gateway

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// TLS to a real broker, with certificates of an authority that the test makes.
+// TLS to real brokers, with certificates of an authority that the test makes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,11 +7,10 @@
 #include <fstream>
 #include <string>
 
-#include "gateway/mqtt_carrier.hpp"
 #include "gateway/properties.hpp"
+#include "gateway/testing/broker_kinds.hpp"
 #include "gateway/testing/certificates.hpp"
 #include "gateway/testing/listener.hpp"
-#include "gateway/testing/mosquitto_broker.hpp"
 #include "gateway/testing/rig.hpp"
 #include "rr/error.hpp"
 
@@ -21,24 +20,16 @@ namespace {
 using testing::Folder;
 using ::testing::HasSubstr;
 using testing::Listener;
-using testing::MosquittoBroker;
+using testing::OverBroker;
 using testing::Rig;
 using testing::TestAuthority;
 
-class MosquittoTls : public ::testing::Test {
+class BrokersTls : public OverBroker {
  protected:
-  void SetUp() override {
-    if (MosquittoBroker::program().empty()) GTEST_SKIP() << "mosquitto is not installed";
-  }
-
-  static std::string configuration(const std::string& certificate, const std::string& more = "") {
-    return "certfile " + certificate + "\nkeyfile " + certificate + "\n" +
-           (more.empty() ? "allow_anonymous true\n" : more);
-  }
   /// Why a connection fails; empty when it is made.
   static std::string failure(const BrokerOptions& broker) {
     Listener listener;
-    const auto carrier = make_mqtt_carrier(broker);
+    const auto carrier = make_carrier(broker);
     carrier->start(listener, {"life", {}});
     EXPECT_TRUE(testing::comes_true(
         [&] { return listener.connected.size() + listener.reasons.size() > 0; }));
@@ -51,10 +42,9 @@ class MosquittoTls : public ::testing::Test {
   const std::string certificate = ours.issue("hub", "DNS:hub,IP:127.0.0.1");
 };
 
-TEST_F(MosquittoTls, MembersWorkThroughBothGateways) {
-  const MosquittoBroker broker(configuration(certificate));
-  Rig rig(
-      [&] { return make_mqtt_carrier({.url = broker.url("mqtts"), .authority = ours.file()}); });
+TEST_P(BrokersTls, MembersWorkThroughBothGateways) {
+  const auto broker = GetParam().start({.certificate = certificate});
+  Rig rig([&] { return make_carrier({.url = broker->url(true), .authority = ours.file()}); });
   const auto bench = rig.connect();
   EXPECT_EQ(bench->call("add", {1, 2}).as<double>(), 3);
   // More than one record of TLS, in both directions.
@@ -63,103 +53,99 @@ TEST_F(MosquittoTls, MembersWorkThroughBothGateways) {
   EXPECT_EQ(bench->get("pose")["q"].at(99'999).as<double>(), 0.5);
 }
 
-TEST_F(MosquittoTls, AnotherAuthorityIsRefused) {
-  const MosquittoBroker broker(configuration(certificate));
+TEST_P(BrokersTls, AnotherAuthorityIsRefused) {
+  const auto broker = GetParam().start({.certificate = certificate});
   const TestAuthority theirs("Theirs");
-  EXPECT_EQ(failure({.url = broker.url("mqtts"), .authority = theirs.file()}),
-            broker.url("mqtts") +
+  EXPECT_EQ(failure({.url = broker->url(true), .authority = theirs.file()}),
+            broker->url(true) +
                 ": the broker's certificate is refused: unable to get local issuer certificate "
                 "(authorities: " +
                 theirs.file() + ")");
   // Those of the system do not know it either.
-  EXPECT_THAT(failure({broker.url("mqtts")}), HasSubstr("(authorities: of the system)"));
-  EXPECT_EQ(failure({.url = broker.url("mqtts"), .authority = ours.file()}), "");
+  EXPECT_THAT(failure({broker->url(true)}), HasSubstr("(authorities: of the system)"));
+  EXPECT_EQ(failure({.url = broker->url(true), .authority = ours.file()}), "");
 }
 
-TEST_F(MosquittoTls, AnotherNameIsRefused) {
-  const MosquittoBroker broker(configuration(ours.issue("other", "DNS:other,IP:127.0.0.2")));
-  EXPECT_EQ(failure({.url = broker.url("mqtts"), .authority = ours.file()}),
-            broker.url("mqtts") + ": the broker's certificate is not for `127.0.0.1`");
+TEST_P(BrokersTls, AnotherNameIsRefused) {
+  const auto broker =
+      GetParam().start({.certificate = ours.issue("other", "DNS:other,IP:127.0.0.2")});
+  EXPECT_EQ(failure({.url = broker->url(true), .authority = ours.file()}),
+            broker->url(true) + ": the broker's certificate is not for `127.0.0.1`");
 }
 
-TEST_F(MosquittoTls, ACertificateThatHasRunOutIsRefused) {
-  const MosquittoBroker broker(configuration(ours.issue("old", "IP:127.0.0.1", -1)));
-  EXPECT_THAT(failure({.url = broker.url("mqtts"), .authority = ours.file()}),
+TEST_P(BrokersTls, ACertificateThatHasRunOutIsRefused) {
+  const auto broker = GetParam().start({.certificate = ours.issue("old", "IP:127.0.0.1", -1)});
+  EXPECT_THAT(failure({.url = broker->url(true), .authority = ours.file()}),
               HasSubstr("the broker's certificate is refused: certificate has expired"));
 }
 
-TEST_F(MosquittoTls, AWrongPasswordIsRefused) {
-  const Folder folder;
-  const std::string users = testing::make_passwords(folder, "robot:one\n");
-  const MosquittoBroker broker(
-      configuration(certificate, "allow_anonymous false\npassword_file " + users + "\n"));
+TEST_P(BrokersTls, AWrongPasswordIsRefused) {
+  const auto broker = GetParam().start({.users = {{"robot", "one"}}, .certificate = certificate});
   BrokerOptions options{
-      .url = broker.url("mqtts"), .user = "robot", .password = "two", .authority = ours.file()};
+      .url = broker->url(true), .user = "robot", .password = "two", .authority = ours.file()};
   EXPECT_EQ(failure(options),
-            broker.url("mqtts") +
-                ": the broker refuses user `robot` or the password: " + "Not authorized");
+            broker->url(true) +
+                ": the broker refuses user `robot` or the password: " + GetParam().refused_user);
   options.user.clear();
   EXPECT_EQ(failure(options),
-            broker.url("mqtts") +
-                ": the broker refuses a connection without a user: " + "Not authorized");
+            broker->url(true) +
+                ": the broker refuses a connection without a user: " + GetParam().refused_user);
   options.user = "robot";
   options.password = "one";
   EXPECT_EQ(failure(options), "");
 }
 
-TEST_F(MosquittoTls, ABrokerMayAskForACertificate) {
-  const MosquittoBroker broker(configuration(
-      certificate, "require_certificate true\nuse_identity_as_username true\ncafile " +
-                       ours.file() + "\nallow_anonymous false\n"));
-  BrokerOptions options{.url = broker.url("mqtts"), .authority = ours.file()};
+TEST_P(BrokersTls, ABrokerMayAskForACertificate) {
+  const auto broker =
+      GetParam().start({.certificate = certificate, .client_authority = ours.file()});
+  BrokerOptions options{.url = broker->url(true), .authority = ours.file()};
   // "certificate required", unless the end of the connection overtakes that.
   EXPECT_THAT(failure(options), HasSubstr("certificate"));
   options.certificate = ours.issue("robot", "DNS:robot");
   EXPECT_EQ(failure(options), "");
 }
 
-TEST_F(MosquittoTls, ABrokerWithoutTlsIsReported) {
-  const MosquittoBroker broker;
-  EXPECT_THAT(failure({.url = broker.url("mqtts"), .authority = ours.file()}),
+TEST_P(BrokersTls, ABrokerWithoutTlsIsReported) {
+  const auto broker = GetParam().start();
+  EXPECT_THAT(failure({.url = broker->url(true), .authority = ours.file()}),
               HasSubstr("it speaks no TLS"));
 }
 
-TEST_F(MosquittoTls, ABrokerThatIsNotThereIsReported) {
-  MosquittoBroker broker;
-  broker.kill();
-  EXPECT_EQ(failure({broker.url()}), broker.url() + ": Connection refused");
-  EXPECT_EQ(failure({broker.url("mqtts")}),
-            broker.url("mqtts") + ": no server at its port, or it speaks no TLS");
+TEST_P(BrokersTls, ABrokerThatIsNotThereIsReported) {
+  const auto broker = GetParam().start();
+  broker->kill();
+  EXPECT_EQ(failure({broker->url()}), broker->url() + ": " + GetParam().no_server);
+  EXPECT_EQ(failure({broker->url(true)}), broker->url(true) + ": " + GetParam().no_server_tls);
 }
 
-TEST_F(MosquittoTls, ACertificateIsReplacedWhileItRuns) {
+TEST_P(BrokersTls, ACertificateIsReplacedWhileItRuns) {
   const Folder folder;
   const std::string replaced = folder.path() + "/hub.pem";
   std::filesystem::copy_file(ours.issue("early", "DNS:other"), replaced);
-  MosquittoBroker broker(configuration(replaced));
+  const auto broker = GetParam().start({.certificate = replaced});
   Listener listener;
-  const auto carrier = make_mqtt_carrier({.url = broker.url("mqtts"), .authority = ours.file()});
+  const auto carrier = make_carrier({.url = broker->url(true), .authority = ours.file()});
   carrier->start(listener, {"life", {}});
   ASSERT_TRUE(listener.reasons.wait_for(1));
-  broker.kill();
+  broker->kill();
   std::filesystem::copy_file(certificate, replaced,
                              std::filesystem::copy_options::overwrite_existing);
-  broker.start();
+  broker->start();
   EXPECT_TRUE(listener.connected.wait_for(1));
   carrier->stop({});
 }
 
-TEST(MqttTlsFiles, ThatCannotBeUsedAreReportedAtOnce) {
+TEST_P(BrokersTls, FilesThatCannotBeUsedAreReportedAtOnce) {
   const TestAuthority authority;
   const auto mistake = [](const BrokerOptions& broker) -> std::string {
     try {
-      static_cast<void>(make_mqtt_carrier(broker));
+      static_cast<void>(make_carrier(broker));
     } catch (const Error& error) {
       return error.message();
     }
     return "none";
   };
-  const std::string url = "mqtts://hub";
+  const std::string url = GetParam().scheme == "nats" ? "tls://hub" : "mqtts://hub";
   const std::string robot = authority.issue("robot", "DNS:robot");
   EXPECT_EQ(mistake({.url = url, .authority = authority.file(), .certificate = robot}), "none");
   EXPECT_THAT(mistake({.url = url, .authority = "/nowhere/ca.pem"}),
@@ -172,9 +158,13 @@ TEST(MqttTlsFiles, ThatCannotBeUsedAreReportedAtOnce) {
   EXPECT_THAT(mistake({.url = url, .certificate = robot, .key = other}),
               HasSubstr("other.pem: no key of the certificate: key values mismatch"));
   EXPECT_THAT(mistake({.url = url, .key = robot}), HasSubstr("a key without a `certificate`"));
-  EXPECT_THAT(mistake({.url = "mqtt://hub", .authority = authority.file()}),
-              HasSubstr("`mqtt://hub` is not encrypted"));
+  const std::string plain = GetParam().scheme + "://hub";
+  EXPECT_THAT(mistake({.url = plain, .authority = authority.file()}),
+              HasSubstr("`" + plain + "` is not encrypted"));
 }
+
+INSTANTIATE_TEST_SUITE_P(All, BrokersTls, ::testing::ValuesIn(testing::broker_kinds()),
+                         testing::name_of_kind);
 
 }  // namespace
 }  // namespace rr::gateway
