@@ -150,9 +150,9 @@ NatsMessage taken_message(natsMsg* message) {
 }  // namespace
 
 /// What the library's threads call. It has to stay until they do not any more.
-class NatsLink::Ears {
+class NatsLink::Callbacks {
  public:
-  explicit Ears(std::shared_ptr<NatsMailbox> mailbox) : mailbox_(std::move(mailbox)) {}
+  explicit Callbacks(std::shared_ptr<NatsMailbox> mailbox) : mailbox_(std::move(mailbox)) {}
 
   void use_in(natsOptions* options) {
     check_nats(natsOptions_SetErrorHandler(options, on_error, this));
@@ -188,10 +188,10 @@ class NatsLink::Ears {
   static void on_error(natsConnection*, natsSubscription*, natsStatus status, void* closure) {
     // A slow reader has lost messages: they are asked for again.
     if (status != NATS_NOT_PERMITTED) return;
-    static_cast<Ears*>(closure)->mailbox_->refuse(nats_error(status));
+    static_cast<Callbacks*>(closure)->mailbox_->refuse(nats_error(status));
   }
   static void on_closed(natsConnection* connection, void* closure) {
-    auto& self = *static_cast<Ears*>(closure);
+    auto& self = *static_cast<Callbacks*>(closure);
     const char* text = nullptr;
     const natsStatus status = natsConnection_GetLastError(connection, &text);
     const bool has_text = text != nullptr && *text != '\0';
@@ -215,7 +215,7 @@ void NatsLink::Subscription::Ended::operator()(__natsSubscription* subscription)
 
 NatsLink::NatsLink(const BrokerOptions& broker, const BrokerPlace& place,
                    std::chrono::seconds keep_alive, std::shared_ptr<NatsMailbox> mailbox)
-    : ears_(std::make_unique<Ears>(std::move(mailbox))) {
+    : callbacks_(std::make_unique<Callbacks>(std::move(mailbox))) {
   natsOptions* made = nullptr;
   check_nats(natsOptions_Create(&made));
   const LibraryOptions options(made);
@@ -233,7 +233,7 @@ NatsLink::NatsLink(const BrokerOptions& broker, const BrokerPlace& place,
   check_nats(natsOptions_SetSendAsap(made, true));
   set_user(made, broker);
   set_tls(made, broker, place);
-  ears_->use_in(made);
+  callbacks_->use_in(made);
   const natsStatus status = natsConnection_Connect(&connection_, made);
   if (status != NATS_OK) {
     throw Error(ErrorCode::connection_error, connect_reason(status, broker, place));
@@ -243,22 +243,22 @@ NatsLink::NatsLink(const BrokerOptions& broker, const BrokerPlace& place,
 NatsLink::~NatsLink() {
   natsConnection_Close(connection_);
   // The library may still call what it has not called yet: rather a leak than that.
-  if (!ears_->wait()) {
-    [[maybe_unused]] const Ears* const leaked = ears_.release();
+  if (!callbacks_->wait()) {
+    [[maybe_unused]] const Callbacks* const leaked = callbacks_.release();
   }
   natsConnection_Destroy(connection_);
 }
 
 NatsLink::Subscription NatsLink::subscribe(const std::string& subject) {
-  void* const closure = ears_->closure(subject);
+  void* const closure = callbacks_->closure(subject);
   natsSubscription* subscription = nullptr;
   const natsStatus status = natsConnection_Subscribe(&subscription, connection_, subject.c_str(),
-                                                     Ears::on_message, closure);
+                                                     Callbacks::on_message, closure);
   if (status != NATS_OK) {
-    Ears::forget(closure);
+    Callbacks::forget(closure);
     return Subscription();
   }
-  natsSubscription_SetOnCompleteCB(subscription, Ears::forget, closure);
+  natsSubscription_SetOnCompleteCB(subscription, Callbacks::forget, closure);
   // The mailbox has limits of its own, and never drops what is for an inbox.
   natsSubscription_SetPendingLimits(subscription, -1, -1);
   return Subscription(subscription);

@@ -49,9 +49,9 @@ class NatsLink {
   [[nodiscard]] std::size_t largest() const;
 
  private:
-  class Ears;
+  class Callbacks;
 
-  std::unique_ptr<Ears> ears_;
+  std::unique_ptr<Callbacks> callbacks_;
   __natsConnection* connection_ = nullptr;
 };
 

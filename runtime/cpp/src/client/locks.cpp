@@ -12,6 +12,10 @@
 namespace rr {
 namespace {
 
+// A service that cannot let a client in says after this time that the client is to wait on
+// (07, section 6).
+constexpr channel::Milliseconds step_time{5'000};
+
 Session& session_of(const Stub& object) {
   if (!object.rr_session()) {
     throw Error(ErrorCode::invalid_operation, "the stub is not attached to a session");
@@ -51,8 +55,9 @@ void enter_monitor(const Stub& object, std::chrono::milliseconds timeout) {
       EntryType::client_session_op_req, object.rr_path(), "MonitorEnter", {&parameter, 1}, &value};
   while (true) {
     std::string answer;
-    session_of(object).call(request, Incoming{"return", &type_of<std::string>, &answer},
-                            object.rr_timeout());
+    Session& session = session_of(object);
+    session.call(request, Incoming{"return", &type_of<std::string>, &answer},
+                 channel::saturated(session.timeout_of(object.rr_timeout())) + step_time);
     if (answer == "OK") return;
     if (answer != "Continue") {
       throw Error(ErrorCode::protocol_error, "the service said " + answer);

@@ -114,6 +114,8 @@ class Session final : public channel::Receiver,
   }
 
   /// Sends a request and waits for its answer. Throws rr::Error, or what the service has thrown.
+  /// How long a request of a stub with this time waits; zero: that of the session.
+  [[nodiscard]] Milliseconds timeout_of(Milliseconds own) const { return timeout_for(own, {}); }
   void call(const Outgoing& request, const Incoming& answer, Milliseconds timeout);
   void call(const Outgoing& request, const AnswerReader& read, Milliseconds timeout);
   /// Sends a request now; the completion gets the answer.

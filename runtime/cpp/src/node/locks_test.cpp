@@ -267,6 +267,18 @@ TEST(Monitors, LetOneSessionIn) {
   EXPECT_EQ(alice->get_value(), 0);
 }
 
+TEST(Monitors, AreWaitedForLongerThanForAnAnswer) {
+  Secured pair;
+  auto alice = pair.connect_as("alice");
+  auto bob = pair.connect_as("bob");
+  enter_monitor(*alice);
+  bob->rr_set_timeout(50ms);
+  EXPECT_EQ(code_of([&] { enter_monitor(*bob, 300ms); }), ErrorCode::operation_timeout);
+  exit_monitor(*alice);
+  enter_monitor(*bob, 300ms);
+  exit_monitor(*bob);
+}
+
 TEST(Monitors, NeedAnObjectThatHasOne) {
   Secured pair;
   auto alice = pair.connect_as("alice");

@@ -9,6 +9,9 @@ import { RemoteObject } from "./remote_object.js";
 import type { ClientSession } from "./session.js";
 import { Stub, type StubClass } from "./stub.js";
 
+/** A service that cannot let a client into a monitor says after this time, in milliseconds, that the client is to wait on (07, section 6). */
+const monitorStep = 5_000;
+
 /** A session with a service. Close it, or the connection stays open. */
 export class Client<S extends RemoteObject | Stub = RemoteObject> {
   /** @internal */
@@ -89,8 +92,9 @@ export class Client<S extends RemoteObject | Stub = RemoteObject> {
   async enterMonitor(object: RemoteObject | Stub, timeout = -1): Promise<void> {
     const path = pathOf(object);
     const words = ["OK", "Continue"];
-    let word = await sessionOperation(this.session, path, "MonitorEnter", [numberElement("timeout", "int32", timeout)], words);
-    while (word === "Continue") word = await sessionOperation(this.session, path, "MonitorContinueEnter", [], words);
+    const limit = this.session.requestTimeout + monitorStep;
+    let word = await sessionOperation(this.session, path, "MonitorEnter", [numberElement("timeout", "int32", timeout)], words, limit);
+    while (word === "Continue") word = await sessionOperation(this.session, path, "MonitorContinueEnter", [], words, limit);
   }
 
   /** Leaves the monitor of an object. */

@@ -243,8 +243,8 @@ export async function authenticate(session: ClientSession, username: string, cre
 }
 
 /** An operation on a session, whose answer must be `OK` or one of the given words. */
-export async function sessionOperation(session: ClientSession, path: string, member: string, elements: MessageElement[], words: readonly string[] = ["OK"]): Promise<string> {
-  const answer = await session.request({ type: EntryType.clientSessionOp, path, member, elements });
+export async function sessionOperation(session: ClientSession, path: string, member: string, elements: MessageElement[], words: readonly string[] = ["OK"], timeout = session.requestTimeout): Promise<string> {
+  const answer = await session.request({ type: EntryType.clientSessionOp, path, member, elements, timeout });
   const found = optionalElement(answer.elements, "return");
   const word = found ? textOf(found) : "OK";
   if (!words.includes(word)) throw makeError(ErrorCode.ProtocolError, `${member} was answered with "${word.slice(0, 40)}"`);
