@@ -57,7 +57,7 @@ class LogFile {
     unsigned kept_files = 5;
   };
 
-  /// Opens or makes the file, which nobody but its owner may read (0600). Throws rr::Error
+  /// Opens or makes the file, which its owner alone may read (0600). Throws rr::Error
   /// (invalid_configuration) when that fails, and for what is no regular file, such as a link.
   explicit LogFile(std::string path) : LogFile(std::move(path), Options()) {}
   /// The same with limits of its own.

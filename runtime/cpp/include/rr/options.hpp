@@ -84,7 +84,7 @@ struct WebSocketOptions {
   std::string inspector_page{};
 };
 
-/// What a node tells of itself at its TCP ports: `GET /metrics` and `GET /health`
+/// The state of a node, shown at its TCP ports: `GET /metrics` and `GET /health`
 /// (docs/howto/monitoring.md). Needs web sockets (WebSocketOptions::is_enabled), and robdef::web.
 struct MetricsOptions {
   /// Whether the node counts, and answers these requests.
@@ -173,7 +173,7 @@ struct NodeOptions {
   /// Where reports go; nothing is printed. Called on any thread, under no lock.
   std::function<void(LogLevel, std::string_view)> log{};
   /// The same with its parts: time, node, peer, session (rr/log.hpp). Both are called where both
-  /// are given. What it throws is not told to anybody.
+  /// are given. What it throws is dropped.
   std::function<void(const LogRecord&)> log_record{};
 
   /// What this node offers where it connects.

@@ -192,8 +192,8 @@ class SecureServerNodeSetup : public NodeSetup {
 std::string installed_inspector_page();
 
 /// Tells the service manager something of the process, as systemd's sd_notify() does: lines such as
-/// `STATUS=...`. False where nobody is to be told (no `NOTIFY_SOCKET`), or cannot be. NodeSetup::
-/// wait() says READY, STOPPING and WATCHDOG by itself.
+/// `STATUS=...`. False without a service manager (no `NOTIFY_SOCKET`), or when it fails.
+/// NodeSetup:: wait() says READY, STOPPING and WATCHDOG by itself.
 bool notify_service_manager(std::string_view lines);
 
 /// All URLs by which a service of the node may be reached, one a line.

@@ -51,7 +51,7 @@ class Admission : public std::enable_shared_from_this<Admission> {
     Iterator in_address_ RR_GUARDED_BY(admission_->mutex_);
   };
 
-  /// `metrics`: who counts connections, too; null for nobody.
+  /// `metrics`: connections are counted there, too; null: nowhere.
   explicit Admission(std::shared_ptr<const NodeOptions> options,
                      std::shared_ptr<Metrics> metrics = nullptr);
 

@@ -38,7 +38,7 @@ std::shared_ptr<const Tls> make_tls(const TlsOptions& options, const NodeId& own
 /// The node that the certificate of the options is of. Throws rr::Error (invalid_configuration).
 NodeId certified_id(const TlsOptions& options);
 
-/// Null without the component. `status`: what the node tells of itself at its ports; null: nothing.
+/// Null without the component. `status`: the state that the node shows at its ports; null: none.
 /// Throws rr::Error (invalid_configuration) for options that need what is not there.
 std::shared_ptr<WebSockets> make_web_sockets(const WebSocketOptions& options,
                                              std::shared_ptr<const Status> status = nullptr);

@@ -47,8 +47,8 @@ inline bool has_log(const NodeOptions& options) {
   return static_cast<bool>(options.log) || static_cast<bool>(options.log_record);
 }
 
-/// Hands a line to whoever the options name, printable and of bounded length. `peer`: the address
-/// of whom it is about, where no LogScope says it. Throws nothing.
+/// Hands a line to the functions of the options, printable and of bounded length. `peer`: the
+/// address of whom it is about, where no LogScope says it. Throws nothing.
 void log(const NodeOptions& options, LogLevel level, std::string_view text,
          std::string_view peer = {});
 

@@ -106,7 +106,7 @@ class RR_INSIDE Reactor final : public Watcher {
     post({std::move(work), nullptr, std::move(pollable)});
   }
 
-  /// What the node counts; null where nobody wants to know.
+  /// What the node counts; null: metrics are off.
   [[nodiscard]] Metrics* metrics() const { return terms_.metrics.get(); }
   [[nodiscard]] const std::shared_ptr<Metrics>& shared_metrics() const { return terms_.metrics; }
 

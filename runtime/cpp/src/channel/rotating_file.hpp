@@ -10,7 +10,7 @@
 
 namespace rr::channel {
 
-/// A file of lines that nobody but its owner may read (0600). One that would become larger than a
+/// A file of lines that its owner alone may read (0600). One that would become larger than a
 /// limit is renamed to `path.1`, that to `path.2` and so on. Its lock is the innermost. Any thread.
 class RR_INSIDE RotatingFile {
  public:

@@ -60,7 +60,7 @@ SendQueue::Sent SendQueue::send(Writer& message, const How& how) {
   } else {
     mark = take_gathered_and_tell(message);
   }
-  // Before it leaves: whoever has it finds it counted.
+  // Before it leaves: a receiver finds it counted.
   note_sent(message.size());
   if (how.newest != nullptr) wire_values_.add(1);
   if (how.is_packet) packets_.add(1);

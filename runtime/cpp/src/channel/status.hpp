@@ -16,7 +16,7 @@ namespace rr::channel {
 
 class MetricsText;
 
-/// What a node tells of itself to programs that watch it, and which of them may ask. Any thread.
+/// The state of a node for programs that watch it, and which of them may ask. Any thread.
 class RR_INSIDE Status {
  public:
   /// Throws rr::Error (invalid_argument) for places that are none.

@@ -10,14 +10,14 @@ namespace rr::channel {
 
 class Status;
 
-/// A request of HTTP, as far as it matters for who may see a node's state.
+/// A request of HTTP, as far as access to a node's state depends on it.
 struct StatusRequest {
   std::string_view method;
   std::string_view path;  ///< without the query
   std::string_view host;
   std::optional<std::string_view> origin{};      ///< of a page; programs send none
   std::optional<std::string_view> fetch_site{};  ///< `Sec-Fetch-Site` of a browser
-  std::string_view from;                         ///< the address of who asks
+  std::string_view from;                         ///< the address of the client
   bool may_be_clear = true;                      ///< false: this is without TLS, which is required
 };
 
@@ -27,8 +27,8 @@ struct StatusPage {
   std::string bytes;
 };
 
-/// The answer to `GET /metrics` and `GET /health`; nothing for another path. Whoever may not ask
-/// gets 403; a browser's page has to be of an allowed origin, and what asks by a name that this
+/// The answer to `GET /metrics` and `GET /health`; nothing for another path. A client that may not
+/// ask gets 403; a browser's page has to be of an allowed origin, and what asks by a name that this
 /// machine has not given itself gets 421.
 std::optional<StatusPage> status_page(const Status& status, const StatusRequest& request,
                                       const std::vector<std::string>& allowed_origins);

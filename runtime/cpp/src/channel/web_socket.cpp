@@ -40,7 +40,7 @@ constexpr std::string_view method_letters = "GHPDOCT";
 struct WebRules {
   std::vector<std::string> origins;
   std::shared_ptr<const WebPage> page;   // null: none is served
-  std::shared_ptr<const Status> status;  // null: nobody is told
+  std::shared_ptr<const Status> status;  // null: not shown
 };
 
 // What all web sockets of a node live in.
@@ -226,7 +226,7 @@ class WebSocketServer final : public WebSocketLayer {
       take_frames(wire, plain, reply);
       return;
     }
-    // Whoever has asked closes once it has read the answer.
+    // The client closes once it has read the answer.
     if (page_.is_taken() || state_.is_taken()) return;
     append(head_, wire);
     beast::error_code error;

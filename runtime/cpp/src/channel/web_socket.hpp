@@ -16,7 +16,7 @@ namespace rr::channel {
 
 class Status;
 
-/// Who has connected to a node, as far as it matters for what it is shown.
+/// A client of a node, as far as its answers depend on it.
 struct WebClient {
   bool is_encrypted = false;  ///< there is TLS around
   bool must_encrypt = false;  ///< and there has to be

@@ -52,7 +52,7 @@ class Core : public NodeContext, public std::enable_shared_from_this<Core> {
   }
   /// What peers may make this node hold.
   [[nodiscard]] const channel::Pools& pools() const { return pools_; }
-  /// What the node tells of itself; null where nobody is told.
+  /// The state of the node, for programs that watch it; null: it is not shown.
   [[nodiscard]] const std::shared_ptr<channel::Status>& status() const { return status_; }
   /// Starts the threads unless they run.
   void start() { reactor_->start(); }

@@ -84,7 +84,7 @@ TEST(Wait, TellsTheServiceManager) {
     waiting.wait();
     EXPECT_EQ(manager.next(), "STOPPING=1");
   }
-  EXPECT_FALSE(notify_service_manager("READY=1")) << "nobody is to be told";
+  EXPECT_FALSE(notify_service_manager("READY=1")) << "there is no service manager";
 }
 
 TEST(Wait, FeedsTheWatchdogOfThisProcessOnly) {

@@ -9,7 +9,7 @@
 namespace rr::platform {
 
 /// Sends lines (`READY=1`) to the service manager that has started the process: a datagram to the
-/// local socket that NOTIFY_SOCKET names. False where there is none, or nobody takes it.
+/// local socket that NOTIFY_SOCKET names. False where there is none, or it is not taken.
 RR_INSIDE bool notify_service_manager(std::string_view lines);
 
 /// How often the service manager wants to hear `WATCHDOG=1` at least; zero: not at all, or it is

@@ -208,7 +208,7 @@ std::vector<ServiceClient> ServiceHost::clients() const {
   return result;
 }
 
-// Whoever has gone meanwhile may own things of the program: these do not end on this thread.
+// Those that ended meanwhile may own things of the program: these do not end on this thread.
 ServiceHost::Use ServiceHost::use() const {
   Use use{.objects = objects_.size()};
   auto clients = connected();
