@@ -70,7 +70,8 @@ std::vector<Mourner::Call> Mourner::requests() {
       {"read a grid", [&] { (void)bench.grid().read(position, count); }},
       {"lock", [&] { lock(*part_); }},
       {"unlock", [&] { unlock(*part_); }},
-      {"enter a monitor", [&] { enter_monitor(*part_); }},
+      // With a time it would be waited for that much longer.
+      {"enter a monitor", [&] { enter_monitor(*part_, std::chrono::milliseconds(0)); }},
       {"exit a monitor", [&] { exit_monitor(*part_); }},
       {"log out", [&] { client_.logout(); }},
   };

@@ -69,13 +69,13 @@ function raises(code: number): (error: unknown) => boolean {
 
 test("a monitor is waited for longer than for an answer", async () => {
   const node = new RRNode({ name: "experimental.bench" });
-  const monitor = { enter: (timeout: number) => new Promise<boolean>((resolve) => { setTimeout(() => { resolve(timeout > 1000); }, Math.min(timeout, 300)); }), exit: () => undefined };
+  const monitor = { enter: (timeout: number) => new Promise<boolean>((resolve) => { setTimeout(() => { resolve(timeout > 1000); }, Math.min(timeout, 700)); }), exit: () => undefined };
   node.registerService("bench", new ServedObject(new Definitions([definition]), "experimental.bench.Bench", { monitor }));
   const port = await node.listen({ host: "127.0.0.1" });
   const own = new RRNode();
   try {
-    const client = await own.connect(`rr+tcp://127.0.0.1:${port}/?service=bench`, { requestTimeout: 60 });
-    await assert.rejects(client.enterMonitor(client.root, 200), raises(ErrorCode.OperationTimeout));
+    const client = await own.connect(`rr+tcp://127.0.0.1:${port}/?service=bench`, { requestTimeout: 400 });
+    await assert.rejects(client.enterMonitor(client.root, 600), raises(ErrorCode.OperationTimeout));
     await client.enterMonitor(client.root, 2000);
     await client.exitMonitor(client.root);
     await client.close();

@@ -45,7 +45,9 @@ void unlock(const Stub& object, const CallOptions& options) {
 void enter_monitor(const Stub& object, std::chrono::milliseconds timeout) {
   constexpr std::int32_t longest = std::numeric_limits<std::int32_t>::max();
   std::int32_t limit = -1;
+  channel::Milliseconds step = step_time;
   if (timeout != wait_forever) {
+    step = std::clamp(timeout, channel::Milliseconds(0), step_time);
     limit = static_cast<std::int32_t>(
         std::clamp<std::chrono::milliseconds::rep>(timeout.count(), 0, longest));
   }
@@ -57,7 +59,7 @@ void enter_monitor(const Stub& object, std::chrono::milliseconds timeout) {
     std::string answer;
     Session& session = session_of(object);
     session.call(request, Incoming{"return", &type_of<std::string>, &answer},
-                 channel::saturated(session.timeout_of(object.rr_timeout())) + step_time);
+                 channel::saturated(session.timeout_of(object.rr_timeout())) + step);
     if (answer == "OK") return;
     if (answer != "Continue") {
       throw Error(ErrorCode::protocol_error, "the service said " + answer);

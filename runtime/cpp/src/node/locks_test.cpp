@@ -272,10 +272,10 @@ TEST(Monitors, AreWaitedForLongerThanForAnAnswer) {
   auto alice = pair.connect_as("alice");
   auto bob = pair.connect_as("bob");
   enter_monitor(*alice);
-  bob->rr_set_timeout(50ms);
-  EXPECT_EQ(code_of([&] { enter_monitor(*bob, 300ms); }), ErrorCode::operation_timeout);
+  bob->rr_set_timeout(400ms);
+  EXPECT_EQ(code_of([&] { enter_monitor(*bob, 600ms); }), ErrorCode::operation_timeout);
   exit_monitor(*alice);
-  enter_monitor(*bob, 300ms);
+  enter_monitor(*bob, 600ms);
   exit_monitor(*bob);
 }
 

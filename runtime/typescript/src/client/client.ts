@@ -92,7 +92,7 @@ export class Client<S extends RemoteObject | Stub = RemoteObject> {
   async enterMonitor(object: RemoteObject | Stub, timeout = -1): Promise<void> {
     const path = pathOf(object);
     const words = ["OK", "Continue"];
-    const limit = this.session.requestTimeout + monitorStep;
+    const limit = this.session.requestTimeout + (timeout < 0 ? monitorStep : Math.min(timeout, monitorStep));
     let word = await sessionOperation(this.session, path, "MonitorEnter", [numberElement("timeout", "int32", timeout)], words, limit);
     while (word === "Continue") word = await sessionOperation(this.session, path, "MonitorContinueEnter", [], words, limit);
   }
