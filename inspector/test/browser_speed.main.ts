@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How fast the page is: times of frames with 20 wires at 1 kHz, pictures at 30 Hz, the first plot, memory over a session.
 // ROBDEF_INSPECTOR_PAGE: its file; ROBDEF_STANDARD_DIR: the standard definitions; ROBDEF_WIRES: a program that serves the wires,
-// else they are served from here. Limits are held unless ROBDEF_SLOW is set.
+// else they are served from here; ROBDEF_GRAPHICS=emulated: with an emulated graphics card. Limits are held unless ROBDEF_SLOW is set.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { after, before, describe, it } from "node:test";
@@ -84,7 +84,7 @@ async function open(url: string): Promise<{ readonly page: Page; readonly begin:
 
 before(async () => {
   workshop = await startWorkshop({ allowLocalPages: true, standard });
-  browser = new Chromium();
+  browser = new Chromium(undefined, process.env.ROBDEF_GRAPHICS === "emulated" ? "emulated" : "none");
 });
 
 after(async () => {

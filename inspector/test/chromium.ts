@@ -50,10 +50,12 @@ export class Chromium {
   private rest = "";
   private isOver = false;
 
-  constructor(program = process.env.ROBDEF_BROWSER ?? "chromium") {
+  /** `graphics`: a graphics card is emulated, which 3-D needs; or there is none, as Chromium finds on a machine without one. */
+  constructor(program = process.env.ROBDEF_BROWSER ?? "chromium", graphics: "emulated" | "none" = "emulated") {
     const flags = [
+      ...(graphics === "none" ? ["--disable-gpu"] : ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]),
       "--headless=new", "--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-dev-shm-usage", "--remote-debugging-pipe",
-      "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars", "--force-color-profile=srgb", `--user-data-dir=${this.profile}`, "about:blank",
+      "--hide-scrollbars", "--force-color-profile=srgb", `--user-data-dir=${this.profile}`, "about:blank",
     ];
     this.process = spawn(program, flags, { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"], detached: true });
     running.add(this.process);

@@ -22,7 +22,7 @@ if ! cmp -s package-lock.json node_modules/.installed; then
   npm ci --no-fund --no-audit --loglevel=error
   cp package-lock.json node_modules/.installed
 fi
-rm -rf dist dist-test dist-generated "$folder/runner"
+rm -rf dist dist-test "$folder/runner"
 node_modules/.bin/tsc -p tsconfig.json
 node_modules/.bin/tsc -p tsconfig.test.json
 node_modules/.bin/tsc -p "$runner/tsconfig.json" --outDir "$folder/runner"
