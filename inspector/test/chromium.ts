@@ -50,9 +50,10 @@ export class Chromium {
   private rest = "";
   private isOver = false;
 
-  /** `graphics`: a graphics card is emulated, which 3-D needs; or there is none, as Chromium finds on a machine without one. */
-  constructor(program = process.env.ROBDEF_BROWSER ?? "chromium", graphics: "emulated" | "none" = "emulated") {
+  /** `graphics`: a graphics card is emulated, which 3-D needs; or there is none, as Chromium finds on a machine without one. `more`: flags. */
+  constructor(program = process.env.ROBDEF_BROWSER ?? "chromium", graphics: "emulated" | "none" = "emulated", more: readonly string[] = []) {
     const flags = [
+      ...more,
       ...(graphics === "none" ? ["--disable-gpu"] : ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]),
       "--headless=new", "--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-dev-shm-usage", "--remote-debugging-pipe",
       "--hide-scrollbars", "--force-color-profile=srgb", `--user-data-dir=${this.profile}`, "about:blank",
