@@ -2,7 +2,7 @@
 // A recording: scrubbed through, with the values of its members at each time, plots and pictures.
 import type { VNode } from "preact";
 import { useComputed, useSignal } from "@preact/signals";
-import { useEffect, useMemo, useRef } from "preact/hooks";
+import { useEffect, useLayoutEffect, useMemo, useRef } from "preact/hooks";
 import type { App } from "../model/app.js";
 import { unitIn } from "../model/members.js";
 import { isPlottable } from "../model/types.js";
@@ -23,7 +23,8 @@ export function TapeView({ app, tape }: { app: App; tape: Tape }): VNode {
   const speed = useSignal(1);
   const plotted = useSignal<readonly Track[]>([]);
   const filter = useSignal("");
-  useEffect(() => {
+  // Before the first click can come: a later effect would take back what it has chosen.
+  useLayoutEffect(() => {
     time.value = 0;
     plotted.value = [];
   }, [tape]);
