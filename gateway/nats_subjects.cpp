@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gateway/nats_subjects.hpp"
 
+#include "gateway/topics.hpp"
+
 namespace rr::gateway {
 namespace {
 
@@ -48,16 +50,6 @@ std::optional<std::string> level_of_token(std::string_view token) {
     i += 2;
   }
   return level;
-}
-
-std::vector<std::string_view> parts_of(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  for (;;) {
-    const std::size_t end = text.find(separator);
-    parts.push_back(text.substr(0, end));
-    if (end == std::string_view::npos) return parts;
-    text.remove_prefix(end + 1);
-  }
 }
 
 /// `text` with another beginning; nothing where it has not got the first one.

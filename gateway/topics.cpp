@@ -80,16 +80,6 @@ PathStep step_of(std::string_view text, std::string_view path) {
   return step;
 }
 
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  for (;;) {
-    const std::size_t end = text.find(separator);
-    parts.push_back(text.substr(0, end));
-    if (end == std::string_view::npos) return parts;
-    text.remove_prefix(end + 1);
-  }
-}
-
 /// `/tools[left]/axis` for `tools[left].axis`.
 std::string path_levels(std::string_view path) {
   if (path.empty()) return {};
@@ -100,10 +90,20 @@ std::string path_levels(std::string_view path) {
 
 }  // namespace
 
+std::vector<std::string_view> parts_of(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const std::size_t end = text.find(separator);
+    parts.push_back(text.substr(0, end));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
 std::vector<PathStep> path_steps(std::string_view path) {
   std::vector<PathStep> steps;
   if (path.empty()) return steps;
-  for (const std::string_view part : split(path, '.')) steps.push_back(step_of(part, path));
+  for (const std::string_view part : parts_of(path, '.')) steps.push_back(step_of(part, path));
   return steps;
 }
 
@@ -147,7 +147,7 @@ std::optional<RequestTopic> parse_request_topic(const ServiceAddress& address,
                                                 std::string_view topic) {
   const std::string base = service_topic(address) + "/$";
   if (!topic.starts_with(base)) return std::nullopt;
-  const auto levels = split(topic.substr(base.size()), '/');
+  const auto levels = parts_of(topic.substr(base.size()), '/');
   const auto* const verb =
       std::ranges::find(verbs, levels[0], [](const auto& row) { return row.second; });
   if (verb == verbs.end() || levels.size() < 2 || !is_level_name(levels[1])) return std::nullopt;
@@ -177,7 +177,7 @@ bool is_reply_topic(std::string_view topic, std::string_view user) {
 }
 
 bool may_be_retained(std::string_view filter) {
-  return std::ranges::none_of(split(filter, '/'), [](std::string_view level) {
+  return std::ranges::none_of(parts_of(filter, '/'), [](std::string_view level) {
     if (level == "$claim" || level == "$reply") return true;
     return level.starts_with('$') && std::ranges::find(verbs, level.substr(1), [](const auto& row) {
                                        return row.second;
@@ -186,8 +186,8 @@ bool may_be_retained(std::string_view filter) {
 }
 
 bool topic_matches(std::string_view filter, std::string_view topic) {
-  const auto wanted = split(filter, '/');
-  const auto levels = split(topic, '/');
+  const auto wanted = parts_of(filter, '/');
+  const auto levels = parts_of(topic, '/');
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (wanted[i] == "#") return true;
     if (i == levels.size() || (wanted[i] != "+" && wanted[i] != levels[i])) return false;

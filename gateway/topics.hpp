@@ -24,6 +24,9 @@ struct ServiceAddress {
   bool operator==(const ServiceAddress&) const = default;
 };
 
+/// The parts of a text between separators, empty ones too; at least one. They are of that text.
+std::vector<std::string_view> parts_of(std::string_view text, char separator);
+
 /// One step of an object's path: an objref, and its index.
 struct PathStep {
   std::string name;                  ///< of the objref

@@ -23,18 +23,15 @@ void rr_sim_park(void* context);
 
 // Offsets are those of Context's fields.
 asm(R"(
-  .text
-  .type rr_sim_switch, @function
-rr_sim_switch:
+  .macro rr_save_registers
   push %rbp
   push %rbx
   push %r12
   push %r13
   push %r14
   push %r15
-  mov %rsp, (%rdi)
-  mov %rsi, %rsp
-  wrfsbase %rdx
+  .endm
+  .macro rr_restore_registers
   pop %r15
   pop %r14
   pop %r13
@@ -42,16 +39,21 @@ rr_sim_switch:
   pop %rbx
   pop %rbp
   ret
+  .endm
+
+  .text
+  .type rr_sim_switch, @function
+rr_sim_switch:
+  rr_save_registers
+  mov %rsp, (%rdi)
+  mov %rsi, %rsp
+  wrfsbase %rdx
+  rr_restore_registers
   .size rr_sim_switch, . - rr_sim_switch
 
   .type rr_sim_park, @function
 rr_sim_park:
-  push %rbp
-  push %rbx
-  push %r12
-  push %r13
-  push %r14
-  push %r15
+  rr_save_registers
   mov %rsp, (%rdi)
   mov %rdi, %r12
   movl $1, 16(%r12)
@@ -72,13 +74,7 @@ rr_sim_park:
   jmp 1b
 2:
   mov (%r12), %rsp
-  pop %r15
-  pop %r14
-  pop %r13
-  pop %r12
-  pop %rbx
-  pop %rbp
-  ret
+  rr_restore_registers
   .size rr_sim_park, . - rr_sim_park
 )");
 #endif
