@@ -36,14 +36,15 @@ done
 
 # The same objects without one function: hidden by its exact name, which comes before all patterns.
 lost=_ZN2rr4Node6listenESt17basic_string_viewIcSt11char_traitsIcEE
-nm -D --defined-only "$(library librobdef)" | grep -q " $lost@" || fail "$lost is no name of librobdef"
+# All is read: a reader that leaves early would end nm by a signal.
+nm -D --defined-only "$(library librobdef)" | grep " $lost@" >/dev/null || fail "$lost is no name of librobdef"
 sed "s/  local: \*;/  local: $lost; *;/" "$map" >"$work/cut.map"
 "$compiler" -shared -o "$work/librobdef.so" -Wl,-soname,librobdef.so.1 -Wl,--version-script="$work/cut.map" \
-  -Wl,--whole-archive "$(find "$libraries" -name librobdef.a -print -quit)" -Wl,--no-whole-archive -pthread
+  -Wl,--whole-archive "$(find "$libraries" -name librobdef.a -not -path '*arduino*' -print -quit)" -Wl,--no-whole-archive -pthread
 status=0
 compare librobdef "$work/librobdef.so" >"$work/said" || status=$?
 # 8: the interface is broken; 4: it has changed.
 [ $((status & 8)) != 0 ] || { cat "$work/said" >&2; fail "a function that is missing gives status $status"; }
-grep -q "rr::Node::listen" "$work/said" || { cat "$work/said" >&2; fail 'what is missing is not named'; }
-grep "rr::Node::listen" "$work/said"
+grep -qF "$lost" "$work/said" || { cat "$work/said" >&2; fail 'what is missing is not named'; }
+grep -F "$lost" "$work/said"
 echo 'abi: passed'
