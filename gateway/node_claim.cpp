@@ -36,7 +36,6 @@ Message NodeClaim::life(std::string_view state) const {
 void NodeClaim::connected() {
   if (state_ == State::refused) return;
   state_ = State::asking;
-  other_.reset();
   knows_retained_ = false;
   must_say_life_ = false;
   asked_ = {};
@@ -44,6 +43,7 @@ void NodeClaim::connected() {
 
 void NodeClaim::disconnected() {
   if (state_ != State::refused) state_ = State::away;
+  other_.reset();
 }
 
 bool NodeClaim::is_mine(const Message& message) const {
@@ -58,7 +58,9 @@ bool NodeClaim::is_before_me(const Message& message) const {
 }
 
 void NodeClaim::take(const Message& message, Clock::time_point now) {
-  if (state_ == State::away || state_ == State::refused) return;
+  if (state_ == State::refused) return;
+  // A broker may deliver what is retained before all subscriptions are confirmed.
+  if (state_ == State::away && !message.retained) return;
   if (message.topic == life_topic()) {
     take_life(message);
   } else if (is_mine(message)) {
@@ -71,7 +73,7 @@ void NodeClaim::take(const Message& message, Clock::time_point now) {
 void NodeClaim::take_life(const Message& message) {
   if (is_mine(message)) return;
   const bool is_up = text_of(message.payload) == "up";
-  if (state_ == State::asking) {
+  if (state_ == State::asking || state_ == State::away) {
     // A life that is not retained is that of a gateway that is there now.
     if (is_up && knows_retained_ && !message.retained) return refuse(message);
     other_ = is_up ? std::optional(message) : std::nullopt;

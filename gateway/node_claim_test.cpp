@@ -29,6 +29,12 @@ class Broker {
     claim.connected();
     if (retained) claim.take(with(*retained, true), now);
   }
+  /// The retained life is delivered while other subscriptions are not confirmed.
+  void connect_late(NodeClaim& claim) {
+    connected_.push_back(&claim);
+    if (retained) claim.take(with(*retained, true), now);
+    claim.connected();
+  }
   /// Without a word; the broker may publish the last will.
   void lose(NodeClaim& claim, bool says_so) {
     std::erase(connected_, &claim);
@@ -107,6 +113,21 @@ TEST(GatewayNodeClaim, TheNodeOfAGatewayThatHasGoneIsTaken) {
   broker.run(milliseconds(60));
   EXPECT_EQ(two.state(), State::holding);
   EXPECT_EQ(broker.host(), "two");
+}
+
+TEST(GatewayNodeClaim, ARetainedLifeMayComeBeforeTheConnection) {
+  Broker broker;
+  NodeClaim& first = broker.start(1, "one");
+  broker.connect(first);
+  broker.run(milliseconds(100));
+  ASSERT_EQ(first.state(), State::holding);
+  broker.lose(first, false);
+  NodeClaim& second = broker.start(2, "two");
+  broker.connect_late(second);
+  broker.run(milliseconds(1500));
+  EXPECT_EQ(second.state(), State::asking);
+  broker.run(milliseconds(1500));
+  EXPECT_EQ(second.state(), State::holding);
 }
 
 TEST(GatewayNodeClaim, TheNodeOfAGatewayThatHasGoneWithoutAWordIsTakenLater) {
