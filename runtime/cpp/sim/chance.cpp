@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random numbers of the C++ library: in a run they follow from its seed.
+// Random bytes of the system: in a run they follow from its seed.
+#include <sys/syscall.h>
 #include <unistd.h>
 
-#include <cstdlib>
-#include <random>
+#include <algorithm>
+#include <cstddef>
 
 #include "runtime/cpp/sim/scheduler.hpp"
 
-std::random_device::result_type std::random_device::_M_getval() {
-  result_type value = 0;
-  if (rr::sim::Scheduler* const run = rr::sim::Scheduler::current()) {
-    return static_cast<result_type>(run->random().next());
+extern "C" int getentropy(void* to, size_t size) noexcept {
+  rr::sim::Scheduler* const run = rr::sim::Scheduler::current();
+  if (run == nullptr) {
+    return ::syscall(SYS_getrandom, to, size, 0) == static_cast<long>(size) ? 0 : -1;
   }
-  if (::getentropy(&value, sizeof value) != 0) std::abort();
-  return value;
+  auto* const bytes = static_cast<unsigned char*>(to);
+  std::generate_n(bytes, size, [run] { return static_cast<unsigned char>(run->random().next()); });
+  return 0;
 }

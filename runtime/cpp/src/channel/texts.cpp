@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <random>
 
+#include "runtime/cpp/src/platform/random.hpp"
+
 namespace rr::channel {
 namespace {
 
@@ -33,7 +35,7 @@ std::string random_letters() {
   constexpr std::string_view letters =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
   constexpr std::size_t length = 16;
-  std::random_device random;
+  const platform::RandomNumbers random;
   std::uniform_int_distribution<std::size_t> any(0, letters.size() - 1);
   std::string text(length, '\0');
   for (char& letter : text) letter = letters[any(random)];

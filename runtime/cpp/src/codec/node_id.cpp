@@ -2,7 +2,9 @@
 #include "rr/node_id.hpp"
 
 #include <cstring>
-#include <random>
+#include <span>
+
+#include "runtime/cpp/src/platform/random.hpp"
 
 namespace rr {
 namespace {
@@ -31,12 +33,8 @@ void write_text(const NodeId& id, char* to) {
 }  // namespace
 
 NodeId NodeId::random() {
-  std::random_device source;
   NodeId id;
-  for (std::size_t i = 0; i < id.bytes.size(); i += sizeof(std::uint32_t)) {
-    const std::uint32_t word = source();
-    std::memcpy(id.bytes.data() + i, &word, sizeof word);
-  }
+  platform::fill_random(std::as_writable_bytes(std::span(id.bytes)));
   id.bytes[6] = static_cast<std::uint8_t>((id.bytes[6] & 0x0FU) | 0x40U);  // version 4
   id.bytes[8] = static_cast<std::uint8_t>((id.bytes[8] & 0x3FU) | 0x80U);  // RFC 4122 variant
   return id;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <random>
 #include <utility>
 
 #include "rr/error.hpp"
@@ -24,11 +23,6 @@ constexpr int requests_at_once = 3;
 // Asked again so soon after the last request, it waits longer (05, section 3).
 constexpr Milliseconds request_burst_gap{1'000};
 constexpr Milliseconds request_rest{5'000};
-
-Milliseconds random_between(int least, int most) {
-  thread_local std::minstd_rand engine{std::random_device{}()};
-  return Milliseconds(std::uniform_int_distribution<int>(least, most)(engine));
-}
 
 // Without the port, which says nothing of who it is.
 std::string sender_text(channel::Address address) {

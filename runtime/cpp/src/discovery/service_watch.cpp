@@ -2,7 +2,6 @@
 #include "runtime/cpp/src/discovery/service_watch.hpp"
 
 #include <algorithm>
-#include <random>
 #include <utility>
 
 #include "rr/error.hpp"
@@ -19,11 +18,6 @@ constexpr std::size_t most_questions = 16;
 constexpr std::size_t most_of_sender = 2;
 constexpr unsigned most_attempts = 3;
 constexpr std::size_t nonces_kept = 16;
-
-Milliseconds random_between(int least, int most) {
-  thread_local std::minstd_rand engine{std::random_device{}()};
-  return Milliseconds(std::uniform_int_distribution<int>(least, most)(engine));
-}
 
 // A node that changes all the time is asked less often.
 Milliseconds patience(std::size_t refreshes_in_a_minute) {

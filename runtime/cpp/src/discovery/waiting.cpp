@@ -2,9 +2,11 @@
 #include "runtime/cpp/src/discovery/waiting.hpp"
 
 #include <array>
+#include <random>
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
+#include "runtime/cpp/src/platform/random.hpp"
 #include "runtime/cpp/src/platform/waiting.hpp"
 
 namespace rr::discovery {
@@ -21,6 +23,11 @@ void wait_for_either(const channel::Interruption& wake, channel::Time deadline) 
     }
     if (!platform::wait_for_any(wanted, deadline)) return;
   }
+}
+
+channel::Milliseconds random_between(int least, int most) {
+  platform::RandomNumbers numbers;
+  return channel::Milliseconds(std::uniform_int_distribution<int>(least, most)(numbers));
 }
 
 }  // namespace rr::discovery

@@ -2,7 +2,6 @@
 #include "runtime/cpp/src/endpoint/core.hpp"
 
 #include <algorithm>
-#include <random>
 #include <utility>
 
 #include "rr/error.hpp"
@@ -16,6 +15,7 @@
 #include "runtime/cpp/src/channel/metrics_text.hpp"
 #include "runtime/cpp/src/channel/status.hpp"
 #include "runtime/cpp/src/endpoint/timer.hpp"
+#include "runtime/cpp/src/platform/random.hpp"
 
 namespace rr::endpoint {
 namespace {
@@ -226,7 +226,7 @@ std::shared_ptr<const TypeRegistry> Core::types() const {
 }
 
 std::uint32_t Core::new_endpoint() {
-  std::random_device random;
+  const platform::RandomNumbers random;
   const MutexLock lock(mutex_);
   while (true) {
     const std::uint32_t number = random();

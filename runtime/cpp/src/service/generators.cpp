@@ -2,7 +2,6 @@
 #include "runtime/cpp/src/service/generators.hpp"
 
 #include <algorithm>
-#include <random>
 #include <utility>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/endpoint/service_path.hpp"
 #include "runtime/cpp/src/endpoint/values.hpp"
+#include "runtime/cpp/src/platform/random.hpp"
 #include "runtime/cpp/src/service/handler_memory.hpp"
 #include "runtime/cpp/src/service/request.hpp"
 #include "runtime/cpp/src/service/server_endpoint.hpp"
@@ -35,7 +35,7 @@ std::int32_t Generators::add(const std::shared_ptr<ClientGenerator>& generator, 
     throw Error(ErrorCode::out_of_system_resource,
                 "the generators of this client take too much memory");
   }
-  thread_local std::minstd_rand random{std::random_device{}()};  // costs 100 us to make
+  const platform::RandomNumbers random;
   generator->last_used = channel::coarse_now();
   const MutexLock lock(mutex_);
   if (has_ended_) throw Error(ErrorCode::connection_error, "the client has left");
@@ -45,7 +45,7 @@ std::int32_t Generators::add(const std::shared_ptr<ClientGenerator>& generator, 
   }
   check();
   while (true) {
-    const auto index = static_cast<std::int32_t>(random());
+    const auto index = static_cast<std::int32_t>(random() >> 1U);
     if (generators_.emplace(index, generator).second) return index;
   }
 }

@@ -5,11 +5,12 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
-#include <random>
+#include <span>
 #include <utility>
 
 #include "rr/error.hpp"
 #include "rr/users.hpp"
+#include "runtime/cpp/src/platform/random.hpp"
 #include "runtime/cpp/src/service/password_hash.hpp"
 
 namespace rr {
@@ -56,8 +57,9 @@ std::string hash_like(const std::string& password, const std::string& hash, bool
 // Differs from process to process, so that nobody foresees what is made of it.
 std::size_t secret() {
   static const std::size_t number = [] {
-    std::random_device random;
-    return (static_cast<std::size_t>(random()) << 32U) ^ random();
+    std::size_t bits = 0;
+    platform::fill_random(std::as_writable_bytes(std::span(&bits, 1)));
+    return bits;
   }();
   return number;
 }
