@@ -60,7 +60,7 @@ set(robdef_layers
   "runtime/cpp/src/value: runtime/cpp/include/rr runtime/cpp/src/codec"
   "runtime/cpp/src/channel: runtime/cpp/include/rr runtime/cpp/src/platform runtime/cpp/src/codec"
   "runtime/cpp/src/channel/budget_inside_test.cpp: runtime/cpp/include/rr runtime/cpp/src/channel runtime/cpp/src/codec runtime/cpp/src/node/testing"
-  "runtime/cpp/src/endpoint: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel"
+  "runtime/cpp/src/endpoint: runtime/cpp/include/rr runtime/cpp/src/platform runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel"
   "runtime/cpp/src/client: runtime/cpp/include/rr runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint"
   "runtime/cpp/src/service: runtime/cpp/include/rr runtime/cpp/src/platform runtime/cpp/src/codec runtime/cpp/src/value runtime/cpp/src/channel runtime/cpp/src/endpoint"
   "runtime/cpp/src/subscription: runtime/cpp/include/rr runtime/cpp/src/channel runtime/cpp/src/endpoint runtime/cpp/src/client"

@@ -42,7 +42,7 @@ endfunction()
 # Compiles sources of a folder, named without .cpp, as one in a release: what is called for each message is
 # inlined then. For classes and functions that a program is linked with all of or none of.
 function(robdef_together target name)
-  if(CMAKE_BUILD_TYPE STREQUAL "Release")
+  if(CMAKE_BUILD_TYPE STREQUAL "Release" OR ROBDEF_UNITY)
     list(TRANSFORM ARGN APPEND .cpp OUTPUT_VARIABLE sources)
     set_source_files_properties(${sources} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${name})
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)

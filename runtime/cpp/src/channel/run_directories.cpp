@@ -7,6 +7,7 @@
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/directories.hpp"
+#include "runtime/cpp/src/channel/texts.hpp"
 #include "runtime/cpp/src/platform/files.hpp"
 #include "runtime/cpp/src/platform/users.hpp"
 
@@ -17,15 +18,12 @@ namespace {
   throw Error(ErrorCode::system_resource_error, "`" + path + "`: " + why);
 }
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-
 }  // namespace
 
 bool is_user_name(std::string_view text) {
   return !text.empty() && is_letter(text.front()) &&
-         std::all_of(text.begin(), text.end(), [](char c) {
-           return is_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-';
-         });
+         std::all_of(text.begin(), text.end(),
+                     [](char c) { return is_letter(c) || is_digit(c) || c == '_' || c == '-'; });
 }
 
 std::string system_run_directory(const LocalOptions& options) {

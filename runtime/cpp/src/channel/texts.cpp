@@ -10,8 +10,7 @@ namespace rr::channel {
 namespace {
 
 constexpr bool is_key_character(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-         c == '+' || c == '.' || c == '-';
+  return is_letter(c) || is_digit(c) || c == '_' || c == '+' || c == '.' || c == '-';
 }
 
 }  // namespace

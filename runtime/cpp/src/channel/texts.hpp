@@ -11,6 +11,10 @@
 /// section 2.1).
 namespace rr::channel {
 
+/// Of ASCII, whatever the locale.
+constexpr bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
 /// Without the blanks around it.
 std::string_view trimmed(std::string_view text);
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/channel/texts.hpp"
 
 namespace rr {
 namespace {
@@ -15,9 +16,6 @@ namespace {
               "`" + std::string(url) + "` is no URL of a service: " + why);
 }
 
-constexpr bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
 std::optional<std::uint16_t> default_port(std::string_view scheme) {
   if (scheme == "rr+tcp" || scheme == "rrs+tcp") return 48653;
   if (scheme == "rr+ws" || scheme == "rrs+ws") return 80;
@@ -26,7 +24,7 @@ std::optional<std::uint16_t> default_port(std::string_view scheme) {
 }
 
 int hexadecimal(char c) {
-  if (is_digit(c)) return c - '0';
+  if (channel::is_digit(c)) return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
   if (c >= 'A' && c <= 'F') return c - 'A' + 10;
   return -1;
@@ -135,9 +133,9 @@ void read_legacy_path(std::string_view url, Url& result) {
 }  // namespace
 
 bool Url::is_node_name(std::string_view text) {
-  if (text.empty() || text.size() > 1024 || !is_letter(text.front())) return false;
+  if (text.empty() || text.size() > 1024 || !channel::is_letter(text.front())) return false;
   return std::all_of(text.begin(), text.end(), [](char c) {
-    return is_letter(c) || is_digit(c) || c == '_' || c == '.' || c == '-';
+    return channel::is_letter(c) || channel::is_digit(c) || c == '_' || c == '.' || c == '-';
   });
 }
 

@@ -19,7 +19,6 @@ namespace {
 
 using service_index::IndexStub;
 using service_index::ServiceInfo;
-using service_index::ServiceInfos;
 
 constexpr std::chrono::seconds connecting_limit{15};
 constexpr std::chrono::seconds call_limit{5};
@@ -70,8 +69,9 @@ FoundService as_found(const ServiceInfo& info, const DetectedNode& node) {
 }
 
 // Nothing is read of an answer that is too large.
-ServiceInfos ask_services(Session& session, const std::string& path, const std::string& url) {
-  ServiceInfos infos;
+service_index::ServiceInfos ask_services(Session& session, const std::string& path,
+                                         const std::string& url) {
+  service_index::ServiceInfos infos;
   session.call(
       {.type = EntryType::function_call_req, .path = path, .member = "GetLocalNodeServices"},
       [&](Decoder& decoder, const Message&, const Entry& entry) {
@@ -79,7 +79,8 @@ ServiceInfos ask_services(Session& session, const std::string& path, const std::
           throw Error(ErrorCode::protocol_error,
                       "the service index at `" + url + "` says too much");
         }
-        endpoint::read_value(decoder, entry, "return", type_of<ServiceInfos>, &infos);
+        endpoint::read_value(decoder, entry, "return", type_of<service_index::ServiceInfos>,
+                             &infos);
       },
       Session::Milliseconds(0));
   return infos;
@@ -105,7 +106,7 @@ std::vector<FoundService> ask_at(const subscription::Host& host, const std::stri
       (!node.name.empty() && session->remote_name() != node.name)) {
     throw Error(ErrorCode::connection_error, "the node at `" + url + "` is not the announced one");
   }
-  const ServiceInfos infos = ask_services(*session, stub->rr_path(), url);
+  const service_index::ServiceInfos infos = ask_services(*session, stub->rr_path(), url);
   DetectedNode described = node;
   if (described.name.empty()) described.name = session->remote_name();
   std::vector<FoundService> services;

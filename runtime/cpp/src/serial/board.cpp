@@ -2,10 +2,10 @@
 #include "runtime/cpp/src/serial/board.hpp"
 
 #include <future>
+#include <random>
 #include <utility>
 
 #include "rr/printable.hpp"
-#include "runtime/cpp/src/platform/random.hpp"
 
 namespace rr::serial {
 
@@ -31,7 +31,7 @@ Board::Board(const std::string& path, std::uint32_t baud, Functions functions)
     : functions_(std::move(functions)),
       port_(Port::to(path, baud)),
       link_(port_->timing()),
-      session_(static_cast<std::uint16_t>(platform::RandomNumbers()())) {}
+      session_(static_cast<std::uint16_t>(std::random_device{}())) {}
 
 Board::~Board() { stop(); }
 

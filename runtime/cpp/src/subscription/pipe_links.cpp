@@ -20,7 +20,7 @@ class RawPipe : public PipeMember {
 };
 
 // What one client may say while something is sent to all of them.
-bool is_of_connection(const Error& error) {
+bool is_of_link(const Error& error) {
   return error.code() == ErrorCode::connection_error ||
          error.code() == ErrorCode::invalid_operation ||
          error.code() == ErrorCode::buffer_limit_violation;
@@ -192,7 +192,7 @@ std::size_t PipeLinks::send_all(const void* value) {
       end.send(value);
       ++count;
     } catch (const Error& error) {
-      if (!is_of_connection(error)) throw;
+      if (!is_of_link(error)) throw;
     }
   }
   return count;

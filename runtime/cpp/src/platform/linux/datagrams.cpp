@@ -7,12 +7,10 @@
 #include <cerrno>
 #include <cstring>
 
+#include "runtime/cpp/src/platform/linux/system_calls.hpp"
+
 namespace rr::platform {
 namespace {
-
-const sockaddr* system(const Address& address) {
-  return reinterpret_cast<const sockaddr*>(address.bytes.data());
-}
 
 template <class Value>
 void set(int socket, int level, int name, const Value& value) {

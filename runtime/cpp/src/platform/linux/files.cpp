@@ -10,13 +10,13 @@
 #include <cstdio>
 #include <cstring>
 
+#include "runtime/cpp/src/platform/linux/system_calls.hpp"
+
 namespace rr::platform {
 namespace {
 
 // One that is a pipe must not wait for who writes.
 constexpr int read_flags = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY | O_NOFOLLOW;
-
-std::error_code last_error() { return {errno, std::generic_category()}; }
 
 mode_t mode_of(Access access) {
   switch (access) {

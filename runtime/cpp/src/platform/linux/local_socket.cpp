@@ -10,6 +10,8 @@
 #include <optional>
 #include <utility>
 
+#include "runtime/cpp/src/platform/linux/system_calls.hpp"
+
 namespace rr::platform {
 namespace {
 
@@ -17,14 +19,8 @@ constexpr int backlog = 1024;
 // The user's group too, as far as the folder lets it in: who may connect is asked again.
 constexpr mode_t mode = 0770;
 
-std::error_code last_error() { return {errno, std::generic_category()}; }
-
 Descriptor open_socket() {
   return Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-}
-
-const sockaddr* system(const Address& address) {
-  return reinterpret_cast<const sockaddr*>(address.bytes.data());
 }
 
 // A socket that a node of this user has left behind: nobody answers there. Anything else is not

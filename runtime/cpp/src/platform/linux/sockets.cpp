@@ -11,6 +11,8 @@
 #include <array>
 #include <cerrno>
 
+#include "runtime/cpp/src/platform/linux/system_calls.hpp"
+
 namespace rr::platform {
 namespace {
 
@@ -20,12 +22,6 @@ constexpr int backlog = 1024;
 static_assert(sizeof(Buffer) == sizeof(iovec) &&
               offsetof(Buffer, data) == offsetof(iovec, iov_base) &&
               offsetof(Buffer, size) == offsetof(iovec, iov_len));
-
-std::error_code last_error() { return {errno, std::generic_category()}; }
-
-const sockaddr* system(const Address& address) {
-  return reinterpret_cast<const sockaddr*>(address.bytes.data());
-}
 
 template <class Value>
 bool set(int socket, int level, int name, const Value& value) {

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/socket.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "runtime/cpp/src/platform/address.hpp"
+
+namespace rr::platform {
+
+/// Why the last call of the system on this thread failed.
+inline std::error_code last_error() { return {errno, std::generic_category()}; }
+
+/// As the calls of the system take it.
+inline const sockaddr* system(const Address& address) {
+  return reinterpret_cast<const sockaddr*>(address.bytes.data());
+}
+
+}  // namespace rr::platform
