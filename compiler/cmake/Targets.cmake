@@ -29,12 +29,12 @@ endif()
 
 find_package(Threads REQUIRED)
 
-# robdef_unity(TARGET)
-# Compiles several sources of a target at once, where ROBDEF_UNITY says so. Not for what users link: their
+# robdef_unity(TARGET SOURCES)
+# Compiles so many sources of a target at once, where ROBDEF_UNITY says so: 0 for all. Not for what users link: their
 # programs get whole object files.
-function(robdef_unity target)
+function(robdef_unity target sources)
   if(ROBDEF_UNITY)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${sources})
   endif()
 endfunction()
 
@@ -48,6 +48,15 @@ function(robdef_together target name)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   endif()
 endfunction()
+
+# robdef_tables_first(LIST)
+# Puts the sources first that specialize a template, which has to come before its uses.
+macro(robdef_tables_first list)
+  set(tables ${${list}})
+  list(FILTER tables INCLUDE REGEX "view_tables\\.cpp$")
+  list(REMOVE_ITEM ${list} ${tables})
+  list(PREPEND ${list} ${tables})
+endmacro()
 
 # robdef_at_once(PROGRAM NAME LIBRARIES...)
 # Compiles the sources of these libraries as one, as part of a program that is not linked with them. Headers are read and
@@ -70,11 +79,7 @@ function(robdef_at_once program name)
       add_dependencies(${program} ${library}_embedded)
     endif()
   endforeach()
-  # These specialize a template, which has to come before its uses.
-  set(tables ${all})
-  list(FILTER tables INCLUDE REGEX "/view_tables\\.cpp$")
-  list(REMOVE_ITEM all ${tables})
-  list(PREPEND all ${tables})
+  robdef_tables_first(all)
   target_sources(${program} PRIVATE ${all})
   set_source_files_properties(${all} PROPERTIES UNITY_GROUP ${name})
   set_target_properties(${program} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
@@ -140,11 +145,12 @@ target_compile_options(robdef_warnings INTERFACE
 # A static library of one folder. Includes are written from the root of the tree.
 function(robdef_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS")
+  robdef_tables_first(arg_SOURCES)
   add_library(${name} STATIC ${arg_SOURCES})
   target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   target_link_libraries(${name} PRIVATE robdef_warnings PUBLIC ${arg_DEPENDS})
   if(arg_SOURCES)
-    robdef_unity(${name})
+    robdef_unity(${name} 0)
     robdef_precompiled(${name})
   endif()
 endfunction()
@@ -160,7 +166,7 @@ function(robdef_test name)
   add_executable(${name} ${arg_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE robdef_warnings ${arg_DEPENDS} GTest::gmock GTest::gtest_main)
-  robdef_unity(${name})
+  robdef_unity(${name} 6)
   # What is tested is optimized; the tests need not be, and compile much faster.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O0>)
   robdef_precompiled(${name} ${ROBDEF_TEST_HEADERS})
