@@ -4,9 +4,13 @@
 #include <cstdlib>
 #include <rr/error.hpp>
 #include <rr/serial.hpp>
+#include <rr/url.hpp>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "cli/secret_words.hpp"
+#include "compiler/diagnostics/spelling.hpp"
 
 namespace robdef::live {
 namespace {
@@ -17,6 +21,33 @@ std::string password_of(const LiveOptions& options) {
   return ask_silently(
       "password of " + options.user,
       "no password: give `--password-file`, or set " + std::string(password_variable));
+}
+
+/// The same node's index of services.
+std::string index_of(const std::string& url, const std::string& service) {
+  std::string index = url;
+  index.replace(index.rfind(service), service.size(), "RobotRaconteurServiceIndex");
+  return index;
+}
+
+/// What the node at a URL offers in place of the service that it does not have, for the end of an
+/// error; nothing when it does not say.
+std::string offered_services(rr::Node& node, const std::string& url) {
+  try {
+    const std::string wanted = rr::Url::parse(url).service;
+    const auto client = rr::dynamic::connect(node, index_of(url, wanted));
+    std::vector<std::string> names;
+    const rr::dynamic::Value infos = client.root().call("GetLocalNodeServices");
+    for (const auto& [number, info] : infos.int_map()) names.push_back(info.at("Name").text());
+    const std::vector<std::string_view> candidates(names.begin(), names.end());
+    const std::string_view near = nearest(wanted, candidates);
+    if (!near.empty()) return ": no `" + wanted + "`; did you mean `" + std::string(near) + "`?";
+    std::string text = ": no `" + wanted + "`; the node offers";
+    for (const std::string& name : names) text += " `" + name + "`";
+    return names.empty() ? ": the node offers no service" : text;
+  } catch (const std::exception&) {
+    return "";
+  }
 }
 
 }  // namespace
@@ -43,6 +74,13 @@ Connection::Connection(const LiveOptions& options, std::string url,
   connect();
 }
 
-void Connection::connect() { client_ = rr::dynamic::connect(node_, url_, options_); }
+void Connection::connect() {
+  try {
+    client_ = rr::dynamic::connect(node_, url_, options_);
+  } catch (const rr::Error& error) {
+    if (error.code() != rr::ErrorCode::service_not_found) throw;
+    throw rr::Error(error.code(), error.message() + offered_services(node_, url_));
+  }
+}
 
 }  // namespace robdef::live

@@ -106,6 +106,7 @@ TEST_F(Members, ErrorsNameTheMemberAndTheType) {
   EXPECT_THAT(err({"set", "label", "text"}),
               HasSubstr("member label: expected string as JSON, got `text`; a string has quotes"));
   EXPECT_THAT(err({"get", "nothing"}), HasSubstr("has no member `nothing`"));
+  EXPECT_THAT(err({"get", "gird"}), HasSubstr("has no member `gird`; did you mean `grid`?"));
   EXPECT_THAT(err({"get", "ticked"}),
               HasSubstr("member ticked: expected property, wire or memory, got event"));
   EXPECT_THAT(err({"set", "add", "1"}),
@@ -204,7 +205,8 @@ TEST_F(Members, CompletionAsksTheService) {
 }
 
 TEST_F(Members, WrongUseIsStatusTwo) {
-  EXPECT_THAT(run_robdef(folder_, {"get", "file", "x"}).err, HasSubstr("`file` is no URL"));
+  EXPECT_THAT(run_robdef(folder_, {"get", "file", "x"}).err,
+              HasSubstr("`file` is no URL; an example: rr+tcp://"));
   EXPECT_EQ(run({"get"}).status, 2);
   EXPECT_EQ(run({"set", "gain"}).status, 2);
   EXPECT_EQ(run({"call", "x", "--timeout", "soon"}).status, 2);

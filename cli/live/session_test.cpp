@@ -39,6 +39,17 @@ class Sessions : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+TEST_F(Sessions, AServiceThatIsNotThereIsToldBesideThoseThatAre) {
+  const auto refusal = [&](const std::string& name) {
+    std::string url = server_.url();
+    url.replace(url.rfind("bench"), 5, name);
+    return run_robdef(folder_, {"get", url, "level"}).err;
+  };
+  EXPECT_THAT(refusal("bnech"), HasSubstr("Service not found: no `bnech`; did you mean `bench`?"));
+  EXPECT_THAT(refusal("lathe"),
+              HasSubstr("Service not found: no `lathe`; the node offers `bench`"));
+}
+
 TEST_F(Sessions, WiresPipesAndEventsAreWatched) {
   bench_->level().set_in(1.5);
   Running watching(folder_, {"watch", server_.url(), "level", "points", "ticked", "--count", "3"});

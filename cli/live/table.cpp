@@ -209,7 +209,8 @@ std::string missing(const Options& options) {
   const bool completes = options.command == Command::complete;
   const std::size_t at = completes ? 1 : 0;
   if (count <= at || !is_url(options.inputs[at])) {
-    return count <= at ? "no URL given" : "`" + options.inputs[at] + "` is no URL";
+    return (count <= at ? "no URL given" : "`" + options.inputs[at] + "` is no URL") +
+           std::string("; an example: rr+tcp://localhost:6257/?service=mount");
   }
   if (std::string complaint = missing_to_connect(options); !complaint.empty()) return complaint;
   switch (options.command) {

@@ -15,6 +15,9 @@ namespace rr::channel {
 constexpr bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
+/// What errors show beside a URL that is none.
+inline constexpr const char* url_example = "an example: rr+tcp://localhost:6257/?service=mount";
+
 /// Without the blanks around it.
 std::string_view trimmed(std::string_view text);
 

@@ -12,8 +12,8 @@ namespace rr {
 namespace {
 
 [[noreturn]] void refuse(std::string_view url, const char* why) {
-  throw Error(ErrorCode::invalid_argument,
-              "`" + std::string(url) + "` is no URL of a service: " + why);
+  throw Error(ErrorCode::invalid_argument, "`" + std::string(url) + "` is no URL of a service: " +
+                                               why + "; " + channel::url_example);
 }
 
 std::optional<std::uint16_t> default_port(std::string_view scheme) {

@@ -8,6 +8,7 @@
 #include "rr/type.hpp"
 #include "rr/varvalue.hpp"
 #include "runtime/cpp/src/channel/directories.hpp"
+#include "runtime/cpp/src/channel/texts.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/client/definition_reader.hpp"
 #include "runtime/cpp/src/client/session.hpp"
@@ -161,7 +162,10 @@ void Session::establish(const Url& url, const std::function<void()>& check) {
   channel::Channel& way = core_->channel(url.scheme);
   check_channel(url, way.traits(url.scheme));
   if (service_.empty()) service_ = way.service_at(url, deadline);
-  if (service_.empty()) throw Error(ErrorCode::invalid_argument, "the URL names no service");
+  if (service_.empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                std::string("the URL names no service; ") + channel::url_example);
+  }
   way.connect(url, deadline, [this](std::shared_ptr<channel::Connection> connection) {
     connection->set_endpoints(endpoint_, 0);
     connection->set_account(make_account(limits_.held));

@@ -96,9 +96,9 @@ TEST(DynamicClient, NamesMemberAndTypeInErrors) {
             }),
             "11: member address: expected uint8[4], got 2 items");
   EXPECT_EQ(error_text([&] { (void)board->get("gian"); }),
-            "9: `experimental.properties.Board` has no property `gian`");
+            "9: `experimental.properties.Board` has no property `gian`; did you mean `gain`?");
   EXPECT_EQ(error_text([&] { (void)board->member("gian"); }),
-            "9: `experimental.properties.Board` has no member `gian`");
+            "9: `experimental.properties.Board` has no member `gian`; did you mean `gain`?");
   EXPECT_EQ(error_text([&] { (void)board->call("gain"); }),
             "10: member gain: expected function, got property");
   EXPECT_EQ(error_text([&] { (void)board->get("password"); }).substr(0, 4), "103:");

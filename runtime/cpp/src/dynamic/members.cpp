@@ -3,7 +3,9 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
+#include "compiler/diagnostics/spelling.hpp"
 #include "rr/error.hpp"
 #include "runtime/cpp/src/dynamic/stub.hpp"
 
@@ -23,15 +25,23 @@ std::string_view name_of(MemberKind kind) {
       subject_of(member.name) + ": expected " + std::string(expected) + ", got " + std::string(is));
 }
 
+/// Of names that an object does not have, with the one that was probably meant.
+[[noreturn]] void refuse_name(const ObjectTable& object, std::string_view kind,
+                              std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const MemberTable& member : object.members) names.push_back(member.name);
+  const std::string_view near = robdef::nearest(name, names);
+  throw Error(
+      ErrorCode::member_not_found,
+      "`" + object.name + "` has no " + std::string(kind) + " `" + std::string(name) + "`" +
+          (near.empty() || near == name ? "" : "; did you mean `" + std::string(near) + "`?"));
+}
+
 }  // namespace
 
 const MemberTable& need_member(const ObjectTable& object, std::string_view name, MemberKind kind) {
   const MemberTable* const found = object.find(name);
-  if (found == nullptr) {
-    throw Error(ErrorCode::member_not_found, "`" + object.name + "` has no " +
-                                                 std::string(name_of(kind)) + " `" +
-                                                 std::string(name) + "`");
-  }
+  if (found == nullptr) refuse_name(object, name_of(kind), name);
   const MemberKind is = object.wire(*found).kind;
   if (is != kind) refuse_member(*found, name_of(kind), name_of(is));
   return *found;
@@ -51,8 +61,7 @@ MemberDescription describe_member(const ObjectTable& object, std::string_view na
   if (const MemberTable* const found = object.find(name)) {
     return object.tables->describe(object, *found);
   }
-  throw Error(ErrorCode::member_not_found,
-              "`" + object.name + "` has no member `" + std::string(name) + "`");
+  refuse_name(object, "member", name);
 }
 
 std::vector<MemberDescription> describe_members(const ObjectTable& object) {

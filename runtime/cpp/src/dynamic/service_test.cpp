@@ -146,7 +146,7 @@ TEST_P(DynamicService, NamesMemberAndTypeOfWrongValues) {
 
 TEST_P(DynamicService, NamesWhatIsNoMember) {
   EXPECT_EQ(error_text([&] { rig.store("sped", 1); }),
-            "9: `example.rig.Rig` has no property `sped`");
+            "9: `example.rig.Rig` has no property `sped`; did you mean `speed`?");
   EXPECT_EQ(error_text([&] { rig.on_call("count", {}); }),
             "10: member count: expected plain function, got generator function");
   EXPECT_EQ(error_text([&] { (void)rig.wire("samples"); }),

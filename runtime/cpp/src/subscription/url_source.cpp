@@ -6,6 +6,7 @@
 
 #include "rr/error.hpp"
 #include "rr/url.hpp"
+#include "runtime/cpp/src/channel/texts.hpp"
 #include "runtime/cpp/src/subscription/services.hpp"
 
 namespace rr::subscription {
@@ -28,7 +29,8 @@ UrlSource::Lists UrlSource::checked(endpoint::Core& core,
       const Url parsed = Url::parse(url);
       if (parsed.service.empty() &&
           !core.channel(parsed.scheme).traits(parsed.scheme).has_one_service) {
-        throw Error(ErrorCode::invalid_argument, "`" + url + "` names no service");
+        throw Error(ErrorCode::invalid_argument,
+                    "`" + url + "` names no service; " + channel::url_example);
       }
       if (service.name.empty()) service.name = parsed.service;
       if (service.name != parsed.service) {
