@@ -79,4 +79,15 @@ requires(!Awaitable<std::invoke_result_t<Function>>) decltype(auto)
   return std::invoke(std::forward<Function>(function));
 }
 
+/// Complete where rr/async.hpp is included.
+template <class Token>
+struct AsyncCalls;
+
+/// What functions named `async_...` require: that `#include <rr/async.hpp>` comes before they are
+/// called.
+template <class Token>
+concept AsyncHeaderIsIncluded = requires {
+  sizeof(AsyncCalls<Token>);
+};  // #include <rr/async.hpp>
+
 }  // namespace rr

@@ -211,6 +211,7 @@ class Skeleton {
   }
   /// The same without waiting: see rr/async.hpp.
   template <class R, class Token, class... Arguments>
+  requires AsyncHeaderIsIncluded<Token>
   auto rr_async_call_back(const Member& member, const CallOptions& options, Token&& token,
                           std::uint32_t client, const Arguments&... arguments) const;
   /// What rr_call_back() stands on.

@@ -203,21 +203,26 @@ class Stub {
   /// For generated code: calls a function. This and the following encode and send now, and complete
   /// later; they are defined in rr/async.hpp, which a program includes that calls an async_ member.
   template <class R, class Token, class... Arguments>
+  requires AsyncHeaderIsIncluded<Token>
   auto rr_async_call(const Member& member, const CallOptions& options, Token&& token,
                      const Arguments&... arguments);
   /// For generated code: gets a property.
   template <class T, class Token>
+  requires AsyncHeaderIsIncluded<Token>
   auto rr_async_get(const Member& member, const CallOptions& options, Token&& token);
   /// For generated code: sets a property.
   template <class T, class Token>
+  requires AsyncHeaderIsIncluded<Token>
   auto rr_async_set(const Member& member, const CallOptions& options, Token&& token,
                     const T& value);
   /// For generated code: finds the object at an objref.
   template <class S, class Token, class... Index>
+  requires AsyncHeaderIsIncluded<Token>
   auto rr_async_find(const Member& member, const CallOptions& options, Token&& token,
                      const Index&... index);
   /// For generated code: calls a generator function.
   template <class R, class P, class Token, class... Arguments>
+  requires AsyncHeaderIsIncluded<Token>
   auto rr_async_generate(const Member& member, const CallOptions& options, Token&& token,
                          const Arguments&... arguments);
 

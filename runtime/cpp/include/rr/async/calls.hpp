@@ -15,6 +15,10 @@
 /// Properties, functions, objrefs and callbacks; see rr/async.hpp.
 namespace RR_VISIBLE rr {
 
+/// Shows that this header is there: see AsyncHeaderIsIncluded.
+template <class Token>
+struct AsyncCalls {};
+
 /// Of the search for an object.
 template <class Handler, class S>
 class FindCompletion final : public HandlerCompletion<Handler> {
@@ -45,6 +49,7 @@ class FindCompletion final : public HandlerCompletion<Handler> {
 };
 
 template <class R, class Token, class... Arguments>
+requires AsyncHeaderIsIncluded<Token>
 auto Stub::rr_async_call(const Member& member, const CallOptions& options, Token&& token,
                          const Arguments&... arguments) {
   return boost::asio::async_initiate<Token, typename CompletionSignature<R>::type>(
@@ -60,6 +65,7 @@ auto Stub::rr_async_call(const Member& member, const CallOptions& options, Token
 }
 
 template <class T, class Token>
+requires AsyncHeaderIsIncluded<Token>
 auto Stub::rr_async_get(const Member& member, const CallOptions& options, Token&& token) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr, T)>(
       [this, property = &member, options](auto&& handler) {
@@ -73,6 +79,7 @@ auto Stub::rr_async_get(const Member& member, const CallOptions& options, Token&
 }
 
 template <class T, class Token>
+requires AsyncHeaderIsIncluded<Token>
 auto Stub::rr_async_set(const Member& member, const CallOptions& options, Token&& token,
                         const T& value) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr)>(
@@ -89,6 +96,7 @@ auto Stub::rr_async_set(const Member& member, const CallOptions& options, Token&
 }
 
 template <class S, class Token, class... Index>
+requires AsyncHeaderIsIncluded<Token>
 auto Stub::rr_async_find(const Member& member, const CallOptions& options, Token&& token,
                          const Index&... index) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr, std::shared_ptr<S>)>(
@@ -104,6 +112,7 @@ auto Stub::rr_async_find(const Member& member, const CallOptions& options, Token
 }
 
 template <class R, class Token, class... Arguments>
+requires AsyncHeaderIsIncluded<Token>
 auto Skeleton::rr_async_call_back(const Member& member, const CallOptions& options, Token&& token,
                                   std::uint32_t client, const Arguments&... arguments) const {
   return boost::asio::async_initiate<Token, typename CompletionSignature<R>::type>(

@@ -62,6 +62,7 @@ class StepCompletion<Handler, void> final : public HandlerCompletion<Handler, Ge
 };
 
 template <class R, class P, class Token, class... Arguments>
+requires AsyncHeaderIsIncluded<Token>
 auto Stub::rr_async_generate(const Member& member, const CallOptions& options, Token&& token,
                              const Arguments&... arguments) {
   return boost::asio::async_initiate<Token, void(std::exception_ptr, Generator<R, P>)>(
