@@ -164,33 +164,38 @@ std::string declaration(const Signature& signature, std::size_t indent) {
   return signature_with(signature, ";", indent);
 }
 
+std::string head(const Signature& signature, std::size_t indent) {
+  return signature_with(signature, "", indent);
+}
+
 std::string opening(const Signature& signature, std::size_t indent) {
   return signature_with(signature, " {", indent);
 }
 
-std::string definition(const Signature& signature, const List& statement, std::size_t indent) {
-  const std::string head = opening(signature, indent);
-  const std::string flat = on_one_line(statement);
-  if (lines_of(head) == 1 && fits(head + " " + flat + " }", indent)) {
-    return head + " " + flat + " }";
-  }
-  return head + "\n" + blanks(indent + 2) + list(statement, indent + 2) + "\n" + blanks(indent) +
-         "}";
-}
-
-std::string definition(const Signature& signature, const std::string& statement,
-                       std::size_t indent) {
-  return definition(signature, List{.before = statement}, indent);
-}
-
-std::string long_definition(const Signature& signature, const List& first,
-                            const std::string& second, std::size_t indent) {
-  const std::string begin = "\n" + blanks(indent + 2);
-  return opening(signature, indent) + begin + list(first, indent + 2) + begin + second + "\n" +
-         blanks(indent) + "}";
-}
-
 std::string list(const List& list, std::size_t indent) { return break_list(list, indent, false); }
+
+std::string values(const List& list, std::size_t indent) {
+  const std::string below = "\n" + blanks(indent + continuation);
+  if (!fits(list.before, indent)) {
+    const std::size_t blank = list.before.rfind(' ');
+    if (blank != std::string::npos) {
+      const List named{
+          .before = list.before.substr(blank + 1), .items = list.items, .after = list.after};
+      return list.before.substr(0, blank) + below + values(named, indent + continuation);
+    }
+  }
+  const bool has_empty = std::ranges::find(list.items, "{}") != list.items.end();
+  if (!has_empty || fits(on_one_line(list), indent)) return break_list(list, indent, false);
+  const std::string flat = join(list.items, ", ") + list.after;
+  if (fits(flat, indent + continuation)) return list.before + below + flat;
+  const std::size_t column = indent + list.before.size();
+  const bool is_aligned = column + list.items.back().size() + list.after.size() <= line_width &&
+                          std::ranges::all_of(list.items, [&](const std::string& item) {
+                            return column + item.size() + 1 <= line_width;
+                          });
+  if (is_aligned) return list.before + join(list.items, ",\n" + blanks(column)) + list.after;
+  return list.before + below + join(list.items, "," + below) + list.after;
+}
 
 std::string braced_list(const List& list, std::size_t indent) {
   if (list.items.size() <= few_commas || fits(on_one_line(list), indent)) {
@@ -218,22 +223,17 @@ std::vector<std::string> table_rows(const std::vector<std::string>& items, std::
   return rows;
 }
 
-std::string assignment(std::string_view left, std::string_view right, std::size_t indent) {
-  std::string flat = std::string(left) + " = " + std::string(right) + ";";
-  if (fits(flat, indent)) return flat;
-  return std::string(left) + " =\n" + blanks(indent + continuation) + std::string(right) + ";";
-}
-
-std::string class_head(std::string_view name, const std::vector<std::string>& bases) {
+std::string class_head(std::string_view name, const std::vector<std::string>& bases,
+                       std::size_t indent) {
   const std::string head = "class " + std::string(name);
-  if (bases.empty()) return head + " {";
-  std::string flat = head + " : " + join(bases, ", ") + " {";
-  if (fits(flat, 0)) return flat;
-  const bool is_aligned = std::ranges::all_of(bases, [&](const std::string& base) {
-    return head.size() + 3 + base.size() + 2 <= line_width;
-  });
-  if (is_aligned) return head + " : " + join(bases, ",\n" + blanks(head.size() + 3)) + " {";
-  return head + "\n    : " + join(bases, ",\n      ") + " {";
+  const std::string flat = head + " : " + join(bases, ", ") + " {";
+  if (fits(flat, indent)) return flat;
+  const std::size_t column = indent + head.size() + 3;
+  const bool is_aligned = std::ranges::all_of(
+      bases, [&](const std::string& base) { return column + base.size() + 2 <= line_width; });
+  if (is_aligned) return head + " : " + join(bases, ",\n" + blanks(column)) + " {";
+  const std::string break_here = "\n" + blanks(indent + continuation);
+  return head + break_here + ": " + join(bases, "," + break_here + "  ") + " {";
 }
 
 }  // namespace robdef::cpp

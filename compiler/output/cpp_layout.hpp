@@ -12,7 +12,6 @@
 namespace robdef::cpp {
 
 inline constexpr std::size_t line_width = 100;
-inline constexpr std::size_t in_class = 2;  ///< the indent of what is in a class
 
 std::string blanks(std::size_t count);
 
@@ -35,28 +34,23 @@ struct List {
 /// `virtual double get_speed() = 0;`
 std::string declaration(const Signature& signature, std::size_t indent);
 
-/// A function with one statement: on one line where it fits.
-std::string definition(const Signature& signature, const List& statement, std::size_t indent);
-/// The same with a statement that is short.
-std::string definition(const Signature& signature, const std::string& statement,
-                       std::size_t indent);
-/// A function with a statement and a second one that is short.
-std::string long_definition(const Signature& signature, const List& first,
-                            const std::string& second, std::size_t indent);
+/// A function to what is behind its parameters.
+std::string head(const Signature& signature, std::size_t indent);
 /// The first line or lines of a function, to its `{`.
 std::string opening(const Signature& signature, std::size_t indent);
 
-/// A call or an initialization.
+/// A call.
 std::string list(const List& list, std::size_t indent);
+/// A variable with its values, `TYPE NAME{A, B};`: as a call, but one below the other where one of
+/// them is `{}`. Broken before its name where the type and the name do not fit together.
+std::string values(const List& list, std::size_t indent);
 /// A braced list on one line or a few; of six items or more in columns.
 std::string braced_list(const List& list, std::size_t indent);
 /// The rows of a table: items with their commas, in as many columns as are worth it.
 std::vector<std::string> table_rows(const std::vector<std::string>& items, std::size_t indent);
 
-/// `inline constexpr double pi = 3.14;`
-std::string assignment(std::string_view left, std::string_view right, std::size_t indent);
-
-/// `class A : public B, public C {`
-std::string class_head(std::string_view name, const std::vector<std::string>& bases);
+/// `class A : public B, public C {`: bases one below the other where they do not fit on a line.
+std::string class_head(std::string_view name, const std::vector<std::string>& bases,
+                       std::size_t indent);
 
 }  // namespace robdef::cpp

@@ -19,14 +19,6 @@ TEST(Layout, KeepsWhatFitsOnOneLine) {
                          .after = " = 0"},
                         2),
             "virtual double get_speed() = 0;");
-  EXPECT_EQ(definition({.result = "void", .name = "f", .parameters = {"int a"}},
-                       List{"g(", {"a", "1"}, ");"}, 2),
-            "void f(int a) { g(a, 1); }");
-}
-
-TEST(Layout, PutsTheBodyOfALongerFunctionOnItsOwnLine) {
-  EXPECT_EQ(definition({.result = "void", .name = long_name(85)}, "g();", 2),
-            "void " + long_name(85) + "() {\n    g();\n  }");
 }
 
 TEST(Layout, AlignsTheParametersOfADeclaration) {
@@ -74,8 +66,8 @@ TEST(Layout, KeepsColumnsOfUnequalItemsApart) {
 }
 
 TEST(Layout, ListsSeveralBasesBelowEachOther) {
-  EXPECT_EQ(class_head("A", {"public B"}), "class A : public B {");
-  EXPECT_EQ(class_head("A", {"public " + long_name(60), "public C" + long_name(40)}),
+  EXPECT_EQ(class_head("A", {"public B"}, 0), "class A : public B {");
+  EXPECT_EQ(class_head("A", {"public " + long_name(60), "public C" + long_name(40)}, 0),
             "class A : public " + long_name(60) + ",\n          public C" + long_name(40) + " {");
 }
 

@@ -2,114 +2,16 @@
 #include "compiler/output/cpp_lines.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "compiler/output/cpp_brackets.hpp"
 #include "compiler/output/cpp_layout.hpp"
 
 namespace robdef::cpp {
 namespace {
-
-constexpr std::size_t nowhere = std::string_view::npos;
-
-enum class Kind : unsigned char { plain, opens, closes, quote };
-
-constexpr std::array<Kind, 256> kinds = [] {
-  std::array<Kind, 256> all{};
-  for (const char c : std::string_view("(<{[")) all[static_cast<unsigned char>(c)] = Kind::opens;
-  for (const char c : std::string_view(")>}]")) all[static_cast<unsigned char>(c)] = Kind::closes;
-  all[static_cast<unsigned char>('"')] = Kind::quote;
-  return all;
-}();
-
-/// Finds places of a text that are in no brackets and no string.
-class Reader {
- public:
-  explicit Reader(std::string_view text) : text_(text) {}
-
-  /// Whether there is another one; `at` is its place then.
-  bool next() {
-    while (++at < text_.size()) {
-      const char c = text_[at];
-      if (is_in_string_) {
-        if (c == '\\') ++at;
-        is_in_string_ = c != '"';
-        continue;
-      }
-      const Kind kind = kinds[static_cast<unsigned char>(c)];
-      if (kind == Kind::plain) {
-        if (depth_ == 0) return true;
-        continue;
-      }
-      if (kind == Kind::quote) {
-        is_in_string_ = true;
-        continue;
-      }
-      if (kind == Kind::opens) {
-        if (depth_++ == 0) return true;
-        continue;
-      }
-      const bool is_arrow = c == '>' && at > 0 && text_[at - 1] == '-';
-      if (!is_arrow && depth_ > 0) {
-        if (--depth_ == 0) return true;
-        continue;
-      }
-      if (depth_ == 0) return true;
-    }
-    return false;
-  }
-
-  std::size_t at = nowhere;
-
- private:
-  std::string_view text_;
-  std::size_t depth_ = 0;
-  bool is_in_string_ = false;
-};
-
-std::size_t find_outside(std::string_view text, char wanted) {
-  Reader reader(text);
-  while (reader.next()) {
-    if (text[reader.at] == wanted) return reader.at;
-  }
-  return nowhere;
-}
-
-std::size_t find_last_outside(std::string_view text, char wanted) {
-  std::size_t found = nowhere;
-  Reader reader(text);
-  while (reader.next()) {
-    if (text[reader.at] == wanted) found = reader.at;
-  }
-  return found;
-}
-
-/// The parts between the commas of a list.
-std::vector<std::string> items_of(std::string_view text) {
-  std::vector<std::string> items;
-  while (!text.empty()) {
-    const std::size_t comma = find_outside(text, ',');
-    items.emplace_back(text.substr(0, comma));
-    if (comma == nowhere) break;
-    text.remove_prefix(std::min(comma + 2, text.size()));
-  }
-  return items;
-}
-
-/// `before(items)after`, with the first parentheses that are in no brackets.
-std::optional<List> list_of(std::string_view text) {
-  const std::size_t open = find_outside(text, '(');
-  if (open == nowhere) return std::nullopt;
-  const std::size_t length = find_outside(text.substr(open), ')');
-  if (length == nowhere) return std::nullopt;
-  const std::size_t close = open + length;
-  return List{.before = std::string(text.substr(0, open + 1)),
-              .items = items_of(text.substr(open + 1, close - open - 1)),
-              .after = std::string(text.substr(close))};
-}
 
 /// A call whose only argument is a call, `return answer(f(a, b));`, as the list of the inner one.
 std::optional<List> inner_list(const List& outer) {
@@ -124,8 +26,7 @@ std::optional<List> inner_list(const List& outer) {
 std::string braces(std::string_view text, std::size_t indent) {
   constexpr std::string_view begin = "return {";
   constexpr std::string_view end = "};";
-  const bool is_returned = text.starts_with(begin) && text.ends_with(end);
-  if (!is_returned || indent + text.size() <= line_width) return std::string(text);
+  if (!text.ends_with(end) || indent + text.size() <= line_width) return std::string(text);
   const std::size_t column = indent + begin.size();
   constexpr std::size_t deeper = 4;
   std::string result(begin);
@@ -146,7 +47,11 @@ std::string braces(std::string_view text, std::size_t indent) {
 
 std::string call(std::string_view text, std::size_t indent) {
   const std::optional<List> outer = list_of(text);
-  if (!outer) return braces(text, indent);
+  if (!outer) {
+    if (text.starts_with("return {")) return braces(text, indent);
+    const std::optional<List> braced = list_of(text, '{');
+    return braced ? values(*braced, indent) : std::string(text);
+  }
   const std::optional<List> inner = inner_list(*outer);
   if (!inner) return list(*outer, indent);
   std::string result = list({.before = outer->before + inner->before,
@@ -219,6 +124,65 @@ std::optional<std::string> function(std::string_view text, std::size_t indent) {
          "\n" + blanks(indent) + "}";
 }
 
+/// A constructor that gives its parameters to its base: `explicit A(int a) : B(a) {}`.
+std::optional<std::string> constructor(std::string_view text, std::size_t indent) {
+  if (!text.ends_with(" {}")) return std::nullopt;
+  constexpr std::string_view begin = " : ";
+  const std::size_t colon = find_word(text, begin);
+  if (colon == nowhere) return std::nullopt;
+  const std::optional<Signature> signature = signature_of(text.substr(0, colon), indent);
+  const std::optional<List> base = list_of(text.substr(colon + begin.size()));
+  if (!signature || !base) return std::nullopt;
+  constexpr std::size_t deeper = 4;
+  return head(*signature, indent) + "\n" + blanks(indent + deeper) + ": " +
+         list(*base, indent + deeper + 2);
+}
+
+/// `class A : public B, public C {`.
+std::optional<std::string> class_begin(std::string_view text, std::size_t indent) {
+  constexpr std::string_view begin = "class ";
+  constexpr std::string_view colon = " : ";
+  constexpr std::string_view end = " {";
+  const std::size_t bases = find_word(text, colon);
+  if (!text.starts_with(begin) || !text.ends_with(end) || bases == nowhere) return std::nullopt;
+  const std::size_t first = bases + colon.size();
+  return class_head(text.substr(begin.size(), bases - begin.size()),
+                    items_of(text.substr(first, text.size() - end.size() - first)), indent);
+}
+
+/// A variable or alias, `TYPE NAME = VALUE;`, `TYPE NAME{};` or `TYPE NAME;`: broken before its
+/// value, and before its name where the type and the name do not fit together.
+std::optional<std::string> variable(std::string_view text, std::size_t indent) {
+  constexpr std::string_view equals = " = ";
+  if (!text.ends_with(';') || text.starts_with("return ")) return std::nullopt;
+  const std::size_t sign = find_word(text, equals);
+  const bool has_value = sign != nowhere;
+  const std::size_t end = text.size() - (text.ends_with("{};") ? 3 : 1);
+  const std::string_view left = text.substr(0, has_value ? sign : end);
+  if (find_outside(left, '(') != nowhere || find_outside(left, '{') != nowhere) return std::nullopt;
+  constexpr std::size_t deeper = 4;
+  const auto below = [&](std::size_t depth, std::string_view rest) {
+    return "\n" + blanks(indent + depth * deeper) + std::string(rest);
+  };
+  const std::string value(has_value ? text.substr(sign + equals.size()) : std::string_view());
+  if (has_value && indent + left.size() + 2 <= line_width) {
+    return std::string(left) + " =" + below(1, value);
+  }
+  const std::size_t blank = find_last_outside(left, ' ');
+  if (blank == nowhere) return std::nullopt;
+  const std::string type(left.substr(0, blank));
+  const std::string_view name = left.substr(blank + 1);
+  const std::string_view rest = text.substr(blank + 1);
+  if (!has_value || indent + deeper + rest.size() <= line_width) return type + below(1, rest);
+  const std::size_t angle = name.find('<');
+  if (indent + deeper + name.size() + 2 <= line_width || angle == nowhere) {
+    return type + below(1, name) + " =" + below(2, value);
+  }
+  // A template argument fills the line.
+  return type + " " + std::string(name.substr(0, angle + 1)) + below(1, name.substr(angle + 1)) +
+         " =" + below(1, value);
+}
+
 /// The initial values of an array: `int a[] = {1, 2};`.
 std::optional<std::string> array(std::string_view text, std::size_t indent) {
   constexpr std::string_view begin = " = {";
@@ -242,8 +206,10 @@ std::string broken(std::string_view line) {
   if (line.size() <= line_width) return std::string(line);
   const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
   const std::string_view text = line.substr(indent);
-  if (text.starts_with("//")) return std::string(line);
+  if (text.starts_with("//") || text.starts_with('#')) return std::string(line);
   std::string result = blanks(indent);
+  if (const auto head = class_begin(text, indent)) return result + *head;
+  if (const auto whole = constructor(text, indent)) return result + *whole;
   constexpr std::string_view empty = " {}";
   if (text.ends_with(empty)) {
     const auto signature = signature_of(text.substr(0, text.size() - empty.size()), indent);
@@ -251,6 +217,7 @@ std::string broken(std::string_view line) {
   }
   if (const auto whole = function(text, indent)) return result + *whole;
   if (const auto values = array(text, indent)) return result + *values;
+  if (const auto whole = variable(text, indent)) return result + *whole;
   for (const std::string_view end : {" {", ";"}) {
     if (!text.ends_with(end)) continue;
     const auto signature = signature_of(text.substr(0, text.size() - end.size()), indent);

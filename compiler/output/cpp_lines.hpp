@@ -7,10 +7,10 @@
 namespace robdef::cpp {
 
 /// A line of C++ that a template has printed, broken into lines of 100 columns where it is longer:
-/// a function with one statement, a declaration, the first line of a function, an array with its
-/// values, or a call. Its own brackets group its parts; it can be broken after them and after
-/// commas. Anything else stays as it is, also what has brackets that do not close. `line` is
-/// without its line end, as is the result.
+/// a function with one statement, a constructor that does nothing, a declaration, the first line of
+/// a function or class, an array with its values, a variable, or a call. Its own brackets group its
+/// parts; it can be broken after them and after commas. Anything else stays as it is, also what has
+/// brackets that do not close. `line` is without its line end, as is the result.
 std::string broken(std::string_view line);
 
 /// Whether a line of a text is longer than 100 columns.

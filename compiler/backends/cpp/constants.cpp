@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compiler/backends/cpp/constants.hpp"
 
-#include <algorithm>
 #include <set>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "compiler/backends/literals.hpp"
-#include "compiler/backends/words.hpp"
-#include "compiler/output/cpp_layout.hpp"
 #include "compiler/output/escape.hpp"
 
 namespace robdef::cpp {
@@ -31,7 +29,7 @@ void append_escaped(std::string& out, char c) {
   }
 }
 
-std::string array_value(const model::Constant& constant) {
+std::vector<std::string> array_items(const model::Constant& constant) {
   const auto& numbers = std::get<std::vector<model::Number>>(constant.value);
   const auto& written = std::get<ast::ArrayLiteral>(constant.written).items;
   const auto primitive = std::get<Primitive>(constant.type.base);
@@ -39,36 +37,38 @@ std::string array_value(const model::Constant& constant) {
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     items.push_back(number_literal(numbers[i], written[i].text, primitive));
   }
-  return join(items, ", ");
+  return items;
 }
 
-std::string array_definition(const model::Constant& constant, const std::string& left,
-                             std::size_t indent) {
-  List list{.before = left + " = {", .items = {}, .after = "};"};
-  const auto& numbers = std::get<std::vector<model::Number>>(constant.value);
-  const auto& written = std::get<ast::ArrayLiteral>(constant.written).items;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    list.items.push_back(
-        number_literal(numbers[i], written[i].text, std::get<Primitive>(constant.type.base)));
+ConstantPartView part_called(const std::string& name, const std::string& margin) {
+  ConstantPartView part;
+  part.name = name;
+  part.margin = margin;
+  return part;
+}
+
+void add_parts(std::vector<ConstantPartView>& parts, const model::Constant& constant,
+               const std::string& name, const std::string& margin, Types& types) {
+  ConstantPartView part = part_called(name, margin);
+  if (!constant.is_struct) {
+    part.in_class = true;
+    describe(part, constant, types);
+    parts.push_back(std::move(part));
+    return;
   }
-  return braced_list(list, indent);
-}
-
-std::string struct_definition(const model::Constant& constant, const std::string& name,
-                              Types& types, std::size_t indent) {
   const auto& fields = std::get<std::vector<model::StructValueField>>(constant.value);
-  if (fields.empty()) return "struct " + name + " {};";
-  std::string result = "struct " + name + " {";
+  (fields.empty() ? part.is_empty : part.opens) = true;
+  parts.push_back(std::move(part));
+  if (fields.empty()) return;
   std::set<std::string> seen;
   for (const model::StructValueField& field : fields) {
     std::string field_name = identifier(field.field);
     if (field_name == name) field_name += '_';
     if (!seen.insert(field_name).second) continue;  // Q15
-    result +=
-        "\n" + blanks(indent + 2) +
-        constant_definition(*field.constant, field_name, "static constexpr", types, indent + 2);
+    add_parts(parts, *field.constant, field_name, margin + "  ", types);
   }
-  return result + "\n" + blanks(indent) + "};";
+  parts.push_back(part_called({}, margin));
+  parts.back().closes = true;
 }
 
 }  // namespace
@@ -79,42 +79,32 @@ std::string string_literal(std::string_view text) {
   return result + '"';
 }
 
-std::string constant_type(const model::Constant& constant, Types& types) {
-  if (constant.is_struct) return "";
-  if (std::holds_alternative<std::string>(constant.value)) {
-    types.include("<string_view>");
-    return "::std::string_view";
-  }
-  const std::string number = types.number(std::get<Primitive>(constant.type.base));
-  const auto* numbers = std::get_if<std::vector<model::Number>>(&constant.value);
-  if (numbers == nullptr) return number;
-  types.include("<array>");
-  return "::std::array<" + number + ", " + std::to_string(numbers->size()) + ">";
-}
-
-std::string constant_value(const model::Constant& constant) {
-  if (constant.is_struct) return "";
+void describe(ConstantFacts& facts, const model::Constant& constant, Types& types) {
   if (const auto* text = std::get_if<std::string>(&constant.value)) {
-    const std::string literal = string_literal(*text);
-    if (text->find('\0') == std::string::npos) return literal;
-    return "{" + literal + ", " + std::to_string(text->size()) + "}";
+    types.include("<string_view>");
+    facts.type = "::std::string_view";
+    facts.value = string_literal(*text);
+    if (text->find('\0') != std::string::npos) facts.size = std::to_string(text->size());
+    return;
   }
-  if (std::holds_alternative<std::vector<model::Number>>(constant.value)) {
-    return "{" + array_value(constant) + "}";
+  const auto primitive = std::get<Primitive>(constant.type.base);
+  facts.type = types.number(primitive);
+  if (const auto* number = std::get_if<model::Number>(&constant.value)) {
+    facts.value =
+        number_literal(*number, std::get<ast::NumberLiteral>(constant.written).text, primitive);
+    return;
   }
-  return number_literal(std::get<model::Number>(constant.value),
-                        std::get<ast::NumberLiteral>(constant.written).text,
-                        std::get<Primitive>(constant.type.base));
+  types.include("<array>");
+  facts.is_array = true;
+  facts.items = array_items(constant);
+  facts.type = "::std::array<" + facts.type + ", " + std::to_string(facts.items.size()) + ">";
 }
 
-std::string constant_definition(const model::Constant& constant, const std::string& name,
-                                std::string_view storage, Types& types, std::size_t indent) {
-  if (constant.is_struct) return struct_definition(constant, name, types, indent);
-  const std::string left = std::string(storage) + " " + constant_type(constant, types) + " " + name;
-  if (std::holds_alternative<std::vector<model::Number>>(constant.value)) {
-    return array_definition(constant, left, indent);
-  }
-  return assignment(left, constant_value(constant), indent);
+std::vector<ConstantPartView> constant_parts(const model::Constant& constant,
+                                             const std::string& name, Types& types) {
+  std::vector<ConstantPartView> parts;
+  add_parts(parts, constant, name, {}, types);
+  return parts;
 }
 
 }  // namespace robdef::cpp

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "compiler/backends/words.hpp"
-#include "compiler/output/cpp_layout.hpp"
 
 namespace robdef::cpp {
 namespace {
@@ -20,21 +19,15 @@ std::string types_of(const std::vector<ParameterView>& parameters) {
   return join(types, ", ");
 }
 
-/// How a member is called from where its parameters are: one of them may have its name.
-std::string called(const MemberView& view) {
-  const bool is_hidden =
-      std::any_of(view.parameters.begin(), view.parameters.end(),
-                  [&](const ParameterView& parameter) { return parameter.name == view.name; });
-  return (is_hidden ? "this->" : "") + view.name;
+bool is_hidden(const MemberView& view) {
+  return std::ranges::find(view.parameters, view.name, &ParameterView::name) !=
+         view.parameters.end();
 }
 
 void make_memory_types(MemberView& view) {
   const std::string shape = view.is_multi ? "Multi" : "Array";
   view.handle = "::rr::" + shape + "Memory<" + view.item + ">";
   view.served = "::std::shared_ptr<::rr::" + shape + "MemorySource<" + view.item + ">>";
-  const std::string made =
-      "::std::make_shared<::rr::Stored" + shape + "Memory<" + view.item + ">>()";
-  view.stored = assignment(view.served + " " + stored_name(view), made, in_class);
 }
 
 /// What the methods of a member give: `handle` that of the stub, `served` that of the skeleton.
@@ -64,10 +57,6 @@ void make_types(MemberView& view) {
 
 }  // namespace
 
-std::string stored_name(const MemberView& view) {
-  return (view.is_memory ? "rr_memory_" : "rr_value_") + view.wire_name;
-}
-
 void make_forms(MemberView& view, const Names& names) {
   // What stands behind a name so that it is none of those taken, which it joins.
   const auto mark = [&names](std::string_view name, std::set<std::string>& taken) {
@@ -83,20 +72,19 @@ void make_forms(MemberView& view, const Names& names) {
   std::set<std::string> of_client = taken;
   view.client_mark = mark("client", of_client);
   view.index_mark = mark("index", taken);
-  view.called = called(view);
+  view.is_hidden = is_hidden(view);
   make_types(view);
 }
 
-void make_row(MemberView& view, const std::string& access) {
-  Texts described;
-  if (!view.descriptor.empty()) described.push_back(view.descriptor);
+void make_row(MemberView& view, Texts access) {
+  if (!view.descriptor.empty()) view.described.push_back(view.descriptor);
   if (view.is_generator) {
-    described.push_back(view.generator_parameter ? view.generator_parameter->descriptor : "void");
+    view.described.push_back(view.generator_parameter ? view.generator_parameter->descriptor
+                                                      : "void");
   }
-  view.described = join(described, ", ");
-  if (!view.is_objref) view.access = access;
   const bool takes_parameters = view.is_function || view.is_event || view.is_callback;
   view.has_no_table = takes_parameters && !view.has_parameters && !access.empty();
+  if (!view.is_objref) view.access = std::move(access);
 }
 
 }  // namespace robdef::cpp

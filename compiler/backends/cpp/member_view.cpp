@@ -11,8 +11,6 @@
 #include "compiler/backends/cpp/view_parts.hpp"
 #include "compiler/backends/implements.hpp"
 #include "compiler/backends/member_facts.hpp"
-#include "compiler/backends/words.hpp"
-#include "compiler/output/cpp_layout.hpp"
 
 namespace robdef::cpp {
 namespace {
@@ -21,14 +19,6 @@ using model::Member;
 using model::MemberKind;
 using model::Object;
 using model::Type;
-
-/// `::rr::readonly | ::rr::nolock`; empty for none.
-std::string access_text(const model::Access& access) {
-  return join(
-      access_words(access, {"::rr::readonly", "::rr::writeonly", "::rr::unreliable", "::rr::nolock",
-                            "::rr::nolockread", "::rr::perclient", "::rr::urgent"}),
-      " | ");
-}
 
 class MemberMaker {
  public:
@@ -58,7 +48,7 @@ class MemberMaker {
     MemberView view;
     describe(view, object_, member, runtime_abilities);
     view.name = member_name(object_, member);
-    view.doc = doc_lines(member.documentation, in_class);
+    view.doc = doc_lines(member.documentation, class_indent);
     return view;
   }
 
@@ -72,27 +62,22 @@ class MemberMaker {
       view.generator_parameter = make_parameter(*member.generator_parameter, taken);
     }
     view.yields = view.is_source || view.is_filter;
-    std::vector<std::string> names;
-    for (const ParameterView& parameter : view.parameters) names.push_back(parameter.name);
-    view.arguments = join(names, ", ");
     constexpr std::string_view token = "Token";
     view.type_mark = context_.names.local(token, taken).substr(token.size());
     view.code = code_name(member);
-    view.getter = "get_" + view.code;
-    view.setter = "set_" + view.code;
     if (member.kind == MemberKind::objref) {
       make_reference(view, member);
     } else if (member.kind != MemberKind::event) {
       const CppType type = spell(member.type);
       view.type = type.text;
-      view.passed = type.passed();
       view.is_by_value = type.is_by_value;
       view.descriptor = type.descriptor;
       constexpr std::string_view value = "value";
-      view.value = context_.names.local(value, taken);
-      view.value_mark = view.value.substr(value.size());
-      if (view.has_result) view.local = variable(type, view.value, 8);
-      if (view.is_property) make_stored(view, type);
+      const std::string name = context_.names.local(value, taken);
+      view.value_mark = name.substr(value.size());
+      if (view.is_property) {
+        view.variable = {.type = type.text, .name = name, .initial = type.initial};
+      }
       if (view.is_memory) make_item(view, member);
       include_for(view);
     }
@@ -103,9 +88,8 @@ class MemberMaker {
     ParameterView view;
     describe(view, parameter, context_.names.local(code_name(parameter), taken));
     view.type = type.text;
-    view.passed = type.passed();
     view.is_by_value = type.is_by_value;
-    view.local = variable(type, view.name, 6);
+    view.initial = type.initial;
     view.descriptor = type.descriptor;
     return view;
   }
@@ -124,13 +108,6 @@ class MemberMaker {
       view.stub = view.qualified_stub = "::rr::Stub";
       view.skeleton = view.qualified_skeleton = "::rr::Skeleton";
     }
-  }
-
-  void make_stored(MemberView& view, const CppType& type) {
-    const std::string initial = type.made.empty() ? "" : "{" + type.made + "}";
-    const std::string stored = view.is_perclient ? "::rr::StoredPerClient<" : "::rr::Stored<";
-    view.stored = variable({.text = stored + type.text + ">", .descriptor = {}, .initial = initial},
-                           stored_name(view), in_class);
   }
 
   void make_item(MemberView& view, const Member& member) {
@@ -156,7 +133,8 @@ class MemberMaker {
   CppType spell(const Type& type) { return context_.types.spell(type, {.hidden = &hidden_}); }
 
   void make_served(MemberView& view, const Member& member) {
-    make_row(view, access_text(member.access));
+    make_row(view, access_words(member.access, {"readonly", "writeonly", "unreliable", "nolock",
+                                                "nolockread", "perclient", "urgent"}));
     make_forms(view, context_.names);
   }
 

@@ -5,7 +5,6 @@
 
 #include "compiler/backends/cpp/view_parts.hpp"
 #include "compiler/backends/words.hpp"
-#include "compiler/output/cpp_layout.hpp"
 
 namespace robdef::cpp {
 namespace {
@@ -51,25 +50,14 @@ void make_docs(ObjectView& view, const model::Object& object) {
 }
 
 void make_bases(ObjectView& view, const model::Object& object, const Context& context) {
-  std::vector<std::string> stubs;
-  std::vector<std::string> skeletons;
   for (const model::Object* base : object.implements) {
     const bool is_own = base->definition == object.definition;
     view.implements.push_back(
         {.wire_name = is_own ? base->name : base->qualified_name(),
          .stub = context.names.object_class(*base, stub_name(*base), {}),
          .skeleton = context.names.object_class(*base, skeleton_name(*base), {})});
-    stubs.push_back("public virtual " + view.implements.back().stub);
-    skeletons.push_back("public virtual " + view.implements.back().skeleton);
   }
   view.has_implements = !view.implements.empty();
-  if (!view.has_implements) {
-    stubs.emplace_back("public virtual ::rr::Stub");
-    skeletons.emplace_back("public virtual ::rr::Skeleton");
-  }
-  view.stub_head = class_head(view.stub, stubs);
-  view.skeleton_head = class_head(view.skeleton, skeletons);
-  view.default_head = class_head(view.default_class, {"public " + view.skeleton});
 }
 
 void make_names(ObjectView& view, const model::Object& object) {

@@ -13,29 +13,29 @@ using model::ArrayForm;
 using model::ContainerForm;
 using model::Primitive;
 
-/// A primitive in C++: its type, and what a declared value begins with.
+/// A primitive in C++: its type, and the literal that a variable begins with.
 struct Row {
   Primitive primitive;
   std::string_view type;
-  std::string_view initial;
+  std::string_view literal;
   std::string_view header;
 };
 constexpr auto rows = std::to_array<Row>({
     {Primitive::void_, "void", "", ""},
-    {Primitive::double_, "double", " = 0", ""},
-    {Primitive::single, "float", " = 0", ""},
-    {Primitive::int8, "::std::int8_t", " = 0", "<cstdint>"},
-    {Primitive::uint8, "::std::uint8_t", " = 0", "<cstdint>"},
-    {Primitive::int16, "::std::int16_t", " = 0", "<cstdint>"},
-    {Primitive::uint16, "::std::uint16_t", " = 0", "<cstdint>"},
-    {Primitive::int32, "::std::int32_t", " = 0", "<cstdint>"},
-    {Primitive::uint32, "::std::uint32_t", " = 0", "<cstdint>"},
-    {Primitive::int64, "::std::int64_t", " = 0", "<cstdint>"},
-    {Primitive::uint64, "::std::uint64_t", " = 0", "<cstdint>"},
-    {Primitive::string, "::std::string", "{}", "<string>"},
-    {Primitive::cdouble, "::std::complex<double>", "{}", "<rr/complex.hpp>"},
-    {Primitive::csingle, "::std::complex<float>", "{}", "<rr/complex.hpp>"},
-    {Primitive::bool_, "bool", " = false", ""},
+    {Primitive::double_, "double", "0", ""},
+    {Primitive::single, "float", "0", ""},
+    {Primitive::int8, "::std::int8_t", "0", "<cstdint>"},
+    {Primitive::uint8, "::std::uint8_t", "0", "<cstdint>"},
+    {Primitive::int16, "::std::int16_t", "0", "<cstdint>"},
+    {Primitive::uint16, "::std::uint16_t", "0", "<cstdint>"},
+    {Primitive::int32, "::std::int32_t", "0", "<cstdint>"},
+    {Primitive::uint32, "::std::uint32_t", "0", "<cstdint>"},
+    {Primitive::int64, "::std::int64_t", "0", "<cstdint>"},
+    {Primitive::uint64, "::std::uint64_t", "0", "<cstdint>"},
+    {Primitive::string, "::std::string", "", "<string>"},
+    {Primitive::cdouble, "::std::complex<double>", "", "<rr/complex.hpp>"},
+    {Primitive::csingle, "::std::complex<float>", "", "<rr/complex.hpp>"},
+    {Primitive::bool_, "bool", "false", ""},
 });
 
 const Row& row_of(Primitive primitive) {
@@ -54,9 +54,8 @@ std::string dimensions_text(const model::Type& type) {
   return text;
 }
 
-CppType plain(std::string text, std::string initial, bool is_by_value) {
-  return {
-      .text = text, .descriptor = text, .initial = std::move(initial), .is_by_value = is_by_value};
+CppType plain(std::string text, bool is_by_value = false) {
+  return {.text = text, .descriptor = std::move(text), .is_by_value = is_by_value};
 }
 
 std::uint64_t times(std::uint64_t a, std::uint64_t b) {
@@ -76,10 +75,6 @@ bool reaches(const model::Record& from, const model::Record& to,
 }
 
 }  // namespace
-
-std::string CppType::passed() const { return is_by_value ? text : "const " + text + "&"; }
-
-std::string initial_of(Primitive primitive) { return std::string(row_of(primitive).initial); }
 
 bool closes_cycle(const model::Record& from, const model::Record& to) {
   if (!from.is_recursive || !to.is_recursive) return false;
@@ -121,35 +116,34 @@ CppType Types::spell(const model::Type& type, const Place& place) {
 CppType Types::base(const model::Type& type, const Place& place) {
   static const std::set<std::string> nothing;
   const std::set<std::string>& hidden = place.hidden == nullptr ? nothing : *place.hidden;
-  return std::visit(Overloaded{
-                        [&](Primitive primitive) {
-                          const bool is_by_value = primitive != Primitive::string;
-                          return plain(number(primitive), initial_of(primitive), is_by_value);
-                        },
-                        [&](const model::Record* record) {
-                          const std::string name = names_.type(*record, hidden);
-                          if (record->kind != model::RecordKind::struct_)
-                            return plain(name, "{}", false);
-                          const bool is_recursive =
-                              place.record != nullptr && closes_cycle(*place.record, *record);
-                          headers_.insert(is_recursive ? "<rr/type.hpp>" : "<optional>");
-                          return plain(
-                              (is_recursive ? "::rr::Recursive<" : "::std::optional<") + name + ">",
-                              "{}", false);
-                        },
-                        [&](const model::Enum* enumeration) {
-                          return plain(names_.type(*enumeration, hidden), "{}", true);
-                        },
-                        [&](model::VarValue) {
-                          headers_.insert("<rr/varvalue.hpp>");
-                          return plain("::rr::VarValue", "{}", false);
-                        },
-                        // Reported before: objects are no values.
-                        [&](const model::Object*) { return plain("void", "", false); },
-                        [&](model::VarObject) { return plain("void", "", false); },
-                        [&](model::Unknown) { return plain("void", "", false); },
-                    },
-                    type.base);
+  return std::visit(
+      Overloaded{
+          [&](Primitive primitive) {
+            CppType result = plain(number(primitive), primitive != Primitive::string);
+            result.initial.literal = row_of(primitive).literal;
+            return result;
+          },
+          [&](const model::Record* record) {
+            const std::string name = names_.type(*record, hidden);
+            if (record->kind != model::RecordKind::struct_) return plain(name);
+            const bool is_recursive =
+                place.record != nullptr && closes_cycle(*place.record, *record);
+            headers_.insert(is_recursive ? "<rr/type.hpp>" : "<optional>");
+            return plain((is_recursive ? "::rr::Recursive<" : "::std::optional<") + name + ">");
+          },
+          [&](const model::Enum* enumeration) {
+            return plain(names_.type(*enumeration, hidden), true);
+          },
+          [&](model::VarValue) {
+            headers_.insert("<rr/varvalue.hpp>");
+            return plain("::rr::VarValue");
+          },
+          // Reported before: objects are no values.
+          [&](const model::Object*) { return plain("void"); },
+          [&](model::VarObject) { return plain("void"); },
+          [&](model::Unknown) { return plain("void"); },
+      },
+      type.base);
 }
 
 CppType Types::array(const CppType& item, const model::Type& type, const Place& place) {
@@ -163,8 +157,8 @@ CppType Types::array(const CppType& item, const model::Type& type, const Place& 
   headers_.insert("<rr/type.hpp>");
   // A long array is a plain one; its description and first value know the length.
   const auto limited = [&](const std::string& in_place, const std::string& descriptor) {
-    if (is_in_place) return plain(in_place + of + dimensions + ">", "{}", false);
-    CppType result = plain("::rr::Array" + of + ">", "{}", false);
+    if (is_in_place) return plain(in_place + of + dimensions + ">");
+    CppType result = plain("::rr::Array" + of + ">");
     result.descriptor = descriptor + of + dimensions + ">";
     return result;
   };
@@ -172,27 +166,25 @@ CppType Types::array(const CppType& item, const model::Type& type, const Place& 
     case ArrayForm::none:
       return item;
     case ArrayForm::any_length:
-      return plain("::rr::Array" + of + ">", "{}", false);
+      return plain("::rr::Array" + of + ">");
     case ArrayForm::fixed_length: {
       if (is_in_place) headers_.insert("<array>");
       CppType result = limited("::std::array", "::rr::FixedLength");
-      if (!is_in_place) {
-        result.made = result.text + "(" + std::to_string(type.element_count()) + ")";
-        result.initial = " = " + result.made;
-      }
+      if (!is_in_place) result.initial.length = std::to_string(type.element_count());
       return result;
     }
     case ArrayForm::maximum_length:
       return limited("::rr::BoundedArray", "::rr::MaximumLength");
     case ArrayForm::any_shape:
-      return plain("::rr::MultiArray" + of + ">", "{}", false);
+      return plain("::rr::MultiArray" + of + ">");
     case ArrayForm::fixed_shape: {
       CppType result = limited("::rr::FixedMultiArray", "::rr::FixedShape");
       if (!is_in_place) {
         result.text = "::rr::MultiArray" + of + ">";
-        result.made = result.text + "{{" + dimensions.substr(2) + "}, ::rr::Array" + of + ">(" +
-                      std::to_string(type.element_count()) + ")}";
-        result.initial = " = " + result.made;
+        result.initial = {.literal = {},
+                          .length = std::to_string(type.element_count()),
+                          .shape = dimensions.substr(2),
+                          .item = item.text};
       }
       return result;
     }
@@ -220,7 +212,7 @@ CppType Types::container(CppType item, ContainerForm form) {
       break;
   }
   headers_.insert("<optional>");
-  CppType result = plain(before + item.text + ">>", "{}", false);
+  CppType result = plain(before + item.text + ">>");
   result.descriptor = before + item.descriptor + ">>";
   return result;
 }

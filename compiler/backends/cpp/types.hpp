@@ -6,6 +6,7 @@
 #include <string>
 
 #include "compiler/backends/cpp/names.hpp"
+#include "compiler/backends/cpp/view.hpp"
 #include "compiler/model/model.hpp"
 
 /// How the types of a definition are written in C++: the table in rr/type.hpp, as code.
@@ -20,14 +21,9 @@ inline constexpr std::uint64_t item_limit = 1024 * 1024;
 struct CppType {
   std::string text;  ///< of the value: `::std::array<double, 6>`
   std::string
-      descriptor;       ///< what type_of is asked for: mostly the same, else FixedLength and so on
-  std::string initial;  ///< behind a declaration, so that it has a value: ` = 0`, `{}`
-  std::string made =
-      {};  ///< an expression for its first value, where `T{}` is none that may be sent
-  bool is_by_value = false;  ///< as a parameter
-
-  /// `const T&`, or `T` for what is cheap to copy.
-  [[nodiscard]] std::string passed() const;
+      descriptor;  ///< what type_of is asked for: mostly the same, else FixedLength and so on
+  InitialView initial = {};  ///< of a variable, so that it has a value that may be sent
+  bool is_by_value = false;  ///< as a parameter: what is cheap to copy
 };
 
 /// Where a type stands.
@@ -58,8 +54,6 @@ class Types {
   std::set<std::string> headers_;
 };
 
-/// `0`, `false`, `{}` behind a name: what a value of the primitive begins with.
-std::string initial_of(model::Primitive primitive);
 /// Bytes of one value in memory; what is not stored in place counts as a pointer.
 std::uint64_t storage_size(const model::Type& type);
 

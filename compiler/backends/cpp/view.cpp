@@ -11,7 +11,6 @@
 #include "compiler/backends/cpp/literal_text.hpp"
 #include "compiler/backends/cpp/order.hpp"
 #include "compiler/backends/cpp/view_parts.hpp"
-#include "compiler/backends/words.hpp"
 #include "compiler/output/cpp_layout.hpp"
 #include "compiler/output/prose.hpp"
 
@@ -26,26 +25,7 @@ std::vector<std::string> doc_lines(const std::string& documentation, std::size_t
   return lines;
 }
 
-std::string variable(const CppType& type, const std::string& name, std::size_t indent) {
-  const std::string flat = type.text + " " + name + type.initial + ";";
-  if (indent + flat.size() <= line_width) return flat;
-  if (type.initial.starts_with(" = ") &&
-      indent + type.text.size() + 1 + name.size() + 2 <= line_width) {
-    return assignment(type.text + " " + name, type.initial.substr(3), indent);
-  }
-  return type.text + "\n" + std::string(indent + 4, ' ') + name + type.initial + ";";
-}
-
 namespace {
-
-/// Throws the exception's class: a row of the definition's table.
-std::string exception_row(const ExceptionView& view, const Names& names) {
-  std::set<std::string> taken;
-  const std::string error = names.local("error", taken);
-  const std::string raise =
-      "[](const ::rr::Error& " + error + ") { throw " + view.name + "(" + error + "); }";
-  return list({.before = "{", .items = {"\"" + view.wire_name + "\"", raise}, .after = "},"}, 4);
-}
 
 class DefinitionMaker {
  public:
@@ -66,7 +46,6 @@ class DefinitionMaker {
           std::visit([&](const auto* declared) { return make(*declared); }, declaration));
     }
     make_groups();
-    make_tables();
     view_.has_aliases = !view_.aliases.empty();
     view_.has_forwards = !view_.forwards.empty();
     view_.text = literal_text(definition_.text);
@@ -83,11 +62,9 @@ class DefinitionMaker {
     view_.path = path_of(definition_.name);
     view_.header = view_.path + ".hpp";
     view_.doc = doc_lines(definition_.documentation, 0);
-    std::vector<std::string> numbers;
     for (const std::uint32_t number : definition_.version.numbers) {
-      numbers.push_back(std::to_string(number));
+      view_.version.push_back(std::to_string(number));
     }
-    view_.version = "{" + join(numbers, ", ") + "}";
   }
 
   void make_imports() {
@@ -95,7 +72,7 @@ class DefinitionMaker {
       const std::string header = path_of(import->name) + ".hpp";
       view_.imports.push_back({.wire_name = import->name,
                                .header = header,
-                               .definition = qualified(*import, "rr_definition")});
+                               .qualified = "::" + namespace_of(import->name)});
       view_.import_includes.push_back("\"" + header + "\"");
     }
     std::ranges::sort(view_.import_includes);
@@ -112,8 +89,8 @@ class DefinitionMaker {
         if (alias.qualified_name.substr(0, dot) != import->name) continue;
         const std::string name = type_name(*import, target);
         if (name.empty()) continue;
-        view_.aliases.push_back({"using " + identifier(alias.name) + " = " +
-                                 qualified(*import, identifier(name)) + ";"});
+        view_.aliases.push_back(
+            {.name = identifier(alias.name), .target = qualified(*import, identifier(name))});
       }
     }
   }
@@ -134,16 +111,16 @@ class DefinitionMaker {
 
   void add_forward(const model::Declaration& early) {
     if (const auto* record = std::get_if<const model::Record*>(&early)) {
-      view_.forwards.push_back({"struct " + identifier(code_name(**record)) + ";"});
+      view_.forwards.push_back({.name = identifier(code_name(**record)), .is_struct = true});
     } else if (const auto* object = std::get_if<const model::Object*>(&early)) {
-      view_.forwards.push_back({"class " + stub_name(**object) + ";"});
-      view_.forwards.push_back({"class " + skeleton_name(**object) + ";"});
+      view_.forwards.push_back({.name = stub_name(**object)});
+      view_.forwards.push_back({.name = skeleton_name(**object)});
     }
   }
 
   DeclarationView make(const model::Constant& constant) {
     DeclarationView view;
-    view.constant = make_constant(constant, "inline constexpr", 0, context_);
+    view.constant = make_constant(constant, false, context_);
     return view;
   }
   DeclarationView make(const model::Exception& exception) {
@@ -179,23 +156,6 @@ class DefinitionMaker {
     }
     if (view.object->has_default) types_.include("<rr/stored.hpp>");
     return view;
-  }
-
-  void make_tables() {
-    std::vector<std::string> imports;
-    std::vector<std::string> records;
-    std::vector<std::string> exceptions;
-    std::vector<std::string> objects;
-    for (const ImportView& import : view_.imports) imports.push_back("&" + import.definition + ",");
-    for (const DeclarationView& view : view_.declarations) {
-      if (view.record) records.push_back("&" + view.record->table + ",");
-      if (view.exception) exceptions.push_back(exception_row(*view.exception, names_));
-      if (view.object) objects.push_back("&" + view.object->table + ",");
-    }
-    view_.import_rows = table_rows(imports, 4);
-    view_.record_rows = table_rows(records, 4);
-    view_.exception_rows = table_rows(exceptions, 4);
-    view_.object_rows = table_rows(objects, 4);
   }
 
   /// Short constants that follow each other stand together.

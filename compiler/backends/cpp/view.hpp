@@ -8,26 +8,65 @@
 #include "compiler/backends/member_facts.hpp"
 #include "compiler/diagnostics/report.hpp"
 #include "compiler/model/model.hpp"
+#include "compiler/output/view_type.hpp"
 
-/// What templates can print of a definition in C++. Texts are finished: names are C++ names, types
-/// C++ types, and what may need several lines is broken as the project's clang-format style does.
+/// What templates can print of a definition in C++: names are C++ names, types C++ types, values
+/// C++ literals, and documentation is in lines. The code around them stands in templates.
 /// `robdef view --lang cpp` prints it all as JSON.
 namespace robdef::cpp {
 
+/// The name of a constant and its value, which is a literal or has `items`.
+struct ConstantFacts {
+  using Facts = ConstantFacts;
+
+  std::string name;   ///< in C++
+  std::string type;   ///< `::std::array<double, 3>`; empty for a struct constant
+  std::string value;  ///< `0x10`, `"text"`; empty for a struct constant and an array
+  std::string size;   ///< of a text with a NUL: its bytes, since the literal ends there
+  bool is_array = false;
+  std::vector<std::string> items;  ///< array: literals
+  bool in_class = false;           ///< of a record or object, or in a struct constant
+  std::string margin;              ///< in a struct constant: blanks before it
+
+  template <class View>
+  static ViewType fields() {
+    return {ROBDEF_VIEW_FIELDS(View, name, type, value, size, is_array, items, in_class, margin)};
+  }
+};
+
+/// A line of a struct constant: a value, or where a struct begins or ends.
+struct ConstantPartView : ConstantFacts {
+  bool opens = false;     ///< a struct called `name` begins
+  bool closes = false;    ///< the struct that began last ends
+  bool is_empty = false;  ///< a struct called `name` without values
+};
+
 /// A constant of a definition, record or object.
-struct ConstantView {
-  std::string wire_name;         ///< as in the definition
-  std::string name;              ///< in C++
-  std::vector<std::string> doc;  ///< lines with their `///`
-  bool is_struct = false;        ///< a struct constant: without type and value
-  std::string type;              ///< `::std::array<double, 3>`
-  std::string value;             ///< `{1, 2, 3}`
-  std::string definition;        ///< all of it
+struct ConstantView : ConstantFacts {
+  std::string wire_name;                ///< as in the definition
+  std::vector<std::string> doc;         ///< lines with their `///`
+  bool is_struct = false;               ///< a struct constant
+  std::vector<ConstantPartView> parts;  ///< struct constant: all of it
+};
+
+/// What a variable begins with: a literal, an array that is made, or else `{}`.
+struct InitialView {
+  std::string literal;  ///< `0`, `false`
+  std::string length;   ///< of the array: `20000`
+  std::string shape;    ///< of an array with several dimensions: `200, 100`
+  std::string item;     ///< the type of that one's items: `double`
+};
+
+struct VariableView {
+  std::string type;
+  std::string name;
+  InitialView initial;
 };
 
 /// A name of `using` for something of another definition.
 struct AliasView {
-  std::string definition;  ///< `using Point = ::example::geometry::Point;`
+  std::string name;
+  std::string target;  ///< `::example::geometry::Point`
 };
 
 struct EnumValueView {
@@ -51,9 +90,11 @@ struct ExceptionView {
   std::string name;
   std::string qualified;
   std::vector<std::string> doc;
-  std::string constructor;  ///< from message, sub-name and parameter
-  std::string parameter;    ///< a name for the parameter of the other constructor
-  std::string error;        ///< what the constructor from an error calls its parameter
+  // Names for the parameters of the constructors: one must not be called like the class.
+  std::string message;
+  std::string subname;
+  std::string parameter;
+  std::string error;
 };
 
 struct FieldView {
@@ -63,7 +104,7 @@ struct FieldView {
   std::string type;         ///< `::std::optional<Pose>`
   std::string descriptor;   ///< what rr::type_of is asked for
   std::string robdef_type;  ///< as in the definition, with qualified names
-  std::string declaration;  ///< `double pan = 0;`
+  InitialView initial;
 };
 
 /// A struct, pod or namedarray.
@@ -75,17 +116,14 @@ struct RecordView : RecordFacts {
   std::string number_type;  ///< namedarray: of its numbers, `double`
   std::vector<ConstantView> constants;
   std::vector<FieldView> fields;
-  std::string table;             ///< name of its RecordType
-  std::string field_table;       ///< name of the array of its fields
-  std::string table_definition;  ///< of the RecordType
-  std::string specialization;    ///< of rr::type_of
+  std::string table;        ///< name of its RecordType
+  std::string field_table;  ///< name of the array of its fields
 };
 
 struct ParameterView : ParameterFacts {
   std::string type;
-  std::string passed;        ///< `double`, `const ::std::string&`
   bool is_by_value = false;  ///< passed as it is, and not as a reference to a constant
-  std::string local;         ///< a variable for it: `double pan = 0;`
+  InitialView initial;       ///< of a variable for it
   std::string descriptor;
 };
 
@@ -95,18 +133,14 @@ struct MemberView : MemberFacts {
   std::string place;  ///< its name among the places in the table: its own, unless that is reserved
   std::vector<std::string> doc;
 
-  std::string type;    ///< property, pipe, wire, memory: the value; function, callback: the result
-  std::string passed;  ///< the value as a parameter
-  bool is_by_value = false;  ///< which is a `type` then, otherwise a reference to one
-  std::string value;         ///< a name for a variable that holds it
+  std::string type;  ///< property, pipe, wire, memory: the value; function, callback: the result
+  bool is_by_value = false;  ///< the value is passed as it is, and not as a reference to a constant
   std::string descriptor;    ///< what rr::type_of is asked for
-  std::string local;         ///< the variable: `double value = 0;`
-  std::string item;          ///< memory: one of its items, `double`
+  std::optional<VariableView> variable;  ///< property: one that holds its value
+  std::string item;                      ///< memory: one of its items, `double`
   std::string handle;  ///< what the stub's method gives: `::rr::Pipe<Frame>`, `::rr::Event<double>`
   std::string served;  ///< what the skeleton's gives: `::rr::PipeServer<Frame>`
-  std::string stored;  ///< property, memory: what a Default class keeps
   std::vector<ParameterView> parameters;
-  std::string arguments;                             ///< names of the parameters: `pan, tilt`
   bool yields = false;                               ///< generator: each step returns a `type`
   std::optional<ParameterView> generator_parameter;  ///< what each step takes
 
@@ -115,9 +149,7 @@ struct MemberView : MemberFacts {
   std::string qualified_stub;
   std::string qualified_skeleton;
 
-  std::string code;    ///< property, objref: what `get_` and `set_` stand before
-  std::string getter;  ///< `get_pan`: properties and objrefs
-  std::string setter;  ///< `set_pan`
+  std::string code;  ///< property, objref: what `get_` and `set_` stand before
 
   // What is behind the names of further parameters where a parameter of the member has the name:
   // usually nothing.
@@ -128,12 +160,12 @@ struct MemberView : MemberFacts {
   std::string client_mark;  ///< callback: `client`, of the endpoint that is called
   std::string index_mark;   ///< objref
   std::string value_mark;
-  std::string described;      ///< types that its row in the table is given: `double, void`
-  std::string access;         ///< what the row says of modifiers: `::rr::readonly | ::rr::nolock`
-  bool has_no_table = false;  ///< no table of parameters, but modifiers after it
-  std::string called;         ///< function: how it is called where a parameter may have its name
-  std::string taken;          ///< generator: the type that each step takes, or `void`
-  bool has_handle = false;    ///< event, pipe, callback, wire, memory
+  std::vector<std::string> described;  ///< types that its row in the table is given
+  std::vector<std::string> access;     ///< modifiers that the row has: `readonly`, `nolock`
+  bool has_no_table = false;           ///< no table of parameters, but modifiers after it
+  bool is_hidden = false;              ///< function: by a parameter of its name
+  std::string taken;                   ///< generator: the type that each step takes, or `void`
+  bool has_handle = false;             ///< event, pipe, callback, wire, memory
 };
 
 struct BaseView {
@@ -156,9 +188,6 @@ struct ObjectView {
   std::string qualified_stub;
   std::string qualified_skeleton;
   std::string qualified_default;
-  std::string stub_head;  ///< `class PanTiltStub : public virtual ::rr::Stub {`
-  std::string skeleton_head;
-  std::string default_head;
   bool has_default = false;
   std::vector<BaseView> implements;
   bool has_implements = false;
@@ -193,13 +222,14 @@ struct DeclarationView {
 
 /// Something of the definition that is declared before it is defined.
 struct ForwardView {
-  std::string declaration;  ///< `class PanTiltStub;`
+  std::string name;
+  bool is_struct = false;  ///< otherwise a class
 };
 
 struct ImportView {
   std::string wire_name;
-  std::string header;      ///< `example/geometry.hpp`
-  std::string definition;  ///< `::example::geometry::rr_definition`
+  std::string header;     ///< `example/geometry.hpp`
+  std::string qualified;  ///< `::example::geometry`
 };
 
 /// One service definition.
@@ -224,12 +254,8 @@ struct DefinitionView {
   bool has_records = false;
   bool has_exceptions = false;
   bool has_objects = false;
-  std::vector<std::string> import_rows;  ///< of the array of imported definitions
-  std::vector<std::string> record_rows;  ///< of the array of records
-  std::vector<std::string> exception_rows;
-  std::vector<std::string> object_rows;
-  std::vector<std::string> text;  ///< the definition's text as C++ literals, to be put in a row
-  std::string version;            ///< `{0, 10, 0, 0}`
+  std::vector<std::string> text;     ///< the definition's text as C++ literals, to be put in a row
+  std::vector<std::string> version;  ///< its numbers
 };
 
 /// Everything that is generated for.

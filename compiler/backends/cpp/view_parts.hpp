@@ -22,15 +22,13 @@ struct Context {
   Report& report;
 };
 
+inline constexpr std::size_t class_indent = 2;  ///< of what is in a class
+
 /// Documentation as `///` lines that are printed behind `indent` blanks.
 std::vector<std::string> doc_lines(const std::string& documentation, std::size_t indent);
 
-/// `double pan = 0;`, broken behind the type where it does not fit.
-std::string variable(const CppType& type, const std::string& name, std::size_t indent);
-
-/// A constant with `storage` in front, printed behind `indent` blanks.
-ConstantView make_constant(const model::Constant& constant, const std::string& storage,
-                           std::size_t indent, const Context& context);
+/// A constant of a definition or, `in_class`, of a record or object.
+ConstantView make_constant(const model::Constant& constant, bool in_class, const Context& context);
 /// The constants of a record or object, for the inside of a class.
 std::vector<ConstantView> class_constants(const std::vector<model::Constant>& constants,
                                           const Context& context);

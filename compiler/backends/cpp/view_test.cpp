@@ -59,14 +59,14 @@ TEST(Order, DeclaresWhatIsNamedEarly) {
       "object O\n objref P p\n objref O o\nend\nobject P\nend\n");
   std::vector<std::string> forwards;
   for (const ForwardView& forward : view_of(compiled).forwards) {
-    forwards.push_back(forward.declaration);
+    forwards.push_back((forward.is_struct ? "struct " : "class ") + forward.name);
   }
-  EXPECT_THAT(forwards, ElementsAre("struct B;", "class PStub;", "class PSkeleton;"));
+  EXPECT_THAT(forwards, ElementsAre("struct B", "class PStub", "class PSkeleton"));
 }
 
 TEST(Types, FollowTheTable) {
-  EXPECT_EQ(field_of("single").declaration, "float x = 0;");
-  EXPECT_EQ(field_of("string").declaration, "::std::string x{};");
+  EXPECT_EQ(field_of("single").type, "float");
+  EXPECT_EQ(field_of("string").type, "::std::string");
   EXPECT_EQ(field_of("cdouble[]").type, "::rr::Array<::std::complex<double>>");
   EXPECT_EQ(field_of("uint8[4]").type, "::std::array<::std::uint8_t, 4>");
   EXPECT_EQ(field_of("double[3,3]").type, "::rr::FixedMultiArray<double, 3, 3>");
@@ -76,12 +76,27 @@ TEST(Types, FollowTheTable) {
             "::std::optional<::std::map<::std::string, ::rr::VarValue>>");
 }
 
+// What variables of these types begin with.
+TEST(Types, KnowTheFirstValueOfAVariable) {
+  EXPECT_EQ(field_of("single").initial.literal, "0");
+  EXPECT_EQ(field_of("bool").initial.literal, "false");
+  EXPECT_EQ(field_of("string").initial.literal, "");
+  EXPECT_EQ(field_of("double[2048]").initial.length, "");
+  EXPECT_EQ(field_of("double[2049]").initial.length, "2049");
+  EXPECT_EQ(field_of("double[2049]").initial.item, "");
+  EXPECT_EQ(field_of("double[2049]{list}").initial.length, "");
+  EXPECT_EQ(field_of("uint8[20000-]").initial.length, "");
+  const InitialView of_several = field_of("uint8[200,100]").initial;
+  EXPECT_EQ(of_several.length, "20000");
+  EXPECT_EQ(of_several.shape, "200, 100");
+  EXPECT_EQ(of_several.item, "::std::uint8_t");
+}
+
 TEST(Types, StoreLongArraysOutside) {
   EXPECT_EQ(field_of("double[2048]").type, "::std::array<double, 2048>");
   const FieldView fixed = field_of("double[2049]");
   EXPECT_EQ(fixed.type, "::rr::Array<double>");
   EXPECT_EQ(fixed.descriptor, "::rr::FixedLength<double, 2049>");
-  EXPECT_EQ(fixed.declaration, "::rr::Array<double> x = ::rr::Array<double>(2049);");
   EXPECT_EQ(field_of("uint8[20000-]").descriptor, "::rr::MaximumLength<::std::uint8_t, 20000>");
   EXPECT_EQ(field_of("uint8[200,100]").descriptor, "::rr::FixedShape<::std::uint8_t, 200, 100>");
   EXPECT_EQ(field_of("double[2049]{list}").type,
@@ -114,7 +129,8 @@ TEST(Types, AreWrittenByTheirAlias) {
        "service c.d\nstdver 0.10\nimport a.b\nusing a.b.P as R\nstruct S\n field R r\n"
        " field a.b.Q q\nend\n"});
   const DefinitionView view = view_of(compiled, 1);
-  EXPECT_EQ(view.aliases.at(0).definition, "using R = ::a::b::P;");
+  EXPECT_EQ(view.aliases.at(0).name, "R");
+  EXPECT_EQ(view.aliases.at(0).target, "::a::b::P");
   const std::vector<FieldView>& fields = view.declarations.at(0).record->fields;
   EXPECT_EQ(fields.at(0).type, "::std::optional<R>");
   EXPECT_EQ(fields.at(1).type, "::std::optional<::a::b::Q>");
@@ -190,7 +206,54 @@ TEST(Members, ThatCannotBeServedHaveNoLines) {
   const MemberView view = member_of("memory double[]{list} x");
   EXPECT_FALSE(view.is_served);
   EXPECT_EQ(view.handle, "");
-  EXPECT_EQ(view.stored, "");
+  EXPECT_THAT(printed_for("memory double[]{list} x"), Not(HasSubstr("rr_memory_")));
+}
+
+TEST(Members, SayWhatTheirRowHas) {
+  const MemberView view = member_of("function bool{generator} x(P{generator} y) [nolock,urgent]");
+  EXPECT_THAT(view.described, ElementsAre("bool", "P"));
+  EXPECT_THAT(view.access, ElementsAre("nolock", "urgent"));
+  EXPECT_TRUE(view.has_no_table);
+  EXPECT_THAT(printed_for("function bool{generator} x(P{generator} y) [nolock,urgent]"),
+              HasSubstr("::rr::generator<bool, P>(\"x\", {}, ::rr::nolock | ::rr::urgent),"));
+  EXPECT_THAT(member_of("objref O x [urgent]").access, ElementsAre());
+}
+
+// Nothing of the language's but names, types and literals: a struct constant has a line for each.
+TEST(Constants, AreNamesTypesAndLiterals) {
+  const Compiled compiled = model::compiled_lines(
+      "constant int32 A 0x10\nconstant int32[] B {1,-2}\nconstant string C \"x\"\n"
+      "constant struct D {a: A}\nconstant struct E {d: D, c: C}\nconstant struct F {}\n");
+  std::vector<ConstantView> constants;
+  for (const DeclarationView& view : view_of(compiled).declarations) {
+    constants.push_back(view.constant.value());
+  }
+  EXPECT_EQ(constants.at(0).type, "::std::int32_t");
+  EXPECT_EQ(constants.at(0).value, "0x10");
+  EXPECT_TRUE(constants.at(1).is_array);
+  EXPECT_EQ(constants.at(1).value, "");
+  EXPECT_THAT(constants.at(1).items, ElementsAre("1", "-2"));
+  EXPECT_EQ(constants.at(2).value, "\"x\"");
+  std::vector<std::string> lines;
+  for (const ConstantPartView& part : constants.at(4).parts) {
+    lines.push_back(part.margin +
+                    (part.closes  ? "end"
+                     : part.opens ? "struct"
+                                  : part.type) +
+                    " " + part.name);
+  }
+  EXPECT_THAT(lines, ElementsAre("struct E", "  struct d", "    ::std::int32_t a", "  end ",
+                                 "  ::std::string_view c", "end "));
+  ASSERT_EQ(constants.at(5).parts.size(), 1U);
+  EXPECT_TRUE(constants.at(5).parts.at(0).is_empty);
+}
+
+// A text with a NUL would end there.
+TEST(Constants, TellTheSizeOfATextWithANul) {
+  const Compiled compiled = model::compiled_lines("constant string C \"x\\u0000y\"\n");
+  const ConstantView view = view_of(compiled).declarations.at(0).constant.value();
+  EXPECT_EQ(view.value, "\"x\\000y\"");
+  EXPECT_EQ(view.size, "3");
 }
 
 TEST(View, IncludesOnlyWhatMembersNeed) {

@@ -44,13 +44,13 @@ def split_items(text):
     return items + [text[begin:]] if text else []
 
 
-def split_list(text):
-    """(before, items, after), with the first parentheses that are in no brackets."""
-    found = places(text, "(")
+def split_list(text, brackets="()"):
+    """(before, items, after), with the first brackets of a kind that are in no others."""
+    found = places(text, brackets[0])
     if not found:
         return None
     first = found[0]
-    closing = places(text[first:], ")")
+    closing = places(text[first:], brackets[1])
     if not closing:
         return None
     last = first + closing[0]
@@ -102,8 +102,31 @@ def break_list(parts, indent, is_declaration):
     return before[:angle + 1] + here + before[angle + 1:] + here + inside
 
 
+def break_values(parts, indent):
+    before, items, after = parts
+    blanks = places(before[:-1], " ")
+    if indent + len(before) > WIDTH and blanks:
+        deeper = indent + DEEPER
+        rest = break_values((before[blanks[-1] + 1:], items, after), deeper)
+        return before[:blanks[-1]] + "\n" + " " * deeper + rest
+    deeper = indent + DEEPER
+    flat = ", ".join(items) + after
+    if "{}" not in items or indent + len(before + flat) <= WIDTH:
+        return break_list(parts, indent, False)
+    if deeper + len(flat) <= WIDTH:
+        return before + "\n" + " " * deeper + flat
+    column = indent + len(before)
+    lines = [item + "," for item in items[:-1]] + [items[-1] + after]
+    if column + max(map(len, lines)) <= WIDTH:
+        return before + joined(lines, column)
+    return before + "\n" + " " * deeper + joined(lines, deeper)
+
+
 def braces(text, indent):
-    if not text.startswith("return {") or not text.endswith("};") or indent + len(text) <= WIDTH:
+    if not text.startswith("return {"):
+        values = split_list(text, "{}")
+        return break_values(values, indent) if values else text
+    if not text.endswith("};") or indent + len(text) <= WIDTH:
         return text
     column = indent + len("return {")
     lines = []
@@ -182,6 +205,61 @@ def function(text, indent):
     return head + "\n" + " " * (indent + 2) + body + "\n" + " " * indent + "}"
 
 
+def signs(text, sign):
+    """Places of a sign with blanks around it that is in no brackets."""
+    return [at for at in outside(text) if text.startswith(sign, at)]
+
+
+def class_head(text, indent):
+    colons = signs(text, " : ")
+    if not text.startswith("class ") or not text.endswith(" {") or not colons:
+        return None
+    head, bases = text[:colons[0]], split_items(text[colons[0] + 3:-2])
+    column = indent + len(head) + 3
+    if max(column + len(base) + 2 for base in bases) <= WIDTH:
+        return head + " : " + (",\n" + " " * column).join(bases) + " {"
+    deeper = "\n" + " " * (indent + DEEPER)
+    return head + deeper + ": " + ("," + deeper + "  ").join(bases) + " {"
+
+
+def constructor(text, indent):
+    colons = signs(text, " : ")
+    if not colons or not text.endswith(" {}"):
+        return None
+    head, base = signature(text[:colons[0]], "", indent), split_list(text[colons[0] + 3:])
+    if not head or not base:
+        return None
+    deeper = indent + DEEPER
+    return head + "\n" + " " * deeper + ": " + break_list(base, deeper + 2, False)
+
+
+def variable(text, indent):
+    equals = signs(text, " = ")
+    if equals and text.endswith(";"):
+        left, value = text[:equals[0]], text[equals[0] + 3:]
+    elif text.endswith(";"):
+        left, value = text[:-1], None
+        if left.endswith("{}"):
+            left = left[:-2]
+    else:
+        return None
+    if places(left, "(") or places(left, "{") or left.startswith("return "):
+        return None
+    deeper = indent + DEEPER
+    if value is not None and indent + len(left) + 2 <= WIDTH:
+        return left + " =\n" + " " * deeper + value
+    blanks = places(left, " ")
+    if not blanks:
+        return None
+    kind, name, rest = text[:blanks[-1]], left[blanks[-1] + 1:], text[blanks[-1] + 1:]
+    if value is None or deeper + len(rest.encode()) <= WIDTH:
+        return kind + "\n" + " " * deeper + rest
+    if deeper + len(name) + 2 > WIDTH and "<" in name:
+        outer, _, inner = name.partition("<")
+        return kind + " " + outer + "<" + "".join("\n" + " " * deeper + line for line in (inner + " =", value))
+    return kind + "\n" + " " * deeper + name + " =\n" + " " * (deeper + DEEPER) + value
+
+
 def table_rows(items, width):
     """Items in as many columns as are worth it."""
     best, rows = [0], len(items)
@@ -210,16 +288,20 @@ def array(text, indent):
 def broken(line):
     text = line.lstrip(" ")
     indent = len(line) - len(text)
-    if len(line.encode()) <= WIDTH or text.startswith("//"):
+    if len(line.encode()) <= WIDTH or text.startswith(("//", "#")):
         return line
-    result = None
-    if text.endswith(" {}"):
+    result = class_head(text, indent)
+    if result is None:
+        result = constructor(text, indent)
+    if result is None and text.endswith(" {}"):
         head = signature(text[:-3], " {", indent)
         result = None if head is None else head + "}"
     if result is None:
         result = function(text, indent)
     if result is None:
         result = array(text, indent)
+    if result is None:
+        result = variable(text, indent)
     for end in (" {", ";"):
         if result is None and text.endswith(end):
             result = signature(text[:-len(end)], end, indent)
