@@ -3,9 +3,9 @@
 
 #include <cstdlib>
 #include <rr/error.hpp>
-#include <rr/serial.hpp>
 #include <utility>
 
+#include "cli/live/board_channel.hpp"
 #include "cli/secret_words.hpp"
 
 namespace robdef::live {
@@ -23,7 +23,7 @@ std::string password_of(const LiveOptions& options) {
 
 rr::NodeOptions node_options(const LiveOptions& options) {
   rr::NodeOptions result;
-  result.channels.emplace("rr+serial", rr::serial_channel());
+  add_board_channel(result);
   result.tls = options.tls.options();
   if (options.timeout) result.request_timeout = result.connect_timeout = *options.timeout;
   return result;

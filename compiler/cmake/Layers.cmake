@@ -107,7 +107,7 @@ set(robdef_layers
   "conformance/runners/matlab: conformance runtime/cpp/include/rr runtime/matlab"
   # Beside a robot: what users of the runtime see. One source reads TOML.
   "gateway: runtime/cpp/include/rr"
-  "gateway/main.cpp: gateway runtime/cpp/include/rr cli/end_signals.hpp"
+  "gateway/main.cpp: gateway runtime/cpp/include/rr cli/system/end_signals.hpp"
   "gateway/export_file.cpp: gateway runtime/cpp/include/rr compiler/project/toml_file.hpp"
   "benchmarks: runtime/cpp/include/rr compiler"
   "examples: runtime/cpp/include/rr"
@@ -127,7 +127,7 @@ set(robdef_outside_headers
   "^(mex\\.h|octave/)| runtime/matlab conformance/runners/matlab"
   "^(mosquitto|mqtt_protocol)\\.h$| gateway/mqtt_carrier.cpp gateway/mqtt_properties.hpp runtime/cpp/bench/fan_out_mosquitto.cpp"
   "^nats/| gateway/nats_link.cpp"
-  "^histedit\\.h$| cli/live/line_reader.cpp"
+  "^histedit\\.h$| cli/system/linux/line_editor.cpp"
   "^png\\.h$| examples")
 
 # Folders of the runtime above the platform seam, tests apart: they are the same for all systems. What they must not
