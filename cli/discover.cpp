@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/end_signals.hpp"
 #include "cli/options.hpp"
+#include "cli/system/end_signals.hpp"
 #include "compiler/output/json.hpp"
 #include "rr/mutex.hpp"
 

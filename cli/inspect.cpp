@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <unistd.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -16,6 +14,7 @@
 #include "cli/inspect_text.hpp"
 #include "cli/options.hpp"
 #include "cli/recordings.hpp"
+#include "cli/system/terminal.hpp"
 #include "compiler/syntax/read.hpp"
 
 namespace robdef {
@@ -72,11 +71,10 @@ std::string complaint_about(const rr::Recording& recording) {
 class SpooledInput {
  public:
   SpooledInput() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "robdef-XXXXXX").string();
-    const int file = ::mkstemp(pattern.data());
-    if (file < 0) throw rr::Error(rr::ErrorCode::io_error, "no room for a copy of standard input");
-    ::close(file);
-    path_ = pattern;
+    path_ = system::make_temporary_file();
+    if (path_.empty()) {
+      throw rr::Error(rr::ErrorCode::io_error, "no room for a copy of standard input");
+    }
     std::ofstream copy(path_, std::ios::binary);
     copy << std::cin.rdbuf();
   }

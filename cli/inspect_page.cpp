@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/inspect_page.hpp"
 
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <boost/asio/ip/tcp.hpp>
 #include <chrono>
 #include <cstdint>
-#include <cstdlib>
 #include <ostream>
 #include <rr/error.hpp>
 #include <rr/printable.hpp>
@@ -19,7 +14,7 @@
 #include <string>
 #include <string_view>
 
-extern char** environ;
+#include "cli/system/terminal.hpp"
 
 namespace robdef {
 namespace {
@@ -98,20 +93,6 @@ std::string address_for(const std::string& written, std::ostream& err) {
   return address;
 }
 
-// Where there is a display, and somebody at a terminal to see it.
-void open_in_browser(std::string address) {
-  const bool has_display =
-      std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
-  if (!has_display || isatty(STDOUT_FILENO) == 0) return;
-  std::string program = "xdg-open";
-  std::array<char*, 3> arguments{program.data(), address.data(), nullptr};
-  pid_t child = 0;
-  if (posix_spawnp(&child, "xdg-open", nullptr, nullptr, arguments.data(), environ) == 0) {
-    int status = 0;
-    waitpid(child, &status, 0);  // it hands on to the browser, and ends
-  }
-}
-
 }  // namespace
 
 ExitStatus show_page(const Options& options, std::ostream& out, std::ostream& err) {
@@ -119,7 +100,8 @@ ExitStatus show_page(const Options& options, std::ostream& out, std::ostream& er
     const std::string address =
         address_for(options.inputs.empty() ? "" : options.inputs.front(), err);
     out << address << '\n';
-    open_in_browser(address);
+    // Where somebody sits to see it.
+    if (system::writes_to_terminal()) system::open_in_browser(address);
     return exit_fine;
   } catch (const rr::Error& error) {
     err << "robdef: " << rr::printable(error.message()) << '\n';

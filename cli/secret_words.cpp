@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/secret_words.hpp"
 
-#include <fcntl.h>
-#include <termios.h>
-#include <unistd.h>
-
 #include <charconv>
 #include <fstream>
 #include <optional>
@@ -12,46 +8,9 @@
 #include <string_view>
 #include <utility>
 
+#include "cli/system/terminal.hpp"
+
 namespace robdef {
-namespace {
-
-class SilentTerminal {
- public:
-  explicit SilentTerminal(const std::string& otherwise)
-      : descriptor_(::open("/dev/tty", O_RDWR | O_CLOEXEC)) {
-    if (descriptor_ < 0 || ::tcgetattr(descriptor_, &before_) != 0) {
-      if (descriptor_ >= 0) ::close(descriptor_);
-      throw rr::Error(rr::ErrorCode::authentication_error, otherwise);
-    }
-    termios silent = before_;
-    silent.c_lflag &= ~static_cast<tcflag_t>(ECHO);
-    ::tcsetattr(descriptor_, TCSAFLUSH, &silent);
-  }
-  ~SilentTerminal() {
-    ::tcsetattr(descriptor_, TCSAFLUSH, &before_);
-    ::close(descriptor_);
-  }
-  SilentTerminal(const SilentTerminal&) = delete;
-  SilentTerminal& operator=(const SilentTerminal&) = delete;
-
-  void print(const std::string& text) const {
-    // Whoever does not see the question can still answer it.
-    if (::write(descriptor_, text.data(), text.size()) < 0) return;
-  }
-  [[nodiscard]] std::string read_line() const {
-    std::string line;
-    char letter = 0;
-    while (::read(descriptor_, &letter, 1) == 1 && letter != '\n') line += letter;
-    return line;
-  }
-
- private:
-  int descriptor_;
-  termios before_{};
-};
-
-}  // namespace
-
 namespace {
 
 // Of `/dev/fd/N`: opening that name would ask for the right to read the file, which whoever has
@@ -66,17 +25,6 @@ std::optional<int> descriptor_in(std::string_view path) {
   return number;
 }
 
-// Up to the end of a line, or of what is there. Nothing when it cannot be read.
-std::optional<std::string> line_from(int descriptor) {
-  std::string line;
-  for (char letter = 0;;) {
-    const ssize_t size = ::read(descriptor, &letter, 1);
-    if (size < 0) return std::nullopt;
-    if (size == 0 || letter == '\n') return line;
-    line += letter;
-  }
-}
-
 std::optional<std::string> line_of_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string line;
@@ -88,7 +36,7 @@ std::optional<std::string> line_of_file(const std::string& path) {
 
 std::string first_line(const std::string& path) {
   const auto descriptor = descriptor_in(path);
-  auto line = descriptor ? line_from(*descriptor) : line_of_file(path);
+  auto line = descriptor ? system::line_from_descriptor(*descriptor) : line_of_file(path);
   if (!line) {
     throw rr::Error(rr::ErrorCode::io_error, "the password cannot be read from `" + path + "`");
   }
@@ -97,11 +45,9 @@ std::string first_line(const std::string& path) {
 }
 
 std::string ask_silently(const std::string& question, const std::string& otherwise) {
-  const SilentTerminal terminal(otherwise);
-  terminal.print(question + ": ");
-  std::string answer = terminal.read_line();
-  terminal.print("\n");
-  return answer;
+  auto answer = system::ask_silently(question);
+  if (!answer) throw rr::Error(rr::ErrorCode::authentication_error, otherwise);
+  return std::move(*answer);
 }
 
 }  // namespace robdef

@@ -3,7 +3,7 @@
 #include <iostream>
 #include <utility>
 
-#include "cli/end_signals.hpp"
+#include "cli/system/end_signals.hpp"
 #include "gateway/access_list.hpp"
 #include "gateway/carriers.hpp"
 #include "gateway/exporter.hpp"

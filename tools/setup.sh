@@ -71,6 +71,27 @@ unpack_later_boost() {
   mv "$folder.new" "$folder"
 }
 
+# unpack_source PACKAGE FOLDER: Debian's source of a package, with its patches, in build/FOLDER. For systems that Debian
+# has no library for. The lists of sources are kept in build/apt: this machine's own may not have them.
+unpack_source() {
+  local package=$1 folder=$top/build/$2 apt=$top/build/apt options
+  [ ! -d "$folder" ] || return 0
+  rm -rf "$folder.new"
+  mkdir -p "$folder.new" "$apt/lists/partial" "$top/build/log"
+  apt-get indextargets --format 'deb-src $(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' 'Origin: Debian' |
+    sort -u >"$apt/sources.list"
+  options="-q -o Dir::Etc::SourceList=$apt/sources.list -o Dir::Etc::SourceParts=/dev/null
+    -o Dir::State::Lists=$apt/lists -o Dir::Cache::pkgcache= -o Dir::Cache::srcpkgcache= -o APT::Sandbox::User=$(id -un)"
+  (
+    cd "$folder.new"
+    # shellcheck disable=SC2086  # a list of options
+    apt-get $options update && apt-get $options --only-source --download-only source "$package"
+    dpkg-source --extract ./*.dsc source
+  ) >"$top/build/log/source-$package.log" 2>&1 || fail "cannot fetch the source of $package: build/log/source-$package.log"
+  mv "$folder.new/source" "$folder"
+  rm -r "$folder.new"
+}
+
 # with_progress NAME COMMAND...: runs COMMAND with its output in build/log/NAME.log. Shows the last
 # line while it runs: in place on a terminal, else one line every ten seconds. Shows the end of the
 # log when COMMAND fails, and returns its status.

@@ -3,12 +3,12 @@
 
 #include <cstdlib>
 #include <rr/error.hpp>
-#include <rr/serial.hpp>
 #include <rr/url.hpp>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "cli/live/board_channel.hpp"
 #include "cli/secret_words.hpp"
 #include "compiler/diagnostics/spelling.hpp"
 
@@ -54,7 +54,7 @@ std::string offered_services(rr::Node& node, const std::string& url) {
 
 rr::NodeOptions node_options(const LiveOptions& options) {
   rr::NodeOptions result;
-  result.channels.emplace("rr+serial", rr::serial_channel());
+  add_board_channel(result);
   result.tls = options.tls.options();
   if (options.timeout) result.request_timeout = result.connect_timeout = *options.timeout;
   return result;

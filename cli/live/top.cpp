@@ -2,7 +2,6 @@
 #include "cli/live/top.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -20,12 +19,13 @@
 #include <utility>
 #include <vector>
 
-#include "cli/end_signals.hpp"
 #include "cli/live/commands.hpp"
 #include "cli/live/connection.hpp"
 #include "cli/live/members.hpp"
 #include "cli/live/node_metrics.hpp"
 #include "cli/live/object_path.hpp"
+#include "cli/system/end_signals.hpp"
+#include "cli/system/terminal.hpp"
 
 namespace robdef::live {
 namespace {
@@ -206,7 +206,9 @@ class NodeLine {
 class Table {
  public:
   Table(const Members& members, std::ostream& out)
-      : members_(members), out_(out), is_terminal_(&out == &std::cout && isatty(STDOUT_FILENO)) {}
+      : members_(members),
+        out_(out),
+        is_terminal_(&out == &std::cout && system::writes_to_terminal()) {}
 
   void print(const std::string& head, double seconds) {
     constexpr const char* clear_screen = "\x1b[H\x1b[J";

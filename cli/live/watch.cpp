@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <ctime>
 #include <ostream>
 #include <rr/error.hpp>
 #include <rr/printable.hpp>
@@ -31,16 +30,18 @@ using rr::MemberKind;
 
 // As RFC 3339 writes it; what is no such time in seconds.
 std::string time_text(const rr::TimeSpec& time) {
-  const auto seconds = static_cast<std::time_t>(time.seconds);
-  std::tm parts{};
-  constexpr int last_year = 9999;
-  if (gmtime_r(&seconds, &parts) == nullptr || parts.tm_year < -1900 ||
-      parts.tm_year > last_year - 1900) {
+  constexpr std::int64_t first_second = -62'167'219'200;  // of the year 0
+  constexpr std::int64_t last_second = 253'402'300'799;   // of the year 9999
+  if (time.seconds < first_second || time.seconds > last_second) {
     return fmt::format("{}.{:09}", time.seconds, time.nanoseconds);
   }
-  return fmt::format("\"{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:09}Z\"", parts.tm_year + 1900,
-                     parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec,
-                     time.nanoseconds);
+  const std::chrono::sys_seconds second{std::chrono::seconds(time.seconds)};
+  const auto day = std::chrono::floor<std::chrono::days>(second);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss clock(second - day);
+  return fmt::format("\"{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:09}Z\"", int(date.year()),
+                     unsigned(date.month()), unsigned(date.day()), clock.hours().count(),
+                     clock.minutes().count(), clock.seconds().count(), time.nanoseconds);
 }
 
 std::string line_of(const std::string& member, const std::string& time, const std::string& value) {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/end_signals.hpp"
 #include "cli/live/object_path.hpp"
 #include "cli/live_options.hpp"
+#include "cli/system/end_signals.hpp"
 #include "compiler/driver/compile.hpp"
 
 /// Values of wires, packets of pipes and events as they come: an object of JSON a line, with

@@ -1,11 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
 # Lexers and parsers from grammars: the ANTLR tool and its C++ runtime, and one function.
 
-# The package's configuration names two libraries, but knows neither their headers nor that they
-# want libuuid to be linked.
-find_package(antlr4-runtime 4.9 REQUIRED CONFIG)
-find_path(ROBDEF_ANTLR_INCLUDE antlr4-runtime.h
-  HINTS ${ANTLR4_INCLUDE_DIR} PATH_SUFFIXES antlr4-runtime REQUIRED)
+set(ROBDEF_ANTLR_SOURCES "" CACHE PATH
+  "Debian's source package antlr4-cpp-runtime, for systems without its library: it is compiled here")
+if(ROBDEF_ANTLR_SOURCES)
+  set(ROBDEF_ANTLR_INCLUDE ${ROBDEF_ANTLR_SOURCES}/runtime/src)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${ROBDEF_ANTLR_INCLUDE}/*.cpp)
+  add_library(antlr4_static STATIC ${sources})
+  # As Debian compiles it: its headers have no string_view.
+  set_target_properties(antlr4_static PROPERTIES CXX_STANDARD 14)
+  target_compile_definitions(antlr4_static PUBLIC ANTLR4CPP_STATIC)
+  # Found in the folders of all, as its own build does; warnings are its makers'.
+  file(GLOB_RECURSE headers ${ROBDEF_ANTLR_INCLUDE}/*.h)
+  list(TRANSFORM headers REPLACE "/[^/]+$" "")
+  list(REMOVE_DUPLICATES headers)
+  target_include_directories(antlr4_static SYSTEM PRIVATE ${headers})
+  target_compile_options(antlr4_static PRIVATE -w)
+else()
+  # The package's configuration names two libraries, but knows neither their headers nor that they
+  # want libuuid to be linked.
+  find_package(antlr4-runtime 4.9 REQUIRED CONFIG)
+  find_path(ROBDEF_ANTLR_INCLUDE antlr4-runtime.h
+    HINTS ${ANTLR4_INCLUDE_DIR} PATH_SUFFIXES antlr4-runtime REQUIRED)
+endif()
 # Not asked for where a source package brings what it makes.
 find_program(ROBDEF_ANTLR_TOOL NAMES antlr4
   DOC "The ANTLR 4 tool, 4.7.2 or later but before 4.10, whose tables the runtime cannot read")

@@ -5,6 +5,8 @@
 # Folder: what its files may include besides the folder itself. The longest matching folder counts;
 # an entry may be a folder or one file. A source in a folder without a row is a finding.
 set(robdef_layers
+  # The compiler's own seam: what differs between systems.
+  "compiler/system:"
   "compiler/diagnostics: compiler/output/json.hpp"
   "compiler/syntax: compiler/diagnostics compiler/output/json.hpp"
   "compiler/format: compiler/diagnostics compiler/syntax"
@@ -21,8 +23,8 @@ set(robdef_layers
   "compiler/breaking/wire_member_rows.cpp: compiler/breaking compiler/diagnostics runtime/cpp/include/rr"
   "compiler/breaking/wire_object_rows.cpp: compiler/breaking compiler/diagnostics runtime/cpp/include/rr"
   "compiler/breaking/wire_meaning_rows.cpp: compiler/breaking compiler/diagnostics runtime/cpp/include/rr"
-  "compiler/plugin: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/implements.hpp compiler/backends/member_facts.hpp"
-  "compiler/output: compiler/diagnostics"
+  "compiler/plugin: compiler/diagnostics compiler/model compiler/output compiler/backends/backend.hpp compiler/backends/implements.hpp compiler/backends/member_facts.hpp compiler/system"
+  "compiler/output: compiler/diagnostics compiler/system"
   "compiler/docs: compiler/diagnostics compiler/model compiler/output"
   "compiler/lsp: compiler/diagnostics compiler/syntax compiler/format compiler/model compiler/project compiler/output"
   "compiler/backends: compiler/diagnostics compiler/model compiler/output"
@@ -38,7 +40,7 @@ set(robdef_layers
   "compiler/backends/cpp/generated_test.cpp: compiler/model runtime/cpp/include/rr"
   "compiler/backends/cpp/generated_members_test.cpp: runtime/cpp/include/rr"
   "cli: compiler/driver compiler/breaking compiler/diagnostics compiler/model compiler/syntax compiler/output runtime/cpp/include/rr runtime/cpp/src/replay"
-  "compiler/driver: compiler/plugin compiler/breaking compiler/diagnostics compiler/docs compiler/lsp compiler/project compiler/syntax compiler/format compiler/model compiler/output compiler/backends"
+  "compiler/driver: compiler/plugin compiler/breaking compiler/diagnostics compiler/docs compiler/lsp compiler/project compiler/syntax compiler/format compiler/model compiler/output compiler/backends compiler/system"
   "cli/live/members_test.cpp: cli compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
   "cli/live/hostile_service_test.cpp: cli compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
   "cli/live/session_test.cpp: cli compiler/driver runtime/cpp/include/rr runtime/cpp/src/node/testing"
@@ -105,7 +107,7 @@ set(robdef_layers
   "conformance/runners/matlab: conformance runtime/cpp/include/rr runtime/matlab"
   # Beside a robot: what users of the runtime see. One source reads TOML.
   "gateway: runtime/cpp/include/rr"
-  "gateway/main.cpp: gateway runtime/cpp/include/rr cli/end_signals.hpp"
+  "gateway/main.cpp: gateway runtime/cpp/include/rr cli/system/end_signals.hpp"
   "gateway/export_file.cpp: gateway runtime/cpp/include/rr compiler/project/toml_file.hpp"
   "benchmarks: runtime/cpp/include/rr compiler"
   "examples: runtime/cpp/include/rr"
@@ -118,14 +120,14 @@ set(robdef_outside_headers
   "^boost/| cli/inspect_page.cpp cli/live/node_metrics.cpp runtime/cpp/include/rr/async runtime/cpp/fuzz/client_programs.cpp runtime/cpp/src/channel/web_socket.cpp runtime/cpp/src/channel/memory_stream.hpp"
   "^openssl/| runtime/cpp/src/channel runtime/cpp/src/service/password_hash.cpp conformance/harness/web_socket_recording.cpp"
   "^rr/async(\\.hpp$|/)| runtime/cpp/include/rr/async.hpp runtime/cpp/include/rr/async runtime/cpp/src runtime/cpp/fuzz runtime/cpp/sim runtime/cpp/stress examples conformance benchmarks compiler/backends"
-  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| compiler/plugin/program.cpp runtime/cpp/src/serial runtime/arduino/bench/tcp runtime/cpp/src/platform runtime/cpp/src/channel/testing runtime/cpp/src/discovery/testing.hpp runtime/cpp/src/realtime/udp_socket.cpp runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/sim runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp examples/hardening/sandbox_probe.cpp conformance benchmarks"
+  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| compiler/system/linux runtime/cpp/src/serial runtime/arduino/bench/tcp runtime/cpp/src/platform runtime/cpp/src/channel/testing runtime/cpp/src/discovery/testing.hpp runtime/cpp/src/realtime/udp_socket.cpp runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/sim runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp examples/hardening/sandbox_probe.cpp conformance benchmarks"
   "^fmt/| cli compiler benchmarks"
   "^nlohmann/| compiler/lsp compiler/plugin/answer.cpp runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"
   "^toml\\+\\+/| compiler/project/toml_file.cpp"
   "^(mex\\.h|octave/)| runtime/matlab conformance/runners/matlab"
   "^(mosquitto|mqtt_protocol)\\.h$| gateway/mqtt_carrier.cpp gateway/mqtt_properties.hpp runtime/cpp/bench/fan_out_mosquitto.cpp"
   "^nats/| gateway/nats_link.cpp"
-  "^histedit\\.h$| cli/live/line_reader.cpp"
+  "^histedit\\.h$| cli/system/linux/line_editor.cpp"
   "^png\\.h$| examples")
 
 # Folders of the runtime above the platform seam, tests apart: they are the same for all systems. What they must not

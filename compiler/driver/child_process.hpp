@@ -15,8 +15,8 @@ struct ChildOutput {
   bool is_cut = false;  ///< it printed more than `limit` bytes, and was ended
 };
 
-/// Runs a program, found along PATH, with these arguments, without a shell and without input, and
-/// waits for its end. Throws std::system_error when it cannot be started.
+/// Runs a program, found along PATH, with these arguments, without a shell and with an empty input,
+/// and waits for its end. Throws std::system_error when it cannot be started.
 ChildOutput run_child(const std::vector<std::string>& words, std::size_t limit);
 
 }  // namespace robdef

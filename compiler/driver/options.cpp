@@ -7,6 +7,7 @@
 
 #include "compiler/diagnostics/spelling.hpp"
 #include "compiler/driver/command_table.hpp"
+#include "compiler/system/conventions.hpp"
 
 namespace robdef {
 
@@ -194,8 +195,8 @@ std::variant<Options, Answer, UsageError> parse_options(std::span<const std::str
   auto result = ArgumentReader(table, *command, arguments.subspan(1)).read();
   if (auto* options = std::get_if<Options>(&result)) {
     options->own_import_folders = options->search_path.folders.size();
-    options->search_path =
-        ast::make_search_path(std::move(options->search_path.folders), import_variable);
+    options->search_path = ast::make_search_path(std::move(options->search_path.folders),
+                                                 import_variable, system::list_separators());
   }
   return result;
 }

@@ -14,6 +14,7 @@
 #include "compiler/driver/format.hpp"
 #include "compiler/driver/lsp.hpp"
 #include "compiler/syntax/read.hpp"
+#include "compiler/system/conventions.hpp"
 
 namespace robdef {
 
@@ -91,6 +92,7 @@ ExitStatus guard(const std::function<ExitStatus()>& work, std::ostream& err) {
 }
 
 int run_main(int count, char** words, const CommandTable& table) {
+  system::prepare_streams();
   const std::vector<std::string> arguments(words + 1, words + count);
   const char* const variable = std::getenv(ast::search_path_variable);
   return guard(

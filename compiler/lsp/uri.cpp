@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 
 namespace robdef::lsp {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::string_view scheme = "file://";
 
@@ -33,13 +36,19 @@ std::string path_of(std::string_view uri) {
       path += rest[at];
     }
   }
+  // `/C:/folder`, where paths begin with a drive.
+  if (const fs::path inner = path.substr(path.empty() ? 0 : 1); inner.has_root_name()) {
+    return fs::path(inner).make_preferred().string();
+  }
   return path;
 }
 
 std::string uri_of(std::string_view path) {
-  if (!path.starts_with('/')) return std::string(path);
+  if (!fs::path(path).is_absolute()) return std::string(path);
   std::string uri(scheme);
-  for (const char c : path) {
+  const std::string slashed = fs::path(path).generic_string();
+  if (!slashed.starts_with('/')) uri += '/';
+  for (const char c : slashed) {
     if (is_plain(c)) {
       uri += c;
     } else {

@@ -254,7 +254,7 @@ std::vector<std::string> Workspace::files() {
 std::vector<std::string> Workspace::importable_services(const std::string& path) {
   std::set<std::string> all;
   const LoadedProject* const project = project_of(path);
-  if (path.starts_with('/')) add_services_in(fs::path(path).parent_path().string(), all);
+  if (fs::path(path).is_absolute()) add_services_in(fs::path(path).parent_path().string(), all);
   for (const std::string& folder : search_path_of(project).folders) add_services_in(folder, all);
   if (project != nullptr) {
     for (const auto& [service, input] : project->inputs) all.insert(service);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "compiler/output/pending_files.hpp"
+#include "compiler/system/conventions.hpp"
 
 namespace robdef {
 namespace {
@@ -28,7 +29,7 @@ bool holds(const fs::path& file, std::string_view content) {
 
 void FileSet::add(std::string path, std::string content) {
   const fs::path normal = fs::path(path).lexically_normal();
-  if (path.empty() || normal.is_absolute() || *normal.begin() == ".." || !normal.has_filename()) {
+  if (path.empty() || normal.has_root_path() || *normal.begin() == ".." || !normal.has_filename()) {
     throw std::logic_error("`" + path + "` is no path of a file below the output folder");
   }
   if (!files_.emplace(normal.generic_string(), std::move(content)).second) {
@@ -42,8 +43,19 @@ void FileSet::add_draft(std::string path, std::string content) {
   drafts_.insert(std::move(normal));
 }
 
+std::string FileSet::collision() const {
+  std::map<std::string, std::string> spelled;
+  for (const auto& [path, content] : files_) {
+    const auto [first, is_new] = spelled.emplace(system::one_spelling(path), path);
+    if (!is_new) return path + ": is the same file as " + first->second + " on this system";
+  }
+  return {};
+}
+
 FileSet::Written FileSet::prepare(const fs::path& folder, PendingFiles& pending) const {
   Written written;
+  written.failure = collision();
+  if (!written.failure.empty()) return written;
   for (const auto& [path, content] : files_) {
     const fs::path target = folder / path;
     std::error_code error;

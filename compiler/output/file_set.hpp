@@ -47,6 +47,9 @@ class FileSet {
   [[nodiscard]] Written prepare(const std::filesystem::path& folder, PendingFiles& pending) const;
 
  private:
+  // Two outputs that would be one file: a failure; empty when there are none.
+  [[nodiscard]] std::string collision() const;
+
   std::map<std::string, std::string, std::less<>> files_;
   std::set<std::string, std::less<>> drafts_;
   std::vector<std::string> notes_;

@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string failed(const fs::path& path, const std::error_code& why) {
-  return path.string() + ": " + why.message();
+  return path.generic_string() + ": " + why.message();
 }
 
 // Empty when it went well.
@@ -50,11 +50,11 @@ std::string PendingFiles::write(const fs::path& target, std::string_view content
   if (target.has_parent_path()) fs::create_directories(target.parent_path(), error);
   if (error) return failed(target.parent_path(), error);
   const fs::file_status before = fs::status(target, error);
-  if (fs::is_directory(before)) return target.string() + ": is a folder";
+  if (fs::is_directory(before)) return target.generic_string() + ": is a folder";
   const fs::path fresh = target.string() + ".robdef-new";
   files_.push_back({target, fresh, {}, false});
   const std::string failure = write_file(fresh, content);
-  if (!failure.empty()) return target.string() + ": " + failure;
+  if (!failure.empty()) return target.generic_string() + ": " + failure;
   if (fs::is_regular_file(before)) fs::permissions(fresh, before.permissions(), error);
   return {};
 }

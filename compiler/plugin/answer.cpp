@@ -13,6 +13,7 @@
 
 #include "compiler/diagnostics/excerpt.hpp"
 #include "compiler/plugin/plugin.hpp"
+#include "compiler/system/conventions.hpp"
 
 namespace robdef::plugin {
 namespace {
@@ -94,7 +95,7 @@ const Json& list_of(const Json& answer, const char* key) {
 std::string_view fault_of(const std::string& path) {
   if (path.empty()) return "is empty";
   if (path.size() > longest_path) return "is too long";
-  if (path.front() == '/') return "is absolute";
+  if (fs::path(path).has_root_path()) return "is absolute";
   const bool has_odd_letter = std::ranges::any_of(
       path, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == '\\' || c == 0x7F; });
   if (has_odd_letter) return "has a backslash or a control character";
@@ -104,6 +105,7 @@ std::string_view fault_of(const std::string& path) {
     if (part == "..") return "leads out of the output folder";
     if (part.empty() || part == ".") return "has an empty part or `.`";
     if (part.starts_with(".robdef-")) return "is a name that robdef keeps for itself";
+    if (const auto fault = system::fault_of_name(part); !fault.empty()) return fault;
     begin = end + 1;
   }
   return "";

@@ -96,6 +96,9 @@ TEST_F(Program, WhatItSaysIsMadePrintable) {
   (void)run("printf 'a\\033[31mb\\nlast' >&2");
   EXPECT_EQ(err_.str(), "a [31mb\nlast\n");
   err_.str("");
+  (void)run("printf 'first\\r\\nlast\\r\\n' >&2");
+  EXPECT_EQ(err_.str(), "first\nlast\n");
+  err_.str("");
   (void)run("i=0; while [ $i -lt 10050 ]; do echo x; i=$((i+1)); done >&2");
   EXPECT_THAT(err_.str(), HasSubstr("x\nrobdef: further lines are left out\n"));
   EXPECT_LT(err_.str().size(), 20'100U);

@@ -50,6 +50,13 @@ TEST_F(Globs, StarsAndQuestionMarksStandForLettersOfOneName) {
   EXPECT_THAT(matching("*/c.robdef"), ElementsAre("deep/c.robdef"));
   EXPECT_THAT(matching("x*"), IsEmpty());
   EXPECT_THAT(matching("nowhere/*"), IsEmpty());
+  EXPECT_THAT(matching("[!a].robdef"), ElementsAre("b.robdef"));
+  EXPECT_THAT(matching("*.*"), ElementsAre("a.robdef", "a.txt", "b.robdef"));
+  EXPECT_THAT(matching("a*t*t"), ElementsAre("a.txt"));
+  EXPECT_THAT(matching("a*t*x"), IsEmpty());
+  EXPECT_THAT(matching("deep/.*.robdef"), ElementsAre("deep/.f.robdef"));
+  EXPECT_THAT(matching("[]b]*"), ElementsAre("b.robdef"));
+  EXPECT_THAT(matching("[b.robdef"), IsEmpty());
 }
 
 TEST_F(Globs, TwoStarsStandForFoldersOfAnyDepthButNotBehindLinks) {

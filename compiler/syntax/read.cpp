@@ -43,13 +43,13 @@ bool exists(const std::string& path) {
 
 // Where the first folder of a list ends. Folders may have a `:` in their names: of what begins the
 // list, the longest text that names a folder is one.
-std::size_t first_folder_end(std::string_view list) {
-  const std::size_t first = std::min(list.find_first_of(":;"), list.size());
+std::size_t first_folder_end(std::string_view list, std::string_view separators) {
+  const std::size_t first = std::min(list.find_first_of(separators), list.size());
   std::size_t result = first;
   constexpr int most_colons = 16;
   std::size_t end = first;
   for (int colon = 0; colon < most_colons && end < list.size() && list[end] == ':'; ++colon) {
-    end = std::min(list.find_first_of(":;", end + 1), list.size());
+    end = std::min(list.find_first_of(separators, end + 1), list.size());
     std::error_code error;
     const bool is_whole = end > 0 && list[end - 1] != ':';
     if (is_whole && fs::is_directory(fs::path(list.substr(0, end)), error)) result = end;
@@ -222,10 +222,11 @@ FileText read_file(const std::string& path) {
   return read;
 }
 
-SearchPath make_search_path(std::vector<std::string> folders, std::string_view variable) {
+SearchPath make_search_path(std::vector<std::string> folders, std::string_view variable,
+                            std::string_view separators) {
   SearchPath path{std::move(folders)};
   while (!variable.empty()) {
-    const std::size_t end = first_folder_end(variable);
+    const std::size_t end = first_folder_end(variable, separators);
     if (end > 0) path.folders.emplace_back(variable.substr(0, end));
     variable.remove_prefix(std::min(end + 1, variable.size()));
   }
@@ -235,9 +236,9 @@ SearchPath make_search_path(std::vector<std::string> folders, std::string_view v
 std::vector<std::string> import_places(const std::string& service, const std::string& importing,
                                        const SearchPath& path) {
   const std::string file = service + ".robdef";
-  std::vector<std::string> places{(fs::path(importing).parent_path() / file).string()};
+  std::vector<std::string> places{(fs::path(importing).parent_path() / file).generic_string()};
   for (const std::string& folder : path.folders) {
-    places.push_back((fs::path(folder) / file).string());
+    places.push_back((fs::path(folder) / file).generic_string());
   }
   return places;
 }

@@ -41,9 +41,10 @@ struct SearchPath {
 };
 
 /// The folders given by `-I`, then those of an environment variable's text, which are separated by
-/// `:` or `;`; a `:` in the name of a folder that is there does not separate. Empty ones are left
-/// out.
-SearchPath make_search_path(std::vector<std::string> folders, std::string_view variable);
+/// any of the letters; a `:` in the name of a folder that is there does not separate. Empty ones
+/// are left out.
+SearchPath make_search_path(std::vector<std::string> folders, std::string_view variable,
+                            std::string_view separators = ":;");
 
 /// Where the definition of a service may be, the first place that exists counts: `<service>.robdef`
 /// in the folder of the importing file, then in those of the path.

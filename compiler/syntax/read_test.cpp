@@ -184,6 +184,7 @@ TEST(SearchPath, IsTheFoldersAndThenTheVariable) {
   EXPECT_THAT(make_search_path({"a", "b"}, "c:d;e").folders, ElementsAre("a", "b", "c", "d", "e"));
   EXPECT_THAT(make_search_path({}, ":;c::").folders, ElementsAre("c"));
   EXPECT_THAT(make_search_path({}, "").folders, IsEmpty());
+  EXPECT_THAT(make_search_path({}, R"(C:\a;D:\b)", ";").folders, ElementsAre(R"(C:\a)", R"(D:\b)"));
 }
 
 TEST_F(ReadTest, AFolderMayHaveAColonInItsName) {

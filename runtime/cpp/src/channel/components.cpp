@@ -5,6 +5,11 @@
 
 #include "rr/error.hpp"
 
+extern "C" {
+[[gnu::weak]] extern const rr::channel::TlsComponent rr_component_tls;
+[[gnu::weak]] extern const rr::channel::WebComponent rr_component_web;
+}
+
 namespace rr::channel {
 namespace {
 

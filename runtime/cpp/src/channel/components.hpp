@@ -48,8 +48,10 @@ std::string missing_component(std::string_view scheme);
 
 }  // namespace rr::channel
 
-// Weak references: the core links without a component. `-u SYMBOL` makes the linker include it.
+// The core refers to them weakly (components.cpp), so that it links without a component: `-u
+// SYMBOL` makes the linker include it. Their definitions are not weak: linkers for Windows find
+// none that are.
 extern "C" {
-[[gnu::weak, gnu::visibility("default")]] extern const rr::channel::TlsComponent rr_component_tls;
-[[gnu::weak, gnu::visibility("default")]] extern const rr::channel::WebComponent rr_component_web;
+[[gnu::visibility("default")]] extern const rr::channel::TlsComponent rr_component_tls;
+[[gnu::visibility("default")]] extern const rr::channel::WebComponent rr_component_web;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of nodes in a build of the core alone: by TCP.
+// Pairs of nodes in a build without TLS and files of Linux: by TCP or web sockets.
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -7,7 +8,10 @@
 
 namespace rr::testing {
 
-std::string test_channel() { return "tcp"; }
+std::string test_channel() {
+  const char* const name = std::getenv("ROBDEF_TEST_CHANNEL");
+  return name == nullptr ? "tcp" : name;
+}
 
 std::string test_folder() { return std::filesystem::temp_directory_path().string(); }
 

@@ -6,9 +6,9 @@
 #include <rr/printable.hpp>
 #include <rr/serial.hpp>
 
-#include "cli/end_signals.hpp"
 #include "cli/options.hpp"
 #include "cli/recordings.hpp"
+#include "cli/system/end_signals.hpp"
 
 namespace robdef {
 
