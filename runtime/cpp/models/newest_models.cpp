@@ -190,16 +190,19 @@ struct NewestModel : rl::test_suite<NewestModel<Sync>, 4> {
   ModelEnd<Sync> end{&listener};
 };
 
-/// Values come while others are told. There is no end: the last value is told for itself.
+/// Values come while others are told, and one thread waits for one. There is no end: each gets its
+/// notice for itself.
 template <class Sync>
-struct LastValueModel : rl::test_suite<LastValueModel<Sync>, 2> {
+struct LastValueModel : rl::test_suite<LastValueModel<Sync>, 3> {
   static constexpr std::int64_t last = 3;
 
   void thread(unsigned index) {
     if (index == 0) {
       for (std::int64_t i = 1; i <= last; ++i) end.take(i);
-    } else {
+    } else if (index == 1) {
       end.work(last);
+    } else {
+      end.wait();
     }
   }
   void after() { expect(listener.newest == last, "the last value is told"); }

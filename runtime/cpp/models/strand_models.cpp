@@ -9,8 +9,8 @@
 namespace rr::models {
 namespace {
 
-/// Three messages. The handler of the first waits outside until the second is handled. The handler
-/// of the third suspends the strand, and another thread resumes it.
+/// Three messages. The handler of the first waits outside until that of the second has begun. The
+/// handler of the third suspends the strand, and another thread resumes it.
 enum Message : int { waits, is_awaited, suspends };
 constexpr int message_count = 3;
 
@@ -123,6 +123,8 @@ class ModelStrand {
       newest_ = newest_.get();  // with the strand again
     } else if (message == is_awaited) {
       note(was_awaited_);
+      wait_outside(channel::never);  // has not to wait, and gives others the strand
+      newest_ = newest_.get();
     } else if (!std::exchange(was_suspended_, true)) {
       return !suspend(message);
     }
@@ -150,6 +152,7 @@ class ModelStrand {
     }
     const Lock lock(mutex_);
     if (state_.step_in(mutex_, deadline)) return;
+    expect(deadline != channel::never, "who waits without a deadline comes in");
     expect(state_.step_in(mutex_, channel::never), "the strand comes back");
   }
   // False when it may go on at once, with this message.
@@ -191,14 +194,14 @@ struct StrandModel : rl::test_suite<StrandModel<Sync>, 4> {
   void thread(unsigned index) {
     switch (index) {
       case 0:
-        strand.arrive(waits, soon);
+        strand.arrive(waits, rl::rand(2) == 0 ? soon : channel::never);
         break;
       case 1:
         strand.arrive(is_awaited, soon);
         strand.arrive(suspends, soon);
         break;
       case 2:
-        strand.work(soon);
+        strand.work(channel::never);
         break;
       default:
         strand.resume();
