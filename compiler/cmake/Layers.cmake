@@ -96,6 +96,7 @@ set(robdef_layers
   "runtime/cpp/stress: runtime/cpp/include/rr runtime/cpp/src/node/testing"
   # Stands below the runtime: it takes the place of the C library.
   "runtime/cpp/sim: runtime/cpp/include/rr runtime/cpp/stress"
+  "runtime/cpp/models: runtime/cpp/include/rr runtime/cpp/src/channel runtime/cpp/src/endpoint"
 
   # Both ends of the protocol read its numbers from one file.
   "runtime/cpp/src/serial: runtime/cpp/include/rr runtime/cpp/src/dynamic runtime/arduino/src/rr/protocol.h"

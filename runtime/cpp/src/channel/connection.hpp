@@ -19,7 +19,7 @@
 #include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/thread_share.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
-#include "runtime/cpp/src/platform/sleep_word.hpp"
+#include "runtime/cpp/src/channel/waiter.hpp"
 
 namespace rr::channel {
 
@@ -51,21 +51,6 @@ class Receiver {
   virtual void lost(const Error& why, DeferredCallbacks& deferred) = 0;
   /// The last call: comes in order behind the last message. May run user code.
   virtual void closed() = 0;
-};
-
-/// A thread that waits for an answer, on its stack. It sleeps on its state.
-struct Waiter {
-  static constexpr std::uint32_t reader = 1;    ///< it has the connection's read turn
-  static constexpr std::uint32_t answered = 2;  ///< it will be done in a moment
-  static constexpr std::uint32_t done = 4;      ///< it may go, and its memory with it
-
-  platform::SleepWord state{0};  // reader and answered are written under the connection's lock
-  Waiter* next = nullptr;        // guarded by the connection
-
-  [[nodiscard]] bool is_done() const { return (state.load(std::memory_order_acquire) & done) != 0; }
-  [[nodiscard]] bool is_reader() const {
-    return (state.load(std::memory_order_acquire) & reader) != 0;
-  }
 };
 
 /// What a message is of which only the newest counts: a value of one stream. While one waits to be

@@ -128,10 +128,8 @@ void Reactor::wait_for_connections() {
 void Reactor::wake_polling_thread() { sockets_.wake(); }
 
 void Reactor::wake_watching_thread() {
-  // The lock makes sure that the thread is really waiting.
   const MutexLock lock(mutex_);
-  watching_thread_sleeps_.store(false, std::memory_order_relaxed);
-  watch_.notify_one();
+  turn_.wake_watcher(watch_);
 }
 
 // Polling
@@ -155,17 +153,11 @@ void Reactor::poll(Polling& polling) {
 void Reactor::enter(Polling& polling, Pollable* pollable) {
   handling_ = pollable;
   polling.yield_at = Time::min();
-  turn_.store(++polling.turn);
-  if (watching_thread_sleeps_.load()) wake_watching_thread();
+  if (turn_.enter(polling.turn)) wake_watching_thread();
 }
 
 // False when the turn has been lost meanwhile, here and below.
-bool Reactor::leave(Polling& polling) {
-  std::uint64_t expected = polling.turn;
-  if (!turn_.compare_exchange_strong(expected, polling.turn + 1)) return false;
-  ++polling.turn;
-  return true;
-}
+bool Reactor::leave(Polling& polling) { return turn_.leave(polling.turn); }
 
 bool Reactor::handle_events(Polling& polling) {
   while (next_event_ != event_count_) {
@@ -337,21 +329,17 @@ void Reactor::yield() {
 
 bool Reactor::is_polling() const {
   const Polling* const polling = current_polling;
-  return polling != nullptr && polling->reactor == this &&
-         turn_.load(std::memory_order_relaxed) == polling->turn;
+  return polling != nullptr && polling->reactor == this && turn_.is_of(polling->turn);
 }
 
 // Whether the thread has the turn, and is in a handler.
-bool Reactor::is_inside(const Polling& polling) const {
-  return polling.turn % 2 != 0 && turn_.load() == polling.turn;
-}
+bool Reactor::is_inside(const Polling& polling) const { return turn_.is_inside(polling.turn); }
 
 // Gives up the turn to poll, for the next thread that is free. False when the caller keeps it, or
 // has lost it already.
 bool Reactor::hand_over(Polling& polling, bool is_held) {
   if (!is_inside(polling) || !secure_thread()) return false;
-  std::uint64_t expected = polling.turn;
-  if (!turn_.compare_exchange_strong(expected, polling.turn + 1)) return false;
+  if (!turn_.take(polling.turn)) return false;
   is_polled_ = false;
   note_loss(polling);
   if (is_held) hold(polling);
@@ -398,32 +386,21 @@ std::size_t Reactor::waiting() const {
 
 // Returns true when this thread is to poll from now on.
 [[gnu::hot]] bool Reactor::watch() {
-  std::uint64_t last_turn = turn_.load();
-  int stuck_looks = 0;
-  int quiet_looks = 0;
+  TurnLooks looks(turn_.look(), looks_until_stuck, looks_until_quiet);
   while (!is_stopping_) {
     report_missing_thread();
     const Time next_timer = run_timers();
     if (is_stopping_) break;  // since the lock was given up
-    const std::uint64_t turn = turn_.load();
-    const bool is_busy = turn % 2 != 0;
-    stuck_looks = is_busy && turn == last_turn ? stuck_looks + 1 : 0;
-    quiet_looks = !is_busy && turn == last_turn ? quiet_looks + 1 : 0;
-    last_turn = turn;
-    if (stuck_looks >= looks_until_stuck && take_over(turn)) {
+    const std::uint64_t turn = turn_.look();
+    looks.note(turn);
+    if (looks.is_stuck() && take_over(turn)) {
       is_watched_ = false;
       Pollable* const stuck = handling_;
       const MutexUnlock unlock(mutex_);
       if (stuck != nullptr) stuck->on_stuck();
       return true;
     }
-    Time until = std::min(next_timer, Clock::now() + look_period);
-    if (quiet_looks >= looks_until_quiet) {
-      watching_thread_sleeps_.store(true);
-      if (turn_.load() == turn) until = next_timer;
-    }
-    wait_until(watch_, mutex_, until);
-    watching_thread_sleeps_.store(false, std::memory_order_relaxed);
+    turn_.watch(watch_, mutex_, turn, looks.is_quiet(), Clock::now() + look_period, next_timer);
   }
   is_watched_ = false;
   return false;
@@ -432,7 +409,7 @@ std::size_t Reactor::waiting() const {
 // Not when nobody would watch then: timers would stand still, too.
 bool Reactor::take_over(std::uint64_t turn) {
   if (!secure_thread()) return false;
-  if (!turn_.compare_exchange_strong(turn, turn + 1)) return false;
+  if (!turn_.take(turn)) return false;
   note_loss(*poller_);
   hold(*poller_);
   if (poller_->held_by) poller_->held_by->note_stall(coarse_now());

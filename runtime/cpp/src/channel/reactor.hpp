@@ -18,6 +18,7 @@
 #include "rr/visibility.hpp"
 #include "runtime/cpp/src/channel/flusher.hpp"
 #include "runtime/cpp/src/channel/late_work.hpp"
+#include "runtime/cpp/src/channel/polling_turn.hpp"
 #include "runtime/cpp/src/channel/readers.hpp"
 #include "runtime/cpp/src/channel/thread_share.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
@@ -223,10 +224,7 @@ class RR_INSIDE Reactor final : public Watcher {
   Readers readers_;
   platform::Poller sockets_;
 
-  // The turn to poll. It counts what is done with it: one up when a handler is entered, one when it
-  // is left or the turn is taken from it. Odd while the thread that has it is in a handler.
-  std::atomic<std::uint64_t> turn_{0};
-  std::atomic<bool> watching_thread_sleeps_{false};
+  PollingTurn<> turn_;
   std::atomic<bool> has_work_{false};  // posted or retired
 
   // Of the thread whose turn it is; handed over with turn_.

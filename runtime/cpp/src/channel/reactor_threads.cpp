@@ -120,7 +120,7 @@ void Reactor::run_thread() {
 // Takes the turn to poll, which nobody else has.
 void Reactor::poll_until_lost() {
   is_polled_ = true;
-  Polling polling{.reactor = this, .turn = turn_.load(std::memory_order_relaxed)};
+  Polling polling{.reactor = this, .turn = turn_.begin()};
   poller_ = &polling;
   {
     const MutexUnlock unlock(mutex_);

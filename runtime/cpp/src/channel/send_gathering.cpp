@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a send queue gathers for some microseconds, so that it leaves in one system call.
+// What a send queue gathers for some microseconds, so that it leaves in one system call. How
+// several callers do it is in gathering_steps.hpp.
 #include <algorithm>
 #include <cstring>
-#include <thread>
 #include <utility>
 
 #include "runtime/cpp/src/channel/connection_tap.hpp"
@@ -41,13 +41,12 @@ SendQueue::Sent SendQueue::stream(Writer& message) {
 }
 
 [[gnu::hot]] bool SendQueue::gather_if_streaming(Writer& message, bool& is_first) {
-  const std::size_t size = message.size();
   const Time now = Clock::now();
   const Time last_here = std::exchange(last_streamed_here, now);
   const MutexLock lock(gathering_);
   const Time last = std::exchange(last_streamed_, now);
   is_first = gathered_size_ == 0;
-  if (size > stream_chunk - gathered_size_) return false;
+  if (!has_room_for(message)) return false;
   if (is_first && (now - last_here > pause_between || now - last > pause_on_connection)) {
     return false;
   }
@@ -56,39 +55,17 @@ SendQueue::Sent SendQueue::stream(Writer& message) {
   return true;
 }
 
-// Only the first looks whether it may wait.
-SendQueue::Corked SendQueue::cork(Writer& message, unsigned expected) {
+Corked SendQueue::cork(Writer& message, unsigned expected) {
   if (message.size() >= Writer::attach_threshold || is_closed()) return Corked::no;
-  const MutexLock lock(gathering_);
-  if (message.size() > stream_chunk - gathered_size_) return Corked::no;
-  if (!is_corked_) {
-    if (expected == 0 || has_unsent_ || Clock::now() < crowded_until_) return Corked::no;
-    missing_ = (expected + 1) / 2;
-  } else if (missing_ != 0 && --missing_ == 0) {
-    return Corked::no;  // with what the others have left
-  }
-  gather(message);
-  return std::exchange(is_corked_, true) ? Corked::joined : Corked::first;
+  return GatheringSteps<SendQueue>::cork(*this, message, expected);
 }
 
-// Those expected are ready to run, maybe on this thread's processor. It is not given up for a while
-// where something else has kept it for long.
 void SendQueue::uncork(const std::atomic<unsigned>& expected) {
-  constexpr Milliseconds long_turn{1};
-  constexpr Milliseconds crowded_for{50};
-  Time before = Clock::now();
-  std::size_t gathered = 0;
-  while (expected.load(std::memory_order_relaxed) != 0) {
-    const std::size_t now_gathered = gathered_bytes_.load(std::memory_order_relaxed);
-    if (now_gathered == gathered) break;  // nobody has come
-    gathered = now_gathered;
-    std::this_thread::yield();
-    const Time now = Clock::now();
-    if (now - before > long_turn) crowded_until_ = now + crowded_for;
-    before = now;
-  }
-  const MutexLock lock(gathering_);
-  is_corked_ = false;
+  GatheringSteps<SendQueue>::uncork(*this, expected);
+}
+
+bool SendQueue::has_room_for(const Writer& message) const {
+  return message.size() <= stream_chunk - gathered_size_;
 }
 
 // When there is room.
@@ -104,12 +81,7 @@ void SendQueue::uncork(const std::atomic<unsigned>& expected) {
   if (tap_.is_open()) tap_.sent(message.pieces());
 }
 
-// What was gathered is next.
-[[gnu::hot]] void SendQueue::take_gathered() {
-  if (!has_gathered()) return;
-  const MutexLock lock(gathering_);
-  move_gathered();
-}
+[[gnu::hot]] void SendQueue::take_gathered() { GatheringSteps<SendQueue>::take_gathered(*this); }
 
 void SendQueue::move_gathered() {
   Allocation memory = std::exchange(gathered_, {});

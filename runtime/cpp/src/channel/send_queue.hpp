@@ -13,8 +13,10 @@
 #include "rr/writer.hpp"
 #include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
+#include "runtime/cpp/src/channel/gathering_steps.hpp"
 #include "runtime/cpp/src/channel/metrics.hpp"
 #include "runtime/cpp/src/channel/outbox.hpp"
+#include "runtime/cpp/src/channel/synchronization.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 
 namespace rr::channel {
@@ -56,7 +58,7 @@ class SendQueue {
     first,   ///< it is the first that waits: somebody has to flush() soon
     broken,  ///< the connection is broken, closed, or far too much waits
   };
-  enum class Corked : std::uint8_t { no, first, joined };
+  using Corked = channel::Corked;
   struct Flushed {
     bool is_broken = false;
     bool has_rest = false;      ///< the socket is full
@@ -125,6 +127,9 @@ class SendQueue {
   void clear();
 
  private:
+  using Sync = Synchronization;
+  friend struct GatheringSteps<SendQueue>;
+
   [[nodiscard]] bool is_closed() const { return is_closed_.load(std::memory_order_relaxed); }
   bool send_under_lock(Writer& message, const How& how, bool& has_rest) RR_REQUIRES(mutex_);
   void queue(Writer& message, std::size_t sent, const How& how, std::optional<std::uint64_t> mark)
@@ -139,6 +144,7 @@ class SendQueue {
   [[nodiscard]] std::size_t most_answers() const RR_REQUIRES(mutex_);
   [[nodiscard]] std::size_t waiting_answers() const RR_REQUIRES(mutex_);
   bool gather_if_streaming(Writer& message, bool& is_first);
+  [[nodiscard]] bool has_room_for(const Writer& message) const RR_REQUIRES(gathering_);
   void gather(Writer& message) RR_REQUIRES(gathering_);
   void take_gathered() RR_REQUIRES(mutex_);
   void move_gathered() RR_REQUIRES(mutex_, gathering_);

@@ -1,59 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/channel/strand.hpp"
 
-#include <array>
 #include <cstring>
 #include <new>
 
-#include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/strand_turn.hpp"
 #include "runtime/cpp/src/channel/stream_sizes.hpp"
 
 namespace rr::channel {
 
-/// A thread that wants the strand back, on its stack.
-struct Strand::Returning {
-  Condition wake;
-  Returning* next = nullptr;
-};
-
-std::span<const Transition<Strand::State>> Strand::transitions() {
-  using enum State;
-  static constexpr std::array<Transition<State>, 8> rows = {{
-      {free, "enter", held},
-      {free, "orphan", orphaned},
-      {free, "step_in", held},
-      {held, "finish, leave, step_out", free},
-      {held, "orphan, step_out", orphaned},
-      {held, "suspend", suspended},
-      {orphaned, "adopt, step_in", held},
-      {suspended, "resume", orphaned},
-  }};
-  return rows;
-}
-
-void Strand::become(State state) { change(state_, state, transitions()); }
-
-bool Strand::enter() {
-  if (is_taken() || queue_) return false;
-  become(State::held);
-  return true;
-}
-
-void Strand::orphan() {
-  become(State::orphaned);
-  if (returning_ != nullptr) returning_->wake.notify_one();
-}
-
-bool Strand::adopt() {
-  if (!is_orphaned()) return false;
-  become(State::held);
-  return true;
-}
-
 bool Strand::finish() {
   queue_.reset();
-  become(State::free);
+  state_.set_free();
   return std::exchange(is_full_, false);
 }
 
@@ -126,31 +84,16 @@ void Strand::push_rest(StrandTurn& turn) {
 // Waiting inside a handler
 
 bool Strand::step_out(StrandTurn& turn) {
-  ++outside_;
+  state_.go_outside();
   turn.set_held(false);
   push_rest(turn);
   const bool must_post = is_full_ || has_queued();
-  if (must_post || returning_ != nullptr) {
-    orphan();
-  } else {
-    become(State::free);
-  }
+  state_.give_up(must_post);
   return must_post;
 }
 
 bool Strand::step_in(StrandTurn& turn, Mutex& mutex, Time deadline) {
-  Returning self;
-  Returning** link = &returning_;
-  while (*link != nullptr) link = &(*link)->next;
-  *link = &self;
-  // Posted work may come too late, as when the node is shut down: then this thread is faster.
-  const auto is_elsewhere = [this] { return state_ == State::held || state_ == State::suspended; };
-  while (is_elsewhere() && Clock::now() < deadline) wait_until(self.wake, mutex, deadline);
-  for (link = &returning_; *link != &self;) link = &(*link)->next;
-  *link = self.next;
-  if (is_elsewhere()) return false;
-  become(State::held);
-  --outside_;
+  if (!state_.step_in(mutex, deadline)) return false;
   turn.set_held(true);
   return true;
 }
@@ -161,19 +104,7 @@ bool Strand::suspend(StrandTurn& turn, Frame frame) {
   push_rest(turn);
   push_first(std::move(frame));
   turn.scratch().waiting.clear();
-  if (std::exchange(suspension_, Suspension::no) == Suspension::resumed) return false;
-  become(State::suspended);
-  return true;
-}
-
-bool Strand::resume() {
-  if (suspension_ == Suspension::begun) {
-    suspension_ = Suspension::resumed;
-    return false;
-  }
-  if (state_ != State::suspended) return false;
-  orphan();
-  return true;
+  return state_.suspend();
 }
 
 // A thread's turn

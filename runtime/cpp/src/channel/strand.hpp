@@ -11,6 +11,7 @@
 #include "rr/mutex.hpp"
 #include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
+#include "runtime/cpp/src/channel/strand_state.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/channel/transition.hpp"
 
@@ -29,16 +30,10 @@ class StrandTurn;
 /// All of it under the connection's lock.
 class Strand {
  public:
-  /// Who hands on messages.
-  enum class State : std::uint8_t {
-    free,       ///< nobody, and nothing is queued, unless answers have to leave first
-    held,       ///< a thread
-    orphaned,   ///< a thread that is on its way: posted work, or one that steps in again
-    suspended,  ///< nobody until resume()
-  };
+  using State = StrandPhase;
 
   /// All changes of the state. A test compares them with the table in docs/architecture.md.
-  static std::span<const Transition<State>> transitions();
+  static std::span<const Transition<State>> transitions() { return StrandState<>::transitions(); }
 
   /// `limit`: bytes that may be queued before the connection is not read on. `account`: of who is
   /// charged for what is queued, null for nobody; it outlives this, and changes before it is used.
@@ -47,19 +42,19 @@ class Strand {
   Strand(const Strand&) = delete;
   Strand& operator=(const Strand&) = delete;
 
-  [[nodiscard]] State state() const { return state_; }
-  [[nodiscard]] bool is_taken() const { return state_ != State::free; }
-  [[nodiscard]] bool is_orphaned() const { return state_ == State::orphaned; }
+  [[nodiscard]] State state() const { return state_.get(); }
+  [[nodiscard]] bool is_taken() const { return state_.is_taken(); }
+  [[nodiscard]] bool is_orphaned() const { return state() == State::orphaned; }
 
   /// The free strand with an empty queue goes to the calling thread. False when it is not that.
-  bool enter();
+  bool enter() { return !queue_ && state_.enter(); }
   /// Somebody has to go on with it who does not have it yet: a thread that waits in step_in() is
   /// woken; if there is none, the caller posts work that calls adopt().
-  void orphan();
+  void orphan() { state_.orphan(); }
   /// The calling thread goes on with the strand. False when another one was faster.
-  bool adopt();
+  bool adopt() { return state_.adopt(); }
   /// Nobody hands on messages, though some may be queued: they wait for what calls orphan().
-  void leave() { become(State::free); }
+  void leave() { state_.set_free(); }
   /// The queue is empty: the strand is free. True when the connection had to stop reading because
   /// of what was queued.
   bool finish();
@@ -81,52 +76,45 @@ class Strand {
   void check_limit() { is_full_ = is_full_ || queued_bytes_ > limit_; }
 
   // Waiting inside a handler.
-  [[nodiscard]] unsigned outside() const { return outside_; }
+  [[nodiscard]] unsigned outside() const { return state_.outside(); }
   /// The thread of the turn waits outside; what it has not handled is queued first. True when
   /// somebody has to be made to go on.
   bool step_out(StrandTurn& turn);
   /// Waits until the calling thread hands on messages again. False at the deadline: it is still
   /// outside. `mutex`: the connection's.
   bool step_in(StrandTurn& turn, Mutex& mutex, Time deadline) RR_REQUIRES(mutex);
-  [[nodiscard]] bool is_anybody_returning() const { return returning_ != nullptr; }
+  [[nodiscard]] bool is_anybody_returning() const { return state_.is_anybody_returning(); }
   /// A thread handles a message beside the strand.
-  void go_beside() { ++outside_; }
-  void come_from_beside() { --outside_; }
+  void go_beside() { state_.go_outside(); }
+  void come_from_beside() { state_.come_inside(); }
 
   // Suspending.
   /// From a handler: its message is to be handled again after resume().
-  void begin_suspending() { suspension_ = Suspension::begun; }
+  void begin_suspending() { state_.begin_suspending(); }
   /// After that handler: the message is queued first. False when it may be handled at once.
   bool suspend(StrandTurn& turn, Frame frame);
   /// True when the caller has to make somebody go on.
-  bool resume();
+  bool resume() { return state_.resume(); }
 
   // The end of the connection, which the receiver is notified of after its last message.
   void owe_end() { owes_end_ = true; }
-  [[nodiscard]] bool is_end_due() const { return owes_end_ && outside_ == 0; }
-  [[nodiscard]] bool take_end() { return outside_ == 0 && std::exchange(owes_end_, false); }
+  [[nodiscard]] bool is_end_due() const { return owes_end_ && outside() == 0; }
+  [[nodiscard]] bool take_end() { return outside() == 0 && std::exchange(owes_end_, false); }
 
   /// The frame with bytes that stay.
   [[nodiscard]] static Frame keep(Frame frame);
 
  private:
-  enum class Suspension : std::uint8_t { no, begun, resumed };
-  struct Returning;
-
-  void become(State state);
   std::deque<Frame>& queue();
   bool put(Frame frame, bool is_first);
   void charge(Frame& frame);
 
   const std::size_t limit_;
   const std::shared_ptr<Account>& account_;
-  State state_ = State::free;
-  Suspension suspension_ = Suspension::no;
+  StrandState<> state_;
   bool is_full_ = false;
   bool owes_end_ = false;
   bool has_lost_ = false;
-  unsigned outside_ = 0;  // threads in the receiver, now or soon, without the strand
-  Returning* returning_ = nullptr;
   std::unique_ptr<std::deque<Frame>> queue_;
   std::size_t queued_bytes_ = 0;
 };

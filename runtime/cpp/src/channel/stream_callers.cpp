@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// How callers share a connection: one of them reads it while they wait, and the others follow.
+// How callers share a connection: one of them reads it while they wait, and the others follow. How
+// they take turns is in caller_steps.hpp.
 #include <algorithm>
 #include <thread>
 #include <utility>
 
+#include "runtime/cpp/src/channel/caller_steps.hpp"
 #include "runtime/cpp/src/channel/stream_connection.hpp"
 
 namespace rr::channel {
 
 [[gnu::hot]] void StreamConnection::claim(Waiter& waiter) {
-  const MutexLock lock(mutex_);
-  if (is_closing_ || lease_.is_taken() || !may_callers_read()) return;
-  begin_lead(waiter);
+  CallerSteps<StreamConnection>::claim(*this, waiter);
 }
 
 // With the lease free.
@@ -21,73 +21,11 @@ void StreamConnection::begin_lead(Waiter& waiter) {
 }
 
 [[gnu::hot]] void StreamConnection::wait(Waiter& waiter, Time deadline, Time now) {
-  bool may_lead = waiter.is_reader();
-  if (!may_lead) {
-    may_lead = follow(waiter, deadline);
-    now = coarse_now();
-  }
-  while (may_lead && !lead(waiter, deadline, now)) {
-    may_lead = follow(waiter, deadline);
-    now = coarse_now();
-  }
+  CallerSteps<StreamConnection>::wait(*this, waiter, deadline, now);
 }
 
 [[gnu::hot]] void StreamConnection::resign(Waiter& waiter) {
-  bool is_end = false;
-  {
-    const MutexLock lock(mutex_);
-    if (!waiter.is_reader()) return;
-    lease_.end_lead(waiter);
-    is_end = is_closing_;
-    if (!is_end && lease_.give_back_by_leader()) end_call();
-  }
-  if (is_end) {
-    finish_close();
-  } else if (lease().must_search()) {
-    find_reader();
-  }
-}
-
-void StreamConnection::find_reader() {
-  const platform::SleepWord* next = nullptr;
-  {
-    const MutexLock lock(mutex_);
-    if (!lease_.begin_search() || is_closing_) return;
-    if (may_callers_read()) next = lease_.pass_on();
-    if (next == nullptr) end_call();
-  }
-  if (next != nullptr) platform::wake(next);
-}
-
-// Returns true when the waiter is to read itself, false when it is done or out of time.
-bool StreamConnection::follow(Waiter& waiter, Time deadline) {
-  Reactor::about_to_wait();
-  constexpr std::uint32_t woken = Waiter::reader | Waiter::done;
-  std::uint32_t state = 0;
-  if (begin_following(waiter)) {
-    while (((state = waiter.state.load(std::memory_order_acquire)) & woken) == 0) {
-      if (platform::sleep_on(waiter.state, state, deadline)) continue;
-      const MutexLock lock(mutex_);
-      if (lease_.unfollow(waiter)) return false;
-      deadline = never;  // it is being woken
-    }
-  } else {
-    state = waiter.state.load(std::memory_order_acquire);
-  }
-  if ((state & Waiter::answered) != 0 && lease().pass_answered()) find_reader();
-  return (state & Waiter::reader) != 0;
-}
-
-// False when the waiter is done, or the leader now: nobody has read between the claim and now.
-bool StreamConnection::begin_following(Waiter& waiter) {
-  const MutexLock lock(mutex_);
-  if (waiter.is_done()) return false;
-  if (!lease_.is_taken() && !is_closing_ && may_callers_read()) {
-    begin_lead(waiter);
-    return false;
-  }
-  lease_.follow(waiter);
-  return true;
+  CallerSteps<StreamConnection>::resign(*this, waiter);
 }
 
 // False when the connection must not be read for a while.
@@ -159,21 +97,11 @@ bool StreamConnection::may_block_until(Time deadline) {
 }
 
 void StreamConnection::finish(Waiter& waiter) {
-  {
-    const MutexLock lock(mutex_);
-    if (!lease_.finish(waiter)) return;
-  }
-  platform::wake(&waiter.state);
+  CallerSteps<StreamConnection>::finish(*this, waiter);
 }
 
-// With the read lease, which is a caller's or the reactor's.
 [[gnu::hot]] void StreamConnection::finish_answered(Waiter& waiter) {
-  if (waiter.is_reader()) {
-    ReadLease::finish_leader(waiter);
-    return;
-  }
-  const MutexLock lock(mutex_);
-  lease_.finish_after_receive(waiter);
+  CallerSteps<StreamConnection>::finish_answered(*this, waiter);
 }
 
 }  // namespace rr::channel

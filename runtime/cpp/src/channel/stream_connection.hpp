@@ -30,6 +30,9 @@
 
 namespace rr::channel {
 
+template <class Connection>
+struct CallerSteps;
+
 /// A connection over a stream socket, composed of parts, each with its own contract:
 ///
 /// - ReadLease: who may receive; user code never runs with it.
@@ -122,6 +125,9 @@ class StreamConnection final : public Connection,
   [[nodiscard]] ConnectionSample sample() const override;
 
  private:
+  using Sync = Synchronization;
+  friend struct CallerSteps<StreamConnection>;
+
   enum class Received { some, nothing, end };
 
   // Sending (stream_sending.cpp)
@@ -212,9 +218,7 @@ class StreamConnection final : public Connection,
   bool may_block_until(Time deadline);
   void leave_to_reactor(Scratch& scratch);
   void wait_until_handled(const Waiter& waiter, Time deadline);
-  bool follow(Waiter& waiter, Time deadline);
-  bool begin_following(Waiter& waiter);
-  void find_reader();
+  static void about_to_wait() { Reactor::about_to_wait(); }
 
   // When the reactor watches, and threads of it that are pinned here (stream_watching.cpp)
   void watch_input() RR_REQUIRES(mutex_);

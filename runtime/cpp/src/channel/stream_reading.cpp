@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "runtime/cpp/src/channel/caller_steps.hpp"
 #include "runtime/cpp/src/channel/strand_turn.hpp"
 #include "runtime/cpp/src/channel/stream_connection.hpp"
 #include "runtime/cpp/src/channel/stream_sizes.hpp"
@@ -319,11 +320,10 @@ bool StreamConnection::take_packet(Scratch& scratch, const Frame& frame) {
     has_strand = hand_on(scratch, may_dispatch && admission != Handling::later, must_post);
     if (is_closing_) {
       is_end = true;
-    } else if (may_callers_read() && (next = lease_.pass_on()) != nullptr) {
+    } else if ((next = CallerSteps<StreamConnection>::hand_on(*this)) != nullptr) {
       watch_.go_idle(sending_.has_unsent());
       lease_.count_use();
     } else {
-      lease_.give_back();
       is_again = !is_paused() && lease_.is_asked_again();
       if (!watch_.is_pinned()) watch_input();
     }

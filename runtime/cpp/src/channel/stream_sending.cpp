@@ -4,6 +4,7 @@
 
 #include "rr/error.hpp"
 #include "rr/reader.hpp"
+#include "runtime/cpp/src/channel/caller_steps.hpp"
 #include "runtime/cpp/src/channel/strand_turn.hpp"
 #include "runtime/cpp/src/channel/stream_connection.hpp"
 
@@ -66,14 +67,7 @@ void StreamConnection::send_newest(Writer& message, const Newest& newest, Time n
 [[gnu::hot]] void StreamConnection::send_call(Writer& message, Time now, Priority priority) {
   if (lease().arrive() && priority == Priority::usual && !has_strings()) {
     check_size(message);
-    const unsigned expected = lease().expected_callers().load(std::memory_order_relaxed);
-    const SendQueue::Corked corked = sending_.cork(message, expected);
-    if (corked == SendQueue::Corked::joined) return;
-    if (corked == SendQueue::Corked::first) {
-      sending_.uncork(lease().expected_callers());
-      flush();
-      return;
-    }
+    if (CallerSteps<StreamConnection>::send_together(*this, message)) return;
   }
   send(message, now, priority);
 }

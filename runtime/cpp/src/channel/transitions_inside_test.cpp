@@ -108,7 +108,8 @@ TEST_P(Sequences, NameFunctionsAndTheirLocks) {
     ASSERT_EQ(cell.size(), 4U);
     const std::string body = body_of(text_of_file(cell[2]), cell[1]);
     EXPECT_FALSE(body.empty());
-    const bool locks = body.find("MutexLock lock(mutex_)") != std::string::npos;
+    const bool locks = body.find("MutexLock lock(mutex_)") != std::string::npos ||
+                       body.find("Lock lock(connection.mutex_)") != std::string::npos;
     const bool is_under_lock = cell[1].find("under_lock") != std::string::npos;
     EXPECT_EQ(locks || is_under_lock, cell[3] == "mutex_");
   }

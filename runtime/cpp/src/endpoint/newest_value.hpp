@@ -9,6 +9,11 @@
 
 namespace rr::endpoint {
 
+inline bool is_later(const TimeSpec& time, const TimeSpec& other) {
+  return time.seconds != other.seconds ? time.seconds > other.seconds
+                                       : time.nanoseconds > other.nanoseconds;
+}
+
 /// What has come last, and until when it counts. Not synchronized.
 class NewestValue {
  public:

@@ -7,6 +7,7 @@
 #include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/channel/scratch.hpp"
+#include "runtime/cpp/src/endpoint/newest_steps.hpp"
 #include "runtime/cpp/src/endpoint/wire_values.hpp"
 
 namespace rr {
@@ -108,18 +109,7 @@ void WireEnd::State::take(const Message& message, const Entry& entry, const Memo
   }
   const std::shared_ptr<const void> value = std::move(made);
   std::shared_ptr<const void> before;
-  bool must_start = false;
-  {
-    const MutexLock lock(mutex_);
-    if (is_ending()) return;
-    if (sequence_ != 0 && !endpoint::is_later(time, in_.time())) return;
-    before = in_.put(value, time);
-    std::swap(charge_, memory.charge());
-    ++sequence_;
-    on_taken(value, time);  // before anybody knows of it
-    must_start = must_start_telling();
-    if (waiting_ != 0) arrived_.notify_all();
-  }
+  const bool must_start = Steps::take(*this, value, time, memory.charge(), before);
   if (must_start) start_telling();
 }
 
@@ -158,13 +148,7 @@ bool WireEnd::State::wait_received(std::chrono::milliseconds limit) {
   const channel::Time deadline = channel::after(channel::Clock::now(), limit);
   connection().expect();
   channel::Reactor::about_to_wait();
-  const MutexLock lock(mutex_);
-  ++waiting_;
-  while (!in_.is_fresh() && !is_ending() && channel::Clock::now() < deadline) {
-    channel::wait_until(arrived_, mutex_, deadline);
-  }
-  --waiting_;
-  return in_.is_fresh();
+  return Steps::wait(*this, deadline);
 }
 
 void WireEnd::State::set_lifespan(std::chrono::milliseconds lifespan) {

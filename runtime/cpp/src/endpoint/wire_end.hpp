@@ -17,12 +17,19 @@
 #include "rr/registry.hpp"
 #include "rr/wires.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
+#include "runtime/cpp/src/channel/synchronization.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
 #include "runtime/cpp/src/endpoint/newest_value.hpp"
 #include "runtime/cpp/src/endpoint/sender_clock.hpp"
 #include "runtime/cpp/src/endpoint/subscription.hpp"
 
 namespace rr {
+namespace endpoint {
+
+template <class End>
+struct NewestSteps;
+
+}  // namespace endpoint
 
 /// One end of a wire, of either side. Its owner, a session or a service's endpoint, hands it what
 /// arrives, and ends it.
@@ -101,6 +108,9 @@ struct WireEnd::State : std::enable_shared_from_this<WireEnd::State> {
   bool may_receive_ = true;
 
  private:
+  using Sync = channel::Synchronization;
+  using Steps = endpoint::NewestSteps<State>;
+  friend Steps;
   class Listener;
 
   // Telling the program (wire_end_calls.cpp)

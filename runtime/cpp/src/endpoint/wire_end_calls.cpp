@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "runtime/cpp/src/endpoint/newest_steps.hpp"
 #include "runtime/cpp/src/endpoint/user_code.hpp"
 #include "runtime/cpp/src/endpoint/wire_end.hpp"
 
@@ -74,13 +75,7 @@ bool WireEnd::State::begin_close() {
 
 void WireEnd::State::finish(channel::DeferredCallbacks& /*deferred*/) {
   bool must_start = false;
-  {
-    const MutexLock lock(mutex_);
-    if (phase_ == Phase::closed) return;
-    phase_ = Phase::closed;
-    must_start = !std::exchange(is_telling_, true);
-    arrived_.notify_all();
-  }
+  if (!Steps::finish(*this, must_start)) return;
   leave();
   if (must_start) start_telling();
 }
@@ -122,37 +117,10 @@ void WireEnd::State::tell_all() {
   }
 }
 
-// What is to be told next. False when there is nothing: then this thread is done.
 bool WireEnd::State::next_turn(std::shared_ptr<const void>& value, TimeSpec& time, bool& tells_side,
                                std::vector<Function<void()>>& closed,
                                std::vector<std::shared_ptr<Listener>>& gone) {
-  std::shared_ptr<const void> before;
-  {
-    const MutexLock lock(mutex_);
-    std::erase_if(listeners_, [&](const auto& listener) {
-      if (!listener->is_connected()) gone.push_back(listener);
-      return !listener->is_connected();
-    });
-    for (const auto& listener : listeners_) {
-      if (std::exchange(listener->seen, sequence_) != sequence_) turn_.push_back(listener);
-    }
-    tells_side = std::exchange(told_side_, sequence_) != sequence_ && has_listener();
-    before = std::exchange(value, in_.value());
-    time = in_.time();
-    if (!turn_.empty() || tells_side) return true;
-    if (phase_ != Phase::closed) {
-      is_telling_ = false;
-      return false;
-    }
-    closed.swap(on_closed_);
-    if (!closed.empty()) return true;
-    gone.insert(gone.end(), listeners_.begin(), listeners_.end());
-    listeners_.clear();
-    is_over_ = true;
-  }
-  for (const auto& listener : gone) listener->disconnect();
-  release();
-  return false;
+  return Steps::next_turn(*this, value, time, tells_side, closed, gone);
 }
 
 }  // namespace rr

@@ -39,9 +39,4 @@ struct WireParameters {
   const void* const values[wire_elements];
 };
 
-inline bool is_later(const TimeSpec& time, const TimeSpec& other) {
-  return time.seconds != other.seconds ? time.seconds > other.seconds
-                                       : time.nanoseconds > other.nanoseconds;
-}
-
 }  // namespace rr::endpoint

@@ -55,15 +55,13 @@ std::uint64_t LookupTable::load(std::span<const double> times, std::span<const d
   table.size = times.size();
   table.number = ++number_;
   table.at_sample = at_sample;
-  loaded_ =
-      middle_.exchange(static_cast<std::uint8_t>(loaded_ | is_new), std::memory_order_acq_rel) &
-      place_mask;
+  loaded_ = middle_.give(loaded_);
   return number_;
 }
 
 bool LookupTable::begin_sample(std::uint64_t sample) {
-  if ((middle_.load(std::memory_order_relaxed) & is_new) != 0) {
-    next_ = middle_.exchange(next_, std::memory_order_acq_rel) & place_mask;
+  if (middle_.has_new()) {
+    next_ = middle_.take(next_);
     has_next_ = true;
   }
   if (!has_next_ || sample < tables_[next_].at_sample) return false;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rr/mutex.hpp"
+#include "rr/realtime/exchange.hpp"
 #include "rr/visibility.hpp"
 
 namespace RR_VISIBLE rr {
@@ -61,15 +62,12 @@ class LookupTable {
  private:
   struct Table;
 
-  // Four places: the loop's table, the one it is to change to, one on its way, and the loader's.
-  static constexpr std::uint8_t place_mask = 3;
-  static constexpr std::uint8_t is_new = 4;
-
   std::size_t width_;
   std::size_t capacity_;
   Interpolation interpolation_;
+  // Four places: the loop's table, the one it is to change to, one on its way, and the loader's.
   std::vector<Table> tables_;
-  std::atomic<std::uint8_t> middle_{2};
+  PlaceExchange<> middle_{2};
   std::atomic<std::uint64_t> current_{0};
   std::uint8_t active_ = 0;  // the loop's
   std::uint8_t next_ = 1;    // the loop's
