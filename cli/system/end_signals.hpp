@@ -6,7 +6,7 @@
 namespace robdef {
 
 /// What asks the program to end (SIGINT and SIGTERM; on Windows Ctrl-C and the like) is taken by
-/// whoever waits for it here, while this lives. To be made before any thread is.
+/// the thread that waits for it here, while this lives. To be made before any thread is.
 class EndSignals {
  public:
   EndSignals();

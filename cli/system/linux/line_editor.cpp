@@ -16,7 +16,7 @@
 namespace robdef::live {
 namespace {
 
-// libedit, loaded when somebody needs it: a program that generates code should not wait for it.
+// libedit, loaded when it is needed: a program that generates code should not wait for it.
 class Library {
  public:
   Library() : handle_(::dlopen("libedit.so.2", RTLD_NOW | RTLD_LOCAL)) {
@@ -116,7 +116,7 @@ class Editor final : public LineReader {
     return CC_REDISPLAY;
   }
 
-  // libedit's functions are told of nothing else; there is one terminal.
+  // libedit's functions are given nothing else; there is one terminal.
   static inline Editor* self_ = nullptr;
   std::unique_ptr<Library> library_;
   Completer completer_;

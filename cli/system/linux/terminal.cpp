@@ -36,7 +36,7 @@ class SilentTerminal {
 
   [[nodiscard]] bool is_there() const { return is_there_; }
   void print(const std::string& text) const {
-    // Whoever does not see the question can still answer it.
+    // A user who does not see the question can still answer it.
     if (::write(descriptor_, text.data(), text.size()) < 0) return;
   }
   [[nodiscard]] std::string read_line() const {

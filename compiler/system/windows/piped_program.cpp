@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pipes without a name cannot be waited for together: these have names that nobody else knows in
-// time, since each is made for one client, which is opened at once.
+// Pipes without a name cannot be waited for together: these have names that no other program knows
+// in time, since each is made for one client, which is opened at once.
 #include "compiler/system/piped_program.hpp"
 
 #include <windows.h>

@@ -47,7 +47,7 @@ class ModelConnection {
     expect(results_[caller] == 1, "an answer is read once, before its caller goes on");
     return true;
   }
-  /// The reactor reads what is there, if nobody does.
+  /// The reactor reads what is there, if no caller does.
   void read_as_reactor() {
     while (take_lease()) {
       receive();

@@ -33,7 +33,7 @@ struct SnapshotModel : rl::test_suite<SnapshotModel<Sync, readers, writes, reads
   }
   void after() {
     typename Snapshot::Words words{};
-    expect(snapshot.try_read(words, 1), "a snapshot is there when nobody writes");
+    expect(snapshot.try_read(words, 1), "a snapshot is there when no thread writes");
     expect(words[0] == writes && words[1] == writes, "the last value stays");
   }
 

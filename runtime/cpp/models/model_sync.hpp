@@ -18,7 +18,7 @@ enum class Fault {
   no_locks,        ///< locks do not lock
   no_notice,       ///< conditions are not notified
   blind_sleep,     ///< a thread goes to sleep on a word without looking at it
-  no_wake,         ///< nobody is woken who sleeps on a word
+  no_wake,         ///< no thread that sleeps on a word is woken
   wrong_order,     ///< two steps are taken in the other order; the model says which
 };
 
@@ -206,7 +206,7 @@ class ModelCondition {
   rl::condition_variable_any raw_;
 };
 
-/// A word that a thread sleeps on. It is known for as long as it exists: who wakes has an address
+/// A word that a thread sleeps on. It is known for as long as it exists: a wake has an address
 /// only.
 template <Fault fault>
 class ModelSleepWord : public ModelAtomic<std::uint32_t, fault> {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The newest value of a wire's end: who waits for it, and functions that one thread calls
+// The newest value of a wire's end: threads that wait for it, and functions that one thread calls
 // (endpoint/newest_steps.hpp).
 #include <array>
 #include <memory>

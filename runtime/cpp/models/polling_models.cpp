@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who polls in a reactor, and how a thread that watches takes that over (channel/polling_turn.hpp).
+// The thread that polls in a reactor, and how a thread that watches takes that over
+// (channel/polling_turn.hpp).
 #include <array>
 
 #include "runtime/cpp/models/model_sync.hpp"
@@ -10,7 +11,7 @@ namespace rr::models {
 namespace {
 
 /// Three threads as those of a reactor. The handler of the first event waits until the second event
-/// is handled, so another thread has to take over; now and then it hands over by itself before.
+/// is handled, so another thread has to take over; sometimes it hands over by itself before.
 template <class Sync>
 struct PollingModel : rl::test_suite<PollingModel<Sync>, 3> {
   using Turn = channel::PollingTurn<Sync>;

@@ -51,7 +51,7 @@ class ModelStrand {
       }
       {
         const Lock lock(mutex_);
-        if (!state_.adopt()) continue;  // somebody was faster
+        if (!state_.adopt()) continue;  // another thread was faster
       }
       drain(deadline);
     }
@@ -67,7 +67,7 @@ class ModelStrand {
   }
   void expect_nothing_left() {
     expect(!state_.is_taken(), "the strand is free");
-    expect(state_.outside() == 0, "nobody is outside");
+    expect(state_.outside() == 0, "no thread is outside");
     expect(handled_ == message_count, "each message is handled once");
   }
 

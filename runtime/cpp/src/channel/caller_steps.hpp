@@ -21,7 +21,7 @@ struct CallerSteps {
   using Waiter = BasicWaiter<Sync>;
   using SleepWord = typename Sync::SleepWord;
 
-  /// Makes the caller the leader if nobody reads.
+  /// Makes the caller the leader if no thread reads.
   static void claim(Connection& connection, Waiter& waiter);
   /// Returns when the waiter is done, or at the deadline. `now` need not be exact.
   static void wait(Connection& connection, Waiter& waiter, Time deadline, Time now);
@@ -120,7 +120,7 @@ bool CallerSteps<Connection>::follow(Connection& connection, Waiter& waiter, Tim
   return (state & Waiter::reader) != 0;
 }
 
-// False when the waiter is done, or the leader now: nobody has read between the claim and now.
+// False when the waiter is done, or the leader now: no thread has read between the claim and now.
 template <class Connection>
 bool CallerSteps<Connection>::begin_following(Connection& connection, Waiter& waiter) {
   const Lock lock(connection.mutex_);

@@ -26,7 +26,7 @@ class PollingTurn {
   using Mutex = typename Sync::Mutex;
   using Condition = typename Sync::Condition;
 
-  /// For the thread that takes the turn, under the reactor's lock, while nobody has it.
+  /// For the thread that takes the turn, under the reactor's lock, while no thread has it.
   [[nodiscard]] Count begin() const { return turn_.load(std::memory_order_relaxed); }
   /// Whether a thread that was given `own` has the turn still.
   [[nodiscard]] bool is_of(Count own) const { return turn_.load(std::memory_order_relaxed) == own; }

@@ -13,15 +13,15 @@
 
 namespace rr::channel {
 
-/// Who hands on messages.
+/// The thread that hands on messages.
 enum class StrandPhase : std::uint8_t {
-  free,       ///< nobody, and nothing is queued, unless answers have to leave first
+  free,       ///< none, and nothing is queued, unless answers have to leave first
   held,       ///< a thread
   orphaned,   ///< a thread that is on its way: posted work, or one that steps in again
-  suspended,  ///< nobody until resume()
+  suspended,  ///< none until resume()
 };
 
-/// Who hands on the messages of a strand; without the messages. See Strand. All of it under the
+/// Which thread hands on the messages of a strand; without them. See Strand. All of it under the
 /// connection's lock.
 template <class Sync = Synchronization>
 class StrandState {
@@ -49,7 +49,7 @@ class StrandState {
 
   /// The calling thread has it now. False when it was not free.
   bool enter();
-  /// Somebody has to go on; the thread that has waited longest in step_in() is woken.
+  /// Another thread has to go on; the thread that has waited longest in step_in() is woken.
   void orphan();
   /// The calling thread goes on. False when another one was faster.
   bool adopt();
@@ -70,7 +70,7 @@ class StrandState {
   void begin_suspending() { suspension_ = Suspension::begun; }
   /// False when it has been resumed already.
   bool suspend();
-  /// True when the caller has to make somebody go on.
+  /// True when the caller has to make another thread go on.
   bool resume();
 
  private:

@@ -27,7 +27,7 @@ class Snapshot {
   void write(const Words& words) {
     const std::uint64_t count = count_.load(std::memory_order_relaxed);
     count_.store(count + 1, std::memory_order_relaxed);
-    // Who reads one of these words sees the odd count too, when it looks at it again.
+    // A reader of one of these words sees the odd count too, when it looks at it again.
     for (std::size_t i = 0; i < word_count; ++i) {
       words_[i].store(words[i], std::memory_order_release);
     }
@@ -53,7 +53,7 @@ class Snapshot {
   std::array<Atomic<std::uint64_t>, word_count> words_{};
 };
 
-/// The place between those of a writer and of a reader, who exchange their own for it: neither ever
+/// The place between those of a writer and of a reader, which exchange their own for it: neither ever
 /// waits, and what is in a place belongs to the one who has it.
 template <template <class> class Atomic = std::atomic>
 class PlaceExchange {
@@ -61,7 +61,7 @@ class PlaceExchange {
   /// Number of a place, from 0 to 3.
   using Place = std::uint8_t;
 
-  /// The place that nobody has at first.
+  /// The place that neither has at first.
   explicit PlaceExchange(Place place) : middle_(place) {}
 
   /// By the writer: what is in its place is the newest. Returns the place that is its own from now
