@@ -53,8 +53,8 @@ class Snapshot {
   std::array<Atomic<std::uint64_t>, word_count> words_{};
 };
 
-/// The place between those of a writer and of a reader, which exchange their own for it: neither ever
-/// waits, and what is in a place belongs to the one who has it.
+/// The place between those of a writer and of a reader, which exchange their own for it: neither
+/// ever waits, and what is in a place belongs to the one who has it.
 template <template <class> class Atomic = std::atomic>
 class PlaceExchange {
  public:
