@@ -144,8 +144,9 @@ def ended_program(words, case, folder, root):
     for _ in range(3):
         ended = subprocess.run(words, cwd=folder, input=given, capture_output=True, timeout=300, check=False,
                                env={**os.environ, **case.environment})
-        # robdef says why it fails; wine may fail to start a program, and says nothing.
-        if ended.returncode == 0 or ended.stdout or ended.stderr:
+        # robdef says why it fails; wine may fail to start a program, and says nothing, or that its server is gone.
+        is_lost = ended.stderr.startswith(b"wine client error") or not (ended.stdout or ended.stderr)
+        if ended.returncode == 0 or not is_lost:
             break
     return ended
 
