@@ -132,6 +132,18 @@ def cases(tree, plugin):
     yield Case("no_plugin", ["generate", "--no-config", "-o", "out", "--plugin", "no_such_program", *names(room)], room)
 
 
+def settled(messages):
+    """Answers of the language server, and then its last diagnostics of each file: how many come before depends on the time."""
+    answers, last = [], {}
+    for line in messages.splitlines():
+        message = json.loads(line)
+        if message.get("method") == "textDocument/publishDiagnostics":
+            last[message["params"]["uri"]] = line
+        else:
+            answers.append(line)
+    return b"\n".join(answers + [last[uri] for uri in sorted(last)])
+
+
 def tree_of(folder):
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
 
@@ -164,7 +176,7 @@ def run(case, program, plugin, folder):
     for _ in range(2 if case.twice else 1):
         ended = ended_program([*program, *words], case, folder, root)
         if case.words == ["lsp"]:
-            ended.stdout = without_lengths(ended.stdout).replace(root, b"ROOT")
+            ended.stdout = settled(without_lengths(ended.stdout).replace(root, b"ROOT"))
         results.append((ended.returncode, ended.stdout, ended.stderr.replace(plugin.encode(), b"PLUGIN") if plugin else
                         ended.stderr))
     return results, tree_of(folder)
