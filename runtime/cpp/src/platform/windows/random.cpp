@@ -10,6 +10,7 @@
 namespace rr::platform {
 
 void fill_random(std::span<std::byte> bytes) {
+  if (bytes.empty()) return;  // which has no address
   const NTSTATUS status =
       BCryptGenRandom(nullptr, reinterpret_cast<PUCHAR>(bytes.data()),
                       static_cast<ULONG>(bytes.size()), BCRYPT_USE_SYSTEM_PREFERRED_RNG);
