@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/live/connection.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <rr/error.hpp>
 #include <rr/url.hpp>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -25,8 +27,11 @@ std::string password_of(const LiveOptions& options) {
 
 /// The same node's index of services.
 std::string index_of(const std::string& url, const std::string& service) {
+  constexpr std::string_view query = "service=";
   std::string index = url;
-  index.replace(index.rfind(service), service.size(), "RobotRaconteurServiceIndex");
+  const std::size_t asked = index.find(std::string(query) + service);
+  const std::size_t at = asked != index.npos ? asked + query.size() : index.rfind(service);
+  index.replace(at, service.size(), "RobotRaconteurServiceIndex");
   return index;
 }
 
@@ -42,9 +47,13 @@ std::string offered_services(rr::Node& node, const std::string& url) {
     const std::vector<std::string_view> candidates(names.begin(), names.end());
     const std::string_view near = nearest(wanted, candidates);
     if (!near.empty()) return ": no `" + wanted + "`; did you mean `" + std::string(near) + "`?";
+    if (names.empty()) return ": the node offers no service";
+    constexpr std::size_t most = 10;
     std::string text = ": no `" + wanted + "`; the node offers";
-    for (const std::string& name : names) text += " `" + name + "`";
-    return names.empty() ? ": the node offers no service" : text;
+    for (const std::string& name : std::span(names).first(std::min(names.size(), most))) {
+      text += " `" + name + "`";
+    }
+    return names.size() > most ? text + ", and others" : text;
   } catch (const std::exception&) {
     return "";
   }

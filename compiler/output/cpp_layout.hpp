@@ -34,7 +34,7 @@ struct List {
 /// `virtual double get_speed() = 0;`
 std::string declaration(const Signature& signature, std::size_t indent);
 
-/// A function to what is behind its parameters.
+/// The first line or lines of a function, to the end of its parameters.
 std::string head(const Signature& signature, std::size_t indent);
 /// The first line or lines of a function, to its `{`.
 std::string opening(const Signature& signature, std::size_t indent);

@@ -26,9 +26,9 @@ def run(robot):
     """Has the table followed; gives what the wire `state` sent on the way, from the first row on."""
     robot.set("table", table())
     robot.call("change_mode", 1)
-    first = robot.get("state")["sample"] + 150
+    first = robot.get("state")["sample"] + 1000  # time for the next call
     robot.call("follow_table", ROWS, first)
-    states = robot.watch("state", SECONDS + 0.5)
+    states = robot.watch("state", SECONDS + 1.5)
     return [((state["sample"] - first) / 1000, state) for state in states if 0 <= state["sample"] - first <= 1000 * SECONDS]
 
 

@@ -179,52 +179,48 @@ void OfferedWire::tell_received(const void* value, const TimeSpec& time,
   if (const auto function = get(&OfferedWire::received_)) (*function)(value, time, client);
 }
 
-}  // namespace rr::service
-
-namespace rr {
-
-namespace {
-
-service::OfferedWire& offered(const Skeleton& skeleton, const Member& member) {
+OfferedWire& offered(const Skeleton& skeleton, const Member& member) {
   return *Skeleton::Places::of(skeleton).wire(member);
 }
 
-}  // namespace
+}  // namespace rr::service
+
+namespace rr {
 
 WireServerBase::WireServerBase(const Skeleton& skeleton, const Member& member,
                                const Holding& holding)
     : skeleton_(&skeleton), member_(&member), holding_(&holding) {}
 
 std::size_t WireServerBase::connection_count() const {
-  return offered(*skeleton_, *member_).ends()->size();
+  return service::offered(*skeleton_, *member_).ends()->size();
 }
 void WireServerBase::set_lifespan(std::chrono::milliseconds lifespan) {
-  offered(*skeleton_, *member_).set_lifespan(lifespan);
+  service::offered(*skeleton_, *member_).set_lifespan(lifespan);
 }
 void WireServerBase::send_all(const void* value) const {
-  offered(*skeleton_, *member_).send_all(value);
+  service::offered(*skeleton_, *member_).send_all(value);
 }
 std::shared_ptr<const void> WireServerBase::received(TimeSpec& time) const {
-  return offered(*skeleton_, *member_).received(time);
+  return service::offered(*skeleton_, *member_).received(time);
 }
 std::vector<WireEnd> WireServerBase::ends() const {
-  const auto all = offered(*skeleton_, *member_).ends();
+  const auto all = service::offered(*skeleton_, *member_).ends();
   std::vector<WireEnd> result;
   for (const auto& end : *all) result.emplace_back(end);
   return result;
 }
 void WireServerBase::set_connected(Function<void(WireEnd)> function) const {
-  offered(*skeleton_, *member_).set_connected(std::move(function));
+  service::offered(*skeleton_, *member_).set_connected(std::move(function));
 }
 void WireServerBase::set_peek_in(Function<std::shared_ptr<void>()> function) const {
-  offered(*skeleton_, *member_).set_peek_in(std::move(function));
+  service::offered(*skeleton_, *member_).set_peek_in(std::move(function));
 }
 void WireServerBase::set_peek_out(Function<std::shared_ptr<void>()> function) const {
-  offered(*skeleton_, *member_).set_peek_out(std::move(function));
+  service::offered(*skeleton_, *member_).set_peek_out(std::move(function));
 }
 void WireServerBase::set_received(
     Function<void(const void*, const TimeSpec&, std::uint32_t)> function) const {
-  offered(*skeleton_, *member_).set_received(std::move(function));
+  service::offered(*skeleton_, *member_).set_received(std::move(function));
 }
 
 }  // namespace rr

@@ -77,4 +77,7 @@ class OfferedWire {
   Shared<Received> received_ RR_GUARDED_BY(mutex_);
 };
 
+/// The wire that an object of this skeleton offers.
+OfferedWire& offered(const Skeleton& skeleton, const Member& member);
+
 }  // namespace rr::service

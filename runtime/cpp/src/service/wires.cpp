@@ -15,10 +15,6 @@
 namespace rr::service {
 namespace {
 
-OfferedWire& offered_at(const ServedObject& object, const Member& member) {
-  return *Skeleton::Places::of(*object.skeleton).wire(member);
-}
-
 void run(channel::DeferredCallbacks deferred) {
   for (const std::function<void()>& later : deferred) later();
 }
@@ -114,13 +110,13 @@ std::shared_ptr<ServedWireEnd> Wires::connect(const Question& question,
     }
     // Whoever has changed meanwhile what the session may do has not found it in the table.
     if (!endpoint_.is_still_allowed(question)) throw ServerEndpoint::no_longer_allowed();
-    offered_at(*object, member).join(end);
+    offered(*object->skeleton, member).join(end);
   } catch (...) {
     give_up();
     throw;
   }
   // It may have ended before it could join, and would stay with the object.
-  if (!end->is_open()) offered_at(*object, member).leave(*end);
+  if (!end->is_open()) offered(*object->skeleton, member).leave(*end);
   return end;
 }
 
@@ -144,7 +140,7 @@ void Wires::answer_peek(const Question& question, const ServedObject& object,
   if (!is_out && (member.access & writeonly) != 0) {
     throw Error(ErrorCode::write_only_member, "Write only member");
   }
-  const OfferedWire& wire = offered_at(object, member);
+  const OfferedWire& wire = offered(*object.skeleton, member);
   const std::shared_ptr<const void> value = is_out ? wire.peek_out() : wire.peek_in();
   Writer& writer = endpoint_.begin_answer(question);
   endpoint::write_wire_value(writer, *member.type, value.get());
@@ -165,7 +161,7 @@ void Wires::answer_poke(const Question& question, const ServedObject& object,
   const std::shared_ptr<void> value = member.holding->make();
   endpoint::read_wire(question.message, question.entry, question.owner, *endpoint_.types(),
                       *member.type, time, value.get());
-  OfferedWire& wire = offered_at(object, member);
+  OfferedWire& wire = offered(*object.skeleton, member);
   wire.keep(value, time);
   wire.tell_received(value.get(), time, endpoint_.client().endpoint);
   endpoint_.answer_empty(question);

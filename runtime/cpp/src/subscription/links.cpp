@@ -321,4 +321,9 @@ const Member& Links::need_member(const Session& session, const Stub& object, Mem
                                                member_ + "`");
 }
 
+bool is_of_connection(const Error& error) {
+  return error.code() == ErrorCode::connection_error ||
+         error.code() == ErrorCode::invalid_operation;
+}
+
 }  // namespace rr::subscription

@@ -131,4 +131,7 @@ class Links : public std::enable_shared_from_this<Links> {
   Listeners<const SubscriptionClientId&, const Error&> on_failed_ RR_GUARDED_BY(mutex_);
 };
 
+/// What a client that goes while something is sent to all of them may say.
+bool is_of_connection(const Error& error);
+
 }  // namespace rr::subscription

@@ -20,10 +20,8 @@ class RawPipe : public PipeMember {
 };
 
 // What one client may say while something is sent to all of them.
-bool is_of_link(const Error& error) {
-  return error.code() == ErrorCode::connection_error ||
-         error.code() == ErrorCode::invalid_operation ||
-         error.code() == ErrorCode::buffer_limit_violation;
+bool is_of_pipe(const Error& error) {
+  return is_of_connection(error) || error.code() == ErrorCode::buffer_limit_violation;
 }
 
 }  // namespace
@@ -192,7 +190,7 @@ std::size_t PipeLinks::send_all(const void* value) {
       end.send(value);
       ++count;
     } catch (const Error& error) {
-      if (!is_of_link(error)) throw;
+      if (!is_of_pipe(error)) throw;
     }
   }
   return count;

@@ -19,12 +19,6 @@ class RawWire : public WireMember {
   using WireMember::start_connect;
 };
 
-// What a client that goes while something is sent to all of them may say.
-bool is_of_connection(const Error& error) {
-  return error.code() == ErrorCode::connection_error ||
-         error.code() == ErrorCode::invalid_operation;
-}
-
 }  // namespace
 
 void WireLinks::End::on_refused(std::function<void(const Error&)> function) {
