@@ -70,6 +70,7 @@ void StreamConnection::acknowledge_late() {
   if (!reactor_->begin_stay()) return;
   std::uint32_t uses = 0;
   unsigned receives = 0;
+  bool is_again = false;
   for (bool goes_on = begin_pinned(uses); goes_on;) {
     limit_receive_time();
     const unsigned since = receives++ % receives_of_late_acknowledgements;
@@ -80,11 +81,13 @@ void StreamConnection::acknowledge_late() {
     if (since == 1 || since == 2) {
       pace_.look_for_waiting_sender(before, last_received_.load(std::memory_order_relaxed));
     }
-    leave_read_lease(scratch, true);
+    is_again = leave_read_lease(scratch, true);
     give_way_to_others(std::exchange(scratch.received, 0));
     goes_on = go_on_pinned(received, uses);
   }
   reactor_->end_stay();
+  // Where a handler has been slow the socket is watched already, and does not report this again.
+  if (is_again) read_soon(false);
 }
 
 bool StreamConnection::begin_pinned(std::uint32_t& uses) {

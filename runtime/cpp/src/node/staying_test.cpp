@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <atomic>
@@ -65,6 +66,15 @@ class Staying : public ::testing::Test {
       const unsigned before = receiver->handled;
       peer->ask_for_node_info();
       EXPECT_TRUE(eventually([&] { return receiver->handled > before; }));
+    }
+    // Whether what has come is taken out of the socket within a while.
+    [[nodiscard]] bool is_read() const {
+      const auto deadline = channel::Clock::now() + 200ms;
+      int size = 0;
+      do {
+        ::ioctl(socket, FIONREAD, &size);
+      } while (size != 0 && channel::Clock::now() < deadline);
+      return size == 0;
     }
     // Whether TCP acknowledges together with what this side says next, where that is soon.
     [[nodiscard]] bool acknowledges_late() const {
@@ -161,6 +171,36 @@ TEST_F(Staying, DoesNotKeepASlowHandlersConnectionFromBeingRead) {
   EXPECT_EQ(link.peer->next_type(), EntryType::get_node_info_ret);
   EXPECT_EQ(link.peer->next_type(), EntryType::get_node_info_ret);
   link.call();
+}
+
+// What the other threads have left in the socket, as the queue was full, is not reported once more.
+TEST_F(Staying, ReadsOnAfterASlowHandlerBeforeAFullQueue) {
+  NodeOptions options = *options_;
+  options.request_queue_limit = 4096;
+  options_ = std::make_shared<NodeOptions>(options);
+  Link& link = connect();
+  Gate gate;
+  std::atomic<bool> is_slow{false};
+  link.receiver->work = [&] {
+    if (is_slow) gate.pass();
+  };
+  keep_busy(link);
+  link.receiver->is_silent = true;
+  is_slow = true;
+  const unsigned before = link.receiver->handled;
+  link.peer->ask_for_node_info();
+  ASSERT_TRUE(gate.has_entered());
+  is_slow = false;
+  unsigned sent = 1;
+  // The last of them stay in the socket, so none of the threads reads.
+  while (link.is_read()) {
+    link.peer->ask_for_node_info();
+    ++sent;
+  }
+  EXPECT_GT(sent, 4096U / 256);
+  gate.open();
+  EXPECT_TRUE(eventually([&] { return link.receiver->handled == before + sent; }))
+      << link.receiver->handled - before << " of " << sent;
 }
 
 // Otherwise each is acknowledged by a segment of its own, before it is handled. On a crowded
