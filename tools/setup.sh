@@ -131,8 +131,10 @@ stop_jobs() {
 }
 
 # part NAME COMMAND...: one line of the table that print_parts shows; ends the script when COMMAND
-# fails.
+# fails, or goes on where parts_go_on says so: end_parts ends it then.
 part_rows=()
+parts_go_on=
+failed_parts=0
 script_start=$SECONDS
 part() {
   local name=$1 start=$SECONDS status=0
@@ -143,8 +145,11 @@ part() {
   printf -v row '%-34s %5d s  %s' "$name" $((SECONDS - start)) \
     "$([ $status = 0 ] && echo ok || echo FAILED)"
   part_rows+=("$row")
-  [ $status = 0 ] || exit $status
+  [ $status = 0 ] && return
+  failed_parts=$((failed_parts + 1))
+  [ "$parts_go_on" ] || exit $status
 }
+end_parts() { [ $failed_parts = 0 ] || exit 1; }
 
 print_parts() {
   [ ${#part_rows[@]} != 0 ] || return 0
