@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the code blocks of a page, in order, in an empty folder, as a reader would.
+"""Runs the code blocks of a page, in order, in an empty folder, as a reader would. A file is written where the commands
+before it have led.
 
 A block is one of these:
 
@@ -15,6 +16,7 @@ Other comments before a block:
 
   <!-- needs: dotnet -->      the block, and the rest of its section, is left out where a program is missing
   <!-- instead: COMMAND -->   runs COMMAND in place of the block
+  <!-- built: COMMAND -->     the same with --build, where the work of the block is done
   <!-- fails -->              the last command of the block fails
 
 A comment that stands for itself, and that readers do not see:
@@ -37,7 +39,7 @@ import threading
 import time
 
 CAPTION = re.compile(r"^`([^`]+)`:$")
-COMMENT = re.compile(r"^<!-- *(not run|needs|instead|fails|check)(?:: *(.*?))? *-->$")
+COMMENT = re.compile(r"^<!-- *(not run|needs|instead|built|fails|check)(?:: *(.*?))? *-->$")
 
 
 class Failure(Exception):
@@ -140,8 +142,9 @@ def first_difference(expected, lines):
 class Shell:
     """One bash for all commands of a page, so that `cd` and variables last."""
 
-    def __init__(self, folder, environment, program):
+    def __init__(self, folder, environment, program, is_system):
         self.folder = folder
+        self.is_system = is_system  # the folder is the root of another system, in which the shell runs
         self.count = 0
         self.process = subprocess.Popen(
             program, cwd=folder, env=environment, stdin=subprocess.PIPE,
@@ -183,11 +186,12 @@ class Shell:
     def start(self, command, expected, seconds):
         """Runs a command on; returns what its output lacks, or None."""
         self.count += 1
-        log = os.path.join(self.folder, f".output{self.count}")
+        name = f".output{self.count}"
+        log = os.path.join(self.folder, name)
         with open(log, "w", encoding="utf-8"):
             pass  # before the command makes it
         # `exec`, so that `kill %1` reaches the program itself.
-        self.run(f"exec {command[:-1].rstrip()} >{log} 2>&1 &", 10)
+        self.run(f"exec {command[:-1].rstrip()} >{'/' + name if self.is_system else log} 2>&1 &", 10)
         end = time.monotonic() + seconds
         while True:
             with open(log, encoding="utf-8", errors="replace") as file:
@@ -196,6 +200,12 @@ class Shell:
             if difference is None or time.monotonic() > end:
                 return difference
             time.sleep(0.05)
+
+    def path(self, name):
+        """Where a file is that the page names: beside what its commands see."""
+        _, output = self.run("pwd", 10)
+        path = os.path.join(output[-1], name)
+        return os.path.join(self.folder, path.lstrip("/")) if self.is_system else path
 
     def close(self):
         for what in (signal.SIGTERM, signal.SIGKILL):
@@ -207,15 +217,16 @@ class Shell:
         self.process.wait()
 
 
-def run_block(block, shell, folder, arguments):
+def run_block(block, shell, arguments):
     if block.file:
-        path = os.path.join(folder, block.file.lstrip("/") if arguments.shell else block.file)
+        path = shell.path(block.file)
         os.makedirs(os.path.dirname(path), exist_ok=True)
         with open(path, "w", encoding="utf-8") as file:
             file.write("\n".join(block.lines) + "\n")
         return
-    if "instead" in block.notes:
-        commands = [[block.line, block.notes["instead"], []]]
+    instead = block.notes.get("instead") or (block.notes.get("built") if arguments.build else None)
+    if instead:
+        commands = [[block.line, instead, []]]
     elif block.language == "console":
         commands = read_commands(block)
     else:
@@ -251,7 +262,8 @@ def is_wanted(section, arguments):
 
 def run_page(text, folder, environment, arguments):
     """Runs all blocks; returns how many, and what was left out."""
-    shell = Shell(folder, environment, shlex.split(arguments.shell or "bash --noprofile --norc"))
+    shell = Shell(folder, environment, shlex.split(arguments.shell or "bash --noprofile --norc"),
+                  bool(arguments.shell))
     count, left_out, closed = 0, [], None
     try:
         for block in read_blocks(text):
@@ -263,7 +275,7 @@ def run_page(text, folder, environment, arguments):
                 closed = block.heading
                 left_out.append(f"line {block.line}: there is no {', '.join(missing)}")
             elif "not run" not in block.notes:
-                run_block(block, shell, folder, arguments)
+                run_block(block, shell, arguments)
                 count += 1
     finally:
         shell.close()
@@ -279,7 +291,7 @@ def free_port():
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("pages", nargs="+", metavar="PAGE")
-    parser.add_argument("--build", help="the build folder, in place of an installation")
+    parser.add_argument("--build", help="the build folder, in place of what a page builds or installs")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="a variable of the environment")
     parser.add_argument("--port", action="append", default=[], help="a port of the page, replaced by a free one")
     parser.add_argument("--seconds", type=float, default=300, help="how long one command may take")

@@ -9,22 +9,16 @@ here=$(cd "$(dirname "$0")" && pwd)
 fail() { echo "debian_root: $*" >&2; exit 1; }
 [ "$(id -u)" = 0 ] || fail 'only root can make a root'
 root=$work/root
-inside() {
-  env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
-    unshare --mount --pid --fork --kill-child --root="$root" --mount-proc="$root/proc" "$@"
-}
+# shellcheck source=tools/bare_root.sh
+source "$here/../../tools/bare_root.sh"
+inside() { $(in_bare_root "$root") "$@"; }
 clean_up() { [ "$keep" = --keep ] || rm -rf "$work"; }
 trap clean_up EXIT
 rm -rf "$work"
 mkdir -p "$work"
 
-# As apt is configured here: sources, proxies, keys.
 start=$SECONDS
-mmdebstrap --quiet --mode=root --variant=minbase --skip=check/empty \
-  --setup-hook='mkdir -p "$1/etc/apt"; cp -rL /etc/apt/sources.list* /etc/apt/apt.conf.d "$1/etc/apt/" 2>/dev/null || true' \
-  bookworm "$root" "$(test -s /etc/apt/sources.list && echo /etc/apt/sources.list || ls /etc/apt/sources.list.d/*.sources | head -n 1)" \
-  >"$work/mmdebstrap.log" 2>&1 || { tail -n 30 "$work/mmdebstrap.log" >&2; fail 'mmdebstrap has failed'; }
-cp /etc/resolv.conf /etc/hosts "$root/etc/" 2>/dev/null || true
+make_bare_root "$root" "$work/mmdebstrap.log" || fail 'mmdebstrap has failed'
 mkdir -p "$root/packages"
 cp "$packages"/*.deb "$root/packages"
 echo "debian_root: a bare root after $((SECONDS - start)) s, $(inside dpkg-query -W | wc -l) packages"

@@ -224,12 +224,13 @@ void settle(char** words) {
 }  // namespace
 
 std::span<const Scenario> scenarios() {
-  static constexpr std::array<Scenario, 5> all{{
+  static constexpr std::array<Scenario, 6> all{{
       {"sessions", "clients that use all members of a service", run_sessions},
       {"links", "links that break and hosts that start anew", run_links},
       {"scarce", "links that break, and memory and threads that are refused", run_scarce},
       {"finding", "nodes that find each other by datagrams", run_finding},
       {"inside", "clients in the process of their service", run_inside},
+      {"streaming", "packets that come faster than they are handled", run_streaming},
   }};
   return all;
 }

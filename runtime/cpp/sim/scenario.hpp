@@ -32,6 +32,8 @@ void run_scarce(Scheduler& run);
 void run_finding(Scheduler& run);
 /// Clients in the process of their service, by intra-process connections.
 void run_inside(Scheduler& run);
+/// Packets that come faster than a service handles them.
+void run_streaming(Scheduler& run);
 
 /// All of them.
 std::span<const Scenario> scenarios();
