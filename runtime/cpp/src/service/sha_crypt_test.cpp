@@ -6,21 +6,24 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
 
 namespace rr::service {
 namespace {
 
-using ::testing::MatchesRegex;
+using ::testing::StartsWith;
 
 TEST(ShaCrypt, MakesTheHashesOfLibcrypt) {
-  EXPECT_EQ(ShaCrypt::hash("", "$6$salt"),
-            "$6$salt$r6qPcj2UeIkfklWHvleGJk8OKTInFYR/fxyuwcC656IWiZBpIFZ9.hMRG2ZQnnyMFrKOe461f9iT9Ljn"
-            "0wJ5l.");
+  EXPECT_EQ(
+      ShaCrypt::hash("", "$6$salt"),
+      "$6$salt$r6qPcj2UeIkfklWHvleGJk8OKTInFYR/fxyuwcC656IWiZBpIFZ9.hMRG2ZQnnyMFrKOe461f9iT9Ljn"
+      "0wJ5l.");
   EXPECT_EQ(ShaCrypt::hash("secret", "$5$salt"),
             "$5$salt$kpa26zwgX83BPSR8d7w93OIXbFt/d3UOTZaAu5vsTM6");
-  EXPECT_EQ(ShaCrypt::hash("\xc3\xa4\xc3\xb6\xc3\xbc", "$6$"),
-            "$6$$umR5jizB.0t.jcOIRV1WnH1Iox0FR8y6PyjhzbWQ9.pZO5dseCMKb62aQJqu.dVGFBApZpKLJbTkb73jm5oJ"
-            "z/");
+  EXPECT_EQ(
+      ShaCrypt::hash("\xc3\xa4\xc3\xb6\xc3\xbc", "$6$"),
+      "$6$$umR5jizB.0t.jcOIRV1WnH1Iox0FR8y6PyjhzbWQ9.pZO5dseCMKb62aQJqu.dVGFBApZpKLJbTkb73jm5oJ"
+      "z/");
 }
 
 TEST(ShaCrypt, PasswordsLongerThanADigest) {
@@ -35,14 +38,17 @@ TEST(ShaCrypt, PasswordsLongerThanADigest) {
 }
 
 TEST(ShaCrypt, UsesSixteenBytesOfASalt) {
-  EXPECT_EQ(ShaCrypt::hash("secret", "$6$rounds=1000$0123456789abcdefgh"),
-            "$6$rounds=1000$0123456789abcdef$mcCDk6dNL5N0ijt8G9cMeU.2SLHUPRvQks/S0b3xWPKwxC/ouwbeCpt1"
-            "WQloVhjazWF95X44lzjAj904IpNm1/");
+  EXPECT_EQ(
+      ShaCrypt::hash("secret", "$6$rounds=1000$0123456789abcdefgh"),
+      "$6$rounds=1000$0123456789abcdef$mcCDk6dNL5N0ijt8G9cMeU.2SLHUPRvQks/S0b3xWPKwxC/ouwbeCpt1"
+      "WQloVhjazWF95X44lzjAj904IpNm1/");
 }
 
 TEST(ShaCrypt, AHashIsASettingOfItsOwn) {
   const std::string setting = ShaCrypt::new_setting();
-  EXPECT_THAT(setting, MatchesRegex(R"(\$6\$rounds=50000\$[./0-9A-Za-z]{16})"));
+  constexpr std::string_view head = "$6$rounds=50000$";
+  ASSERT_THAT(setting, StartsWith(std::string(head)));
+  EXPECT_EQ(setting.size(), head.size() + 16);
   EXPECT_NE(ShaCrypt::new_setting(), setting);
   const std::string hash = ShaCrypt::hash("secret", setting);
   EXPECT_EQ(ShaCrypt::hash("secret", hash), hash);
