@@ -72,9 +72,10 @@ unpack_later_boost() {
 }
 
 # unpack_source PACKAGE FOLDER: Debian's source of a package, with its patches, in build/FOLDER. For systems that Debian
-# has no library for. The lists of sources are kept in build/apt: this machine's own may not have them.
+# has no library for. The lists of sources are kept in build/apt: this machine's own may not have them. A mirror may lack the
+# newest version: the one before is taken then.
 unpack_source() {
-  local package=$1 folder=$top/build/$2 apt=$top/build/apt options
+  local package=$1 folder=$top/build/$2 apt=$top/build/apt options version
   [ ! -d "$folder" ] || return 0
   rm -rf "$folder.new"
   mkdir -p "$folder.new" "$apt/lists/partial" "$top/build/log"
@@ -85,7 +86,11 @@ unpack_source() {
   (
     cd "$folder.new"
     # shellcheck disable=SC2086  # a list of options
-    apt-get $options update && apt-get $options --only-source --download-only source "$package"
+    apt-get $options update
+    for version in $(apt-cache $options showsrc "$package" | sed -n 's/^Version: //p' | sort --reverse --version-sort); do
+      apt-get $options --only-source --download-only source "$package=$version" && break
+      rm -f ./*
+    done
     dpkg-source --extract ./*.dsc source
   ) >"$top/build/log/source-$package.log" 2>&1 || fail "cannot fetch the source of $package: build/log/source-$package.log"
   mv "$folder.new/source" "$folder"

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What robdef for Windows does not have yet: TLS, with it `robdef ca`, and boards at serial ports.
+// What robdef for Windows does not have yet: boards at serial ports.
 #include <ostream>
-#include <rr/error.hpp>
 
-#include "cli/authority.hpp"
 #include "cli/live/board_channel.hpp"
 #include "cli/recordings.hpp"
 
 namespace robdef {
-
-ExitStatus run_authority(const Options& /*options*/, std::ostream& /*out*/, std::ostream& err) {
-  err << "robdef: `ca` needs TLS, which robdef for Windows does not have yet\n";
-  return exit_usage;
-}
 
 ExitStatus bridge(const Options& /*options*/, std::ostream& /*out*/, std::ostream& err) {
   err << "robdef: `bridge` needs serial ports, which robdef for Windows does not have yet\n";

@@ -3,7 +3,8 @@
 // for that: it widens names by mbrtowc() of the C library, which without a locale takes each byte
 // for a letter, and whose older form, msvcrt, has no locale of UTF-8. This one takes its place in
 // the program: every path that is made of text is right then, where a conversion at each place that
-// makes one would be forgotten at the next.
+// makes one would be forgotten at the next. The C library has the two functions after it in the
+// same object file, so a program that uses one of them needs ours of all three.
 #include <cerrno>
 #include <cstddef>
 #include <cwchar>
@@ -71,4 +72,30 @@ extern "C" std::size_t mbrtowc(wchar_t* wide, const char* text, std::size_t size
   *wide = static_cast<wchar_t>(0xD800U + (value >> 10U));
   *state = static_cast<std::mbstate_t>(0xDC00U + (value & 0x3FFU));
   return 3;
+}
+
+extern "C" std::size_t mbrlen(const char* text, std::size_t size, std::mbstate_t* state) {
+  static std::mbstate_t own_state{};
+  return mbrtowc(nullptr, text, size, state == nullptr ? &own_state : state);
+}
+
+extern "C" std::size_t mbsrtowcs(wchar_t* wide, const char** text, std::size_t size,
+                                 std::mbstate_t* state) {
+  static std::mbstate_t own_state{};
+  if (state == nullptr) state = &own_state;
+  const char* at = *text;
+  std::size_t count = 0;
+  for (; wide == nullptr || count < size; ++count) {
+    wchar_t one = 0;
+    const std::size_t taken = mbrtowc(&one, at, 4, state);
+    if (taken == is_wrong || taken == is_short) return fail();
+    if (wide != nullptr) wide[count] = one;
+    if (one == 0) {
+      if (wide != nullptr) *text = nullptr;
+      return count;
+    }
+    at += taken;
+  }
+  *text = at;
+  return count;
 }

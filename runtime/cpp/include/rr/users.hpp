@@ -64,7 +64,7 @@ class PasswordUsers final : public Users {
   static std::shared_ptr<PasswordUsers> from_file(const std::string& path);
   ~PasswordUsers() override;
 
-  /// A hash for a line: yescrypt with a random salt. Throws rr::Error: invalid_argument for a
+  /// A hash for a line, with a random salt: yescrypt or, on Windows, SHA-512. Throws rr::Error: invalid_argument for a
   /// password that has a NUL or more than 511 bytes.
   static std::string hash(std::string_view password);
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <fstream>
 #include <optional>
 #include <string_view>
@@ -26,11 +27,26 @@ std::string text_of_time(WallClock::time_point time) {
   return {text.data(), std::strftime(text.data(), text.size(), time_form, &parts)};
 }
 
-std::optional<WallClock::time_point> time_in(const std::string& text) {
+// 0 where there is none.
+int number_in(std::string_view digits) {
+  int number = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  return number;
+}
+
+std::optional<WallClock::time_point> time_in(std::string_view text) {
+  if (text.size() != std::string_view("2026-01-31T09:30:00Z").size()) return std::nullopt;
   std::tm parts{};
-  const char* const end = strptime(text.c_str(), time_form, &parts);
-  if (end == nullptr || *end != '\0') return std::nullopt;
-  return WallClock::from_time_t(timegm(&parts));
+  parts.tm_year = number_in(text.substr(0, 4)) - 1900;
+  parts.tm_mon = number_in(text.substr(5, 2)) - 1;
+  parts.tm_mday = number_in(text.substr(8, 2));
+  parts.tm_hour = number_in(text.substr(11, 2));
+  parts.tm_min = number_in(text.substr(14, 2));
+  parts.tm_sec = number_in(text.substr(17, 2));
+  const WallClock::time_point time = platform::time_of_utc(parts);
+  // Of numbers that are out of bounds, and whatever else is there, comes another text.
+  if (text_of_time(time) != text) return std::nullopt;
+  return time;
 }
 
 std::vector<std::string> fields_of(const std::string& line) {

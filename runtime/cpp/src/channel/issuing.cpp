@@ -13,6 +13,7 @@
 
 #include "rr/error.hpp"
 #include "runtime/cpp/src/channel/authority_index.hpp"
+#include "runtime/cpp/src/platform/clock.hpp"
 
 namespace rr::channel {
 namespace {
@@ -255,7 +256,7 @@ std::string serial_of(const X509& certificate) {
 WallClock::time_point time_of(const ASN1_TIME* time) {
   std::tm parts{};
   if (time == nullptr || ASN1_TIME_to_tm(time, &parts) != 1) return {};
-  return WallClock::from_time_t(timegm(&parts));
+  return platform::time_of_utc(parts);
 }
 
 std::string printed(const std::function<bool(BIO*)>& print) {

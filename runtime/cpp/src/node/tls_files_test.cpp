@@ -15,6 +15,7 @@
 
 #include "rr/authority.hpp"
 #include "runtime/cpp/src/node/testing/pair.hpp"
+#include "runtime/cpp/src/platform/files.hpp"
 
 namespace rr::testing {
 namespace {
@@ -165,7 +166,7 @@ TEST_F(TlsWhileANodeRuns, ItEndsSessionsWhoseAuthorityIsTrustedNoMore) {
   Session session(*client, url);
   Authority other = Authority::create(folder + "/other");
   fs::copy(other.certificate_file(), folder + "/new.pem");
-  fs::rename(folder + "/new.pem", folder + "/of_client.pem");
+  ASSERT_FALSE(platform::rename_file(folder + "/new.pem", folder + "/of_client.pem"));
   EXPECT_THAT(session.end(), HasSubstr("authority that this node does not trust"));
   EXPECT_THAT(refusal(), HasSubstr("authority"));
 }
@@ -195,7 +196,7 @@ TEST_F(TlsWhileANodeRuns, AFileThatCannotBeUsedLeavesTheOldOneInUse) {
   }));
   // The list that was read before counts still, and the certificate serves others.
   EXPECT_THAT(refusal(), HasSubstr("revoked"));
-  fs::rename(good, authority->revocation_file());
+  ASSERT_FALSE(platform::rename_file(good, authority->revocation_file()));
   Node other(options_of(NodeId::random()));
   EXPECT_EQ(other.connect<CounterStub>(url)->add(1, 2), 3);
   std::this_thread::sleep_for(5 * period);
@@ -205,7 +206,8 @@ TEST_F(TlsWhileANodeRuns, AFileThatCannotBeUsedLeavesTheOldOneInUse) {
 TEST_F(TlsWhileANodeRuns, ACertificateOfAnotherNodeIsNotTaken) {
   start();
   const std::string other = authority->issue(NodeId::random());
-  fs::copy(other, server_options.tls.certificate_file, fs::copy_options::overwrite_existing);
+  fs::remove(server_options.tls.certificate_file);
+  fs::copy(other, server_options.tls.certificate_file);
   EXPECT_EQ(client->connect<CounterStub>(url)->add(1, 2), 3);
   EXPECT_TRUE(eventually([&] { return times_logged("the certificate is of node ") == 1; }));
 }

@@ -7,6 +7,19 @@
 
 namespace rr::platform {
 
+std::chrono::system_clock::time_point time_of_utc(const std::tm& parts) {
+  using namespace std::chrono;
+  const year_month_day date(year(parts.tm_year + 1900),
+                            month(static_cast<unsigned>(parts.tm_mon + 1)),
+                            day(static_cast<unsigned>(parts.tm_mday)));
+  const sys_seconds time =
+      sys_days(date) + hours(parts.tm_hour) + minutes(parts.tm_min) + seconds(parts.tm_sec);
+  using Point = system_clock::time_point;
+  if (time > floor<seconds>(Point::max())) return Point::max();
+  if (time < ceil<seconds>(Point::min())) return Point::min();
+  return time;
+}
+
 std::string utc_text(std::chrono::system_clock::time_point time, unsigned decimals) {
   const auto since = std::chrono::floor<std::chrono::microseconds>(time.time_since_epoch());
   const auto seconds = std::chrono::floor<std::chrono::seconds>(since);

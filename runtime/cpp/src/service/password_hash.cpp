@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/service/password_hash.hpp"
 
-#include <crypt.h>
 #include <openssl/evp.h>
 
 #include <array>
-#include <memory>
 
 #include "rr/error.hpp"
+#include "runtime/cpp/src/platform/password_crypt.hpp"
+#include "runtime/cpp/src/service/sha_crypt.hpp"
 
 namespace rr::service {
 
@@ -28,10 +28,20 @@ std::string md5(std::string_view text) {
 }
 
 std::string crypt_password(std::string_view password, const std::string& setting) {
-  const auto room = std::make_unique<crypt_data>();  // large, and zero
-  const std::string text(password);
-  const char* const hash = crypt_rn(text.c_str(), setting.c_str(), room.get(), sizeof(*room));
-  return hash == nullptr ? std::string() : std::string(hash);
+  if (platform::knows_crypt(setting)) {
+    return platform::crypt_password(std::string(password), setting);
+  }
+  return ShaCrypt::hash(password, setting);
+}
+
+bool knows_hash(const std::string& hash) {
+  return platform::knows_crypt(hash) || ShaCrypt::knows(hash);
+}
+
+std::string new_hash(std::string_view password) {
+  std::string setting = platform::new_crypt_setting();
+  if (setting.empty()) setting = ShaCrypt::new_setting();
+  return crypt_password(password, setting);
 }
 
 bool are_same(std::string_view a, std::string_view b) {

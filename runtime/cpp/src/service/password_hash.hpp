@@ -13,6 +13,14 @@ std::string md5(std::string_view text);
 /// that fails.
 std::string crypt_password(std::string_view password, const std::string& setting);
 
+/// Whether passwords can be compared with such a hash of crypt(5): of all methods that the system
+/// has, and by SHA-256 and SHA-512 everywhere.
+bool knows_hash(const std::string& hash);
+
+/// A new hash of a password by the best method that there is. Empty when that fails. Throws
+/// std::system_error when the system has no random bytes.
+std::string new_hash(std::string_view password);
+
 /// Whether two texts are the same; takes as long whichever byte differs.
 bool are_same(std::string_view a, std::string_view b);
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <crypt.h>
-
 #include <algorithm>
 #include <fstream>
 #include <functional>
@@ -28,6 +26,8 @@ struct PasswordUsers::Account {
 namespace {
 
 constexpr std::size_t md5_digits = 32;
+// As libcrypt.
+constexpr std::size_t most_password_bytes = 511;
 
 std::string_view next_word(std::string_view& line, std::string_view separators) {
   const std::size_t begin = std::min(line.find_first_not_of(separators), line.size());
@@ -45,7 +45,7 @@ bool is_md5(std::string_view hash) {
 }
 
 bool can_be_hashed(std::string_view password) {
-  return password.size() < CRYPT_MAX_PASSPHRASE_SIZE &&
+  return password.size() <= most_password_bytes &&
          password.find('\0') == std::string_view::npos;
 }
 
@@ -88,9 +88,7 @@ PasswordUsers::PasswordUsers(std::string_view text) {
     account.hash = next_word(line, blanks);
     account.is_unsalted = is_md5(account.hash);
     const bool is_hash = account.is_unsalted ||
-                         (account.hash.starts_with('$') &&
-                          crypt_checksalt(account.hash.c_str()) != CRYPT_SALT_INVALID &&
-                          crypt_checksalt(account.hash.c_str()) != CRYPT_SALT_METHOD_DISABLED);
+                         (account.hash.starts_with('$') && service::knows_hash(account.hash));
     if (!is_hash) fail("the second word is no hash that is known");
     std::string_view privileges = next_word(line, blanks);
     if (privileges.empty()) fail("the third word says the privileges, `_` for none");
@@ -125,11 +123,7 @@ std::string PasswordUsers::hash(std::string_view password) {
   if (!can_be_hashed(password)) {
     throw Error(ErrorCode::invalid_argument, "a password has less than 512 bytes and no NUL");
   }
-  char setting[CRYPT_GENSALT_OUTPUT_SIZE] = {};
-  std::string hash;
-  if (crypt_gensalt_rn("$y$", 0, nullptr, 0, setting, sizeof(setting)) != nullptr) {
-    hash = crypt_password(password, setting);
-  }
+  std::string hash = service::new_hash(password);
   if (hash.empty()) throw Error(ErrorCode::system_resource_error, "cannot hash a password");
   return hash;
 }

@@ -17,8 +17,10 @@ namespace {
 class Folder {
  public:
   Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "rr-XXXXXX").string();
-    if (mkdtemp(name.data()) != nullptr) path_ = name;
+    const auto folder = std::filesystem::temp_directory_path() / ("rr-" + NodeId::random().text());
+    if (!std::filesystem::create_directory(folder)) return;
+    std::filesystem::permissions(folder, std::filesystem::perms::owner_all);
+    path_ = folder.string();
   }
   ~Folder() {
     std::error_code error;

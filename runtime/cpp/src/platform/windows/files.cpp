@@ -162,10 +162,22 @@ std::error_code write_new_file(const std::string& path, std::span<const char> by
   return error;
 }
 
+// A file is not replaced while a program reads it, which is for a moment mostly.
 std::error_code rename_file(const std::string& from, const std::string& to) {
-  const BOOL is_moved = MoveFileExW(wide(from).c_str(), wide(to).c_str(),
-                                    MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH);
-  return is_moved ? std::error_code() : last_system_error();
+  constexpr int attempts = 50;
+  constexpr DWORD pause = 20;  // milliseconds
+  const std::wstring old_path = wide(from);
+  const std::wstring new_path = wide(to);
+  for (int left = attempts;; --left) {
+    if (MoveFileExW(old_path.c_str(), new_path.c_str(),
+                    MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH)) {
+      return {};
+    }
+    const DWORD error = GetLastError();
+    const bool is_in_use = error == ERROR_ACCESS_DENIED || error == ERROR_SHARING_VIOLATION;
+    if (!is_in_use || left == 0) return last_system_error();
+    Sleep(pause);
+  }
 }
 
 std::error_code remove_file(const std::string& path) {
