@@ -119,7 +119,7 @@ set(robdef_layers
 set(robdef_outside_headers
   "^(antlr4|Robdef(Lexer|Parser))| compiler/syntax"
   "^boost/| cli/inspect_page.cpp cli/live/node_metrics.cpp runtime/cpp/include/rr/async runtime/cpp/fuzz/client_programs.cpp runtime/cpp/src/channel/web_socket.cpp runtime/cpp/src/channel/memory_stream.hpp"
-  "^openssl/| runtime/cpp/src/channel runtime/cpp/src/service/password_hash.cpp conformance/harness/web_socket_recording.cpp"
+  "^openssl/| runtime/cpp/src/channel runtime/cpp/src/service/password_hash.cpp runtime/cpp/src/service/sha_crypt.cpp conformance/harness/web_socket_recording.cpp"
   "^rr/async(\\.hpp$|/)| runtime/cpp/include/rr/async.hpp runtime/cpp/include/rr/async runtime/cpp/src runtime/cpp/fuzz runtime/cpp/sim runtime/cpp/stress examples conformance benchmarks compiler/backends"
   "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| compiler/system/linux runtime/cpp/src/serial runtime/arduino/bench/tcp runtime/cpp/src/platform runtime/cpp/src/channel/testing runtime/cpp/src/discovery/testing.hpp runtime/cpp/src/realtime/udp_socket.cpp runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/sim runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp examples/hardening/sandbox_probe.cpp conformance benchmarks"
   "^fmt/| cli compiler benchmarks"

@@ -32,7 +32,8 @@ echo "debian_root: a compiler and what the packages need after $((SECONDS - star
 
 # From here the network has no part.
 begin=$(date +%s%N)
-inside apt-get install -q -y --no-install-recommends --no-download /packages/{robdef_,librobdef1_,librobdef-dev_,robdef-doc_}*.deb \
+inside sh -c 'cd /packages
+  apt-get install -q -y --no-install-recommends --no-download $PWD/robdef_*.deb $PWD/librobdef1_*.deb $PWD/librobdef-dev_*.deb $PWD/robdef-doc_*.deb' \
   >"$work/install.log" 2>&1 || { tail -n 30 "$work/install.log" >&2; fail 'the packages cannot be installed'; }
 installed=$(date +%s%N)
 cat >"$root/room.sh" <<'END'
@@ -81,7 +82,7 @@ echo 'debian_root: pkg-config, web sockets from a shared library'
 
 # Octave, if it was packed.
 if ls "$root"/packages/octave-robdef_*.deb >/dev/null 2>&1; then
-  inside apt-get install -q -y --no-install-recommends --no-download /packages/octave-robdef_*.deb >"$work/octave.log" 2>&1 ||
+  inside sh -c 'apt-get install -q -y --no-install-recommends --no-download /packages/octave-robdef_*.deb' >"$work/octave.log" 2>&1 ||
     { tail -n 30 "$work/octave.log" >&2; fail 'octave-robdef cannot be installed'; }
   cat >"$root/octave.sh" <<'END'
 set -eu

@@ -17,7 +17,9 @@ namespace {
 class Folder {
  public:
   Folder() {
-    const auto folder = std::filesystem::temp_directory_path() / ("rr-" + NodeId::random().text());
+    // Short: paths of local sockets have 107 bytes.
+    const std::string name = "rr-" + NodeId::random().text().substr(0, 8);
+    const auto folder = std::filesystem::temp_directory_path() / name;
     if (!std::filesystem::create_directory(folder)) return;
     std::filesystem::permissions(folder, std::filesystem::perms::owner_all);
     path_ = folder.string();
