@@ -59,6 +59,22 @@ void add_action(antlr4::atn::LexerAction& action, LexerRule& rule) {
   }
 }
 
+// The automaton is asked for states, not for tokens of a text. ANTLR's own streams have data of
+// threads, which no shared object can link from Debian's archive.
+class Nothing final : public antlr4::CharStream {
+ public:
+  void consume() override {}
+  std::size_t LA(ssize_t /*offset*/) override { return EOF; }
+  ssize_t mark() override { return 0; }
+  void release(ssize_t /*marker*/) override {}
+  std::size_t index() override { return 0; }
+  void seek(std::size_t /*index*/) override {}
+  std::size_t size() override { return 0; }
+  [[nodiscard]] std::string getSourceName() const override { return {}; }
+  std::string getText(const antlr4::misc::Interval& /*interval*/) override { return {}; }
+  [[nodiscard]] std::string toString() const override { return {}; }
+};
+
 /// Asks the generated lexer's automaton for its states.
 class Automaton : private antlr4::atn::LexerATNSimulator {
  public:
@@ -84,7 +100,7 @@ class Automaton : private antlr4::atn::LexerATNSimulator {
     return *lexer.getInterpreter<antlr4::atn::LexerATNSimulator>();
   }
 
-  antlr4::ANTLRInputStream nothing_;
+  Nothing nothing_;
 };
 
 /// The states of the lexer's automaton that were needed so far.
@@ -142,7 +158,7 @@ class StateTable {
     return index;
   }
 
-  antlr4::ANTLRInputStream nothing_;
+  Nothing nothing_;
   Lexer lexer_{&nothing_};
   Automaton automaton_{lexer_};
   std::vector<State> states_;
