@@ -12,6 +12,8 @@ root=$work/root
 # shellcheck source=tools/bare_root.sh
 source "$here/../../tools/bare_root.sh"
 inside() { $(in_bare_root "$root") "$@"; }
+# Without a network. (`apt-get --no-download` refuses packages that are files.)
+offline() { unshare --net $(in_bare_root "$root") "$@"; }
 clean_up() { [ "$keep" = --keep ] || rm -rf "$work"; }
 trap clean_up EXIT
 rm -rf "$work"
@@ -32,8 +34,8 @@ echo "debian_root: a compiler and what the packages need after $((SECONDS - star
 
 # From here the network has no part.
 begin=$(date +%s%N)
-inside sh -c 'cd /packages
-  apt-get install -q -y --no-install-recommends --no-download $PWD/robdef_*.deb $PWD/librobdef1_*.deb $PWD/librobdef-dev_*.deb $PWD/robdef-doc_*.deb' \
+offline sh -c 'cd /packages
+  apt-get install -q -y --no-install-recommends ./robdef_*.deb ./librobdef1_*.deb ./librobdef-dev_*.deb ./robdef-doc_*.deb' \
   >"$work/install.log" 2>&1 || { tail -n 30 "$work/install.log" >&2; fail 'the packages cannot be installed'; }
 installed=$(date +%s%N)
 cat >"$root/room.sh" <<'END'
@@ -82,7 +84,7 @@ echo 'debian_root: pkg-config, web sockets from a shared library'
 
 # Octave, if it was packed.
 if ls "$root"/packages/octave-robdef_*.deb >/dev/null 2>&1; then
-  inside sh -c 'apt-get install -q -y --no-install-recommends --no-download /packages/octave-robdef_*.deb' >"$work/octave.log" 2>&1 ||
+  offline sh -c 'apt-get install -q -y --no-install-recommends /packages/octave-robdef_*.deb' >"$work/octave.log" 2>&1 ||
     { tail -n 30 "$work/octave.log" >&2; fail 'octave-robdef cannot be installed'; }
   cat >"$root/octave.sh" <<'END'
 set -eu
