@@ -14,23 +14,23 @@ namespace {
 using ::testing::ElementsAre;
 using Codes = std::vector<std::uint32_t>;
 
-constexpr Offer all{.message_v4 = true, .string_table = true, .combined_connect = true};
+constexpr Offer everything{.message_v4 = true, .string_table = true, .combined_connect = true};
 constexpr Offer least{.message_v4 = false, .string_table = false, .combined_connect = false};
 
 TEST(Capabilities, AClientOffersWhatItHas) {
-  EXPECT_THAT(offered_codes(all), ElementsAre(0x02000003, 0x04000003, 0x04100007));
+  EXPECT_THAT(offered_codes(everything), ElementsAre(0x02000003, 0x04000003, 0x04100007));
   EXPECT_THAT(offered_codes(least), ElementsAre(0x02000001));
 }
 
 TEST(Capabilities, AServerAgreesToWhatBothHave) {
-  const auto answer = answer_codes(offered_codes(all), all);
+  const auto answer = answer_codes(offered_codes(everything), everything);
   ASSERT_TRUE(answer);
   EXPECT_THAT(answer->codes, ElementsAre(0x02000003, 0x04000003, 0x04100007));
   EXPECT_EQ(answer->agreement.version, MessageVersion::v4);
   EXPECT_TRUE(answer->agreement.combined_connect);
   EXPECT_TRUE(answer->agreement.local_strings);
   EXPECT_TRUE(answer->agreement.standard_strings);
-  const auto modest = answer_codes(offered_codes(all), least);
+  const auto modest = answer_codes(offered_codes(everything), least);
   ASSERT_TRUE(modest);
   EXPECT_THAT(modest->codes, ElementsAre(0x02000001));
   EXPECT_EQ(modest->agreement.version, MessageVersion::v2);
@@ -38,18 +38,18 @@ TEST(Capabilities, AServerAgreesToWhatBothHave) {
 }
 
 TEST(Capabilities, AServerTakesNoStringsWithoutFormatFour) {
-  const auto answer = answer_codes(Codes{0x02000001, 0x04100007}, all);
+  const auto answer = answer_codes(Codes{0x02000001, 0x04100007}, everything);
   ASSERT_TRUE(answer);
   EXPECT_THAT(answer->codes, ElementsAre(0x02000001));
 }
 
 TEST(Capabilities, AServerRefusesAPageThatIsNotEnabled) {
-  EXPECT_FALSE(answer_codes(Codes{0x02000002}, all));
-  EXPECT_TRUE(answer_codes(Codes{}, all)) << "an old client";
+  EXPECT_FALSE(answer_codes(Codes{0x02000002}, everything));
+  EXPECT_TRUE(answer_codes(Codes{}, everything)) << "an old client";
 }
 
 TEST(Capabilities, AClientAcceptsNoMoreThanItHasOffered) {
-  const auto agreement = agree(Codes{0x02000001, 0x04000001, 0x04100005}, all);
+  const auto agreement = agree(Codes{0x02000001, 0x04000001, 0x04100005}, everything);
   ASSERT_TRUE(agreement);
   EXPECT_EQ(agreement->version, MessageVersion::v4);
   EXPECT_FALSE(agreement->combined_connect);
@@ -57,8 +57,8 @@ TEST(Capabilities, AClientAcceptsNoMoreThanItHasOffered) {
   EXPECT_TRUE(agreement->standard_strings);
   EXPECT_FALSE(agree(Codes{0x02000001, 0x04000001}, least));
   EXPECT_FALSE(agree(Codes{0x02000003}, least));
-  EXPECT_FALSE(agree(Codes{0x02000001, 0x04100001}, all)) << "strings need format 4";
-  EXPECT_FALSE(agree(Codes{0x04000001}, all)) << "format 2 is always there";
+  EXPECT_FALSE(agree(Codes{0x02000001, 0x04100001}, everything)) << "strings need format 4";
+  EXPECT_FALSE(agree(Codes{0x04000001}, everything)) << "format 2 is always there";
 }
 
 TEST(Capabilities, CodesAreAnArrayOfUint32) {

@@ -56,7 +56,7 @@ class NotingTap final : public Tap {
   void definition(std::string_view /*text*/) override {}
 };
 
-std::span<const std::byte> bytes(std::string_view text) {
+std::span<const std::byte> letters(std::string_view text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }
 
@@ -82,9 +82,9 @@ TEST(ConnectionTap, TellsOfAClientsMessages) {
   EXPECT_EQ(noting->client_name, "me");
   EXPECT_EQ(noting->service_name, "board");
   EXPECT_TRUE(noting->has_strings);
-  const Piece pieces[] = {{bytes("a").data(), 1}, {bytes("b").data(), 1}};
+  const Piece pieces[] = {{letters("a").data(), 1}, {letters("b").data(), 1}};
   EXPECT_EQ(tap.sent(pieces), 12U);
-  tap.received(bytes("c"));
+  tap.received(letters("c"));
   tap.replaced(12);
   tap.closed(Error(ErrorCode::connection_error, "why"));
   EXPECT_EQ(noting->lines,
@@ -103,9 +103,9 @@ TEST(ConnectionTap, AServicesMessagesGoTheOtherWay) {
   EXPECT_TRUE(noting->client_url.starts_with("rr+tcp://127.0.0.2:")) << noting->client_url;
   tap.agreed(options, {}, "guest", {});
   EXPECT_EQ(noting->client_name, "guest");
-  const Piece piece{bytes("a").data(), 1};
+  const Piece piece{letters("a").data(), 1};
   tap.sent({&piece, 1});
-  tap.received(bytes("b"));
+  tap.received(letters("b"));
   EXPECT_EQ(noting->lines,
             (std::vector<std::string>{"service", "agreed 7", "7 to client a", "7 to service b"}));
 }

@@ -11,7 +11,7 @@ namespace rr::channel {
 namespace {
 
 // Any bytes will do for a message.
-void write(Writer& writer, std::string_view text) {
+void put_text(Writer& writer, std::string_view text) {
   writer.reset(MessageVersion::v4);
   writer.prepend_bytes(text.data(), text.size());
 }
@@ -27,10 +27,10 @@ TEST(GatheredMessages, LeaveAsOnePiece) {
   GatheredMessages gathered;
   Writer writer;
   EXPECT_TRUE(gathered.empty());
-  write(writer, "one");
+  put_text(writer, "one");
   const std::string one = bytes_of(writer);
   gathered.add(writer);
-  write(writer, "two");
+  put_text(writer, "two");
   const std::string both = one + bytes_of(writer);
   gathered.add(writer);
   gathered.note_packet();
@@ -47,7 +47,7 @@ TEST(GatheredMessages, LeaveAsOnePiece) {
 TEST(GatheredMessages, CountWhatWasGatheredEver) {
   GatheredMessages gathered;
   Writer writer;
-  write(writer, "one");
+  put_text(writer, "one");
   const std::size_t size = writer.size();
   for (int i = 0; i < 3; ++i) {
     gathered.add(writer);
@@ -64,7 +64,7 @@ TEST(GatheredMessages, HaveRoomForOnePieceOfMemory) {
   EXPECT_TRUE(gathered.has_room_for(GatheredMessages::capacity));
   EXPECT_FALSE(gathered.has_room_for(GatheredMessages::capacity + 1));
   Writer writer;
-  write(writer, std::string(10'000, 'x'));
+  put_text(writer, std::string(10'000, 'x'));
   std::size_t count = 0;
   for (; gathered.has_room_for(writer.size()); ++count) gathered.add(writer);
   EXPECT_EQ(count, 6U);

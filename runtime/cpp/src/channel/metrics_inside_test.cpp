@@ -32,7 +32,7 @@ class FakeConnection final : public Metered {
   const std::uint64_t messages_;
 };
 
-std::string text_of(const Metrics& metrics) {
+std::string text_of_metrics(const Metrics& metrics) {
   MetricsText text;
   metrics.write(text);
   return std::move(text).finish();
@@ -68,7 +68,7 @@ TEST(Metrics, CountConnectionsAndLogins) {
   for (int i = 0; i < 4; ++i) metrics.count_login(false);
   for (int i = 0; i < 5; ++i) metrics.count_dropped_value();
   for (int i = 0; i < 6; ++i) metrics.count_dropped_packet();
-  const std::string text = text_of(metrics);
+  const std::string text = text_of_metrics(metrics);
   EXPECT_THAT(text, HasSubstr("robdef_connections_accepted_total 2\n"));
   EXPECT_THAT(text, HasSubstr("robdef_connections_refused_total{reason=\"limit\"} 1\n"));
   EXPECT_THAT(text, HasSubstr("robdef_connections_refused_total{reason=\"handshake\"} 3\n"));
@@ -82,7 +82,7 @@ TEST(Metrics, CountRequestsByTheTimeTheyTook) {
   Metrics metrics;
   metrics.count_request(RequestKind{}, 30us, ErrorCode::none);
   metrics.count_request(RequestKind{}, 30us, ErrorCode::service_error);
-  const std::string text = text_of(metrics);
+  const std::string text = text_of_metrics(metrics);
   EXPECT_THAT(text, HasSubstr("le=\"2.5e-05\"} 0\n"));
   EXPECT_THAT(text, HasSubstr("le=\"5e-05\"} 2\n"));
   EXPECT_THAT(text, HasSubstr("outcome=\"ok\"} 1\n"));
@@ -96,12 +96,12 @@ TEST(Metrics, KeepWhatAConnectionHasCounted) {
   metrics.add(first);
   {
     const Meter meter(&metrics, second);
-    const std::string text = text_of(metrics);
+    const std::string text = text_of_metrics(metrics);
     EXPECT_THAT(text, HasSubstr("robdef_messages_total{direction=\"sent\"} 107\n"));
     EXPECT_THAT(text, HasSubstr("robdef_send_queue_bytes 10\n"));
   }
   metrics.remove(first);
-  const std::string text = text_of(metrics);
+  const std::string text = text_of_metrics(metrics);
   EXPECT_THAT(text, HasSubstr("robdef_messages_total{direction=\"sent\"} 107\n"));
   EXPECT_THAT(text, HasSubstr("robdef_send_queue_bytes 0\n"));
   const Meter nobody(nullptr, first);

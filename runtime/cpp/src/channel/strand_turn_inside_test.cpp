@@ -14,10 +14,10 @@ namespace {
 using std::chrono_literals::operator""h;
 using std::chrono_literals::operator""us;
 
-Frame message(std::string_view text) {
+Frame waiting(std::string_view text) {
   return {{reinterpret_cast<const std::byte*>(text.data()), text.size()}, {}, {}};
 }
-std::string_view text_of(const Frame& frame) {
+std::string_view text_in(const Frame& frame) {
   return {reinterpret_cast<const char*>(frame.bytes.data()), frame.bytes.size()};
 }
 
@@ -46,23 +46,23 @@ TEST_F(StrandTurnTest, IsThatOfItsThreadAndStrand) {
 }
 
 TEST_F(StrandTurnTest, HandsOutWhatWaits) {
-  for (const char* text : {"a", "b", "c"}) scratch_->waiting.push_back(message(text));
+  for (const char* text : {"a", "b", "c"}) scratch_->waiting.push_back(waiting(text));
   StrandTurn turn(strand_, *scratch_, longest_turn);
   ASSERT_TRUE(turn.has_next());
-  EXPECT_EQ(text_of(turn.next()), "a");
-  EXPECT_EQ(text_of(turn.take_last()), "c");
-  EXPECT_EQ(text_of(turn.next()), "b");
+  EXPECT_EQ(text_in(turn.next()), "a");
+  EXPECT_EQ(text_in(turn.take_last()), "c");
+  EXPECT_EQ(text_in(turn.next()), "b");
   EXPECT_FALSE(turn.has_next());
 }
 
 TEST_F(StrandTurnTest, ItsRestIsQueuedFirst) {
-  strand_.push(message("later"));
-  for (const char* text : {"a", "b", "c"}) scratch_->waiting.push_back(message(text));
+  strand_.push(waiting("later"));
+  for (const char* text : {"a", "b", "c"}) scratch_->waiting.push_back(waiting(text));
   StrandTurn turn(strand_, *scratch_, longest_turn);
   turn.next();
   strand_.push_rest(turn);
   EXPECT_FALSE(turn.has_next());
-  for (const char* text : {"b", "c", "later"}) EXPECT_EQ(text_of(strand_.pop()), text);
+  for (const char* text : {"b", "c", "later"}) EXPECT_EQ(text_in(strand_.pop()), text);
   EXPECT_FALSE(strand_.has_lost());
 }
 
@@ -107,9 +107,9 @@ TEST_F(StrandTurnTest, IsSlowWhenAFewRequestsTakeATick) {
 // The bytes of a frame without an owner are those of a buffer that is used again.
 TEST_F(StrandTurnTest, AFrameIsKeptWithBytesOfItsOwn) {
   std::string bytes = "text";
-  const Frame kept = Strand::keep(message(bytes));
+  const Frame kept = Strand::keep(waiting(bytes));
   bytes = "over";
-  EXPECT_EQ(text_of(kept), "text");
+  EXPECT_EQ(text_in(kept), "text");
 }
 
 }  // namespace

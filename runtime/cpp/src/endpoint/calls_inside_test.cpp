@@ -85,6 +85,8 @@ class FakeCaller final : public Caller, public std::enable_shared_from_this<Fake
 class CallsTest : public ::testing::Test {
  protected:
   CallsTest() { core_->start(); }
+  // Not by the last work that is posted, on a thread of its own.
+  ~CallsTest() override { core_->stop(); }
 
   // A blocking call; what it has read.
   double call(const CallTerms& terms = {}) {

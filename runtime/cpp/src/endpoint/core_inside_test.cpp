@@ -39,6 +39,8 @@ ErrorCode failure(const Run& run) {
 
 class CoreTest : public ::testing::Test {
  protected:
+  ~CoreTest() override { core_->stop(); }
+
   static NodeOptions options() {
     NodeOptions options;
     options.name = "board";

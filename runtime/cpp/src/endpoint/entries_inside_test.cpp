@@ -173,15 +173,16 @@ TEST(Errors, TravelWithTheirNamesAndParameters) {
 }
 
 TEST(Errors, SaySomethingOfEachException) {
-  const auto described = [](const auto& thrown) {
-    return describe(std::make_exception_ptr(thrown));
+  const auto described = [](const std::exception_ptr& thrown) { return describe(thrown); };
+  const auto error = [&](ErrorCode code) {
+    return described(std::make_exception_ptr(Error(code, "why")));
   };
-  EXPECT_EQ(described(Error(ErrorCode::invalid_argument, "why")).code(),
-            ErrorCode::invalid_argument);
-  EXPECT_EQ(described(Error(ErrorCode::none, "why")).code(), ErrorCode::unknown_error);
-  EXPECT_EQ(described(std::runtime_error("why")).message(), "why");
-  EXPECT_EQ(described(std::runtime_error("why")).code(), ErrorCode::remote_error);
-  EXPECT_EQ(described(7).message(), "an exception of an unknown type");
+  EXPECT_EQ(error(ErrorCode::invalid_argument).code(), ErrorCode::invalid_argument);
+  EXPECT_EQ(error(ErrorCode::none).code(), ErrorCode::unknown_error);
+  const Error standard = described(std::make_exception_ptr(std::runtime_error("why")));
+  EXPECT_EQ(standard.message(), "why");
+  EXPECT_EQ(standard.code(), ErrorCode::remote_error);
+  EXPECT_EQ(described(std::make_exception_ptr(7)).message(), "an exception of an unknown type");
   Writer writer;
   writer.reset(MessageVersion::v4);
   write_error(writer, Error(ErrorCode::service_error, "why"));

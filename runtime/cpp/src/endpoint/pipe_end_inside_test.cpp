@@ -14,6 +14,8 @@
 #include "rr/definition.hpp"
 #include "rr/error.hpp"
 #include "rr/stub.hpp"
+#include "runtime/cpp/src/channel/metrics.hpp"
+#include "runtime/cpp/src/channel/metrics_text.hpp"
 #include "runtime/cpp/src/endpoint/pipe_arrival.hpp"
 #include "runtime/cpp/src/endpoint/pipe_packets.hpp"
 #include "runtime/cpp/src/endpoint/pipe_state.hpp"
@@ -54,6 +56,8 @@ class PipeEndTest : public ::testing::Test {
   using End = std::shared_ptr<PipeEnd::State>;
 
   PipeEndTest() { core_->start(); }
+  // Not by the last work that is posted, on a thread of its own.
+  ~PipeEndTest() override { core_->stop(); }
 
   End make(const Member& member = numbers, std::int32_t index = 4, bool is_client = true,
            std::string path = "arm", bool is_unreliable = false) {
@@ -248,9 +252,9 @@ TEST_F(PipeEndTest, AFunctionGetsThePackets) {
   EXPECT_EQ(end->available(), 1U);
 }
 
-class Promised final : public Completion {
+class PromisedPacket final : public Completion {
  public:
-  explicit Promised(std::promise<double>& promise) : promise_(promise) {}
+  explicit PromisedPacket(std::promise<double>& promise) : promise_(promise) {}
   void* result() override { return &packet_; }
   void succeed() override { promise_.set_value(*static_cast<const double*>(packet_.get())); }
   void fail(std::exception_ptr error) override { promise_.set_exception(std::move(error)); }
@@ -263,7 +267,7 @@ class Promised final : public Completion {
 TEST_F(PipeEndTest, ACompletionGetsThePacketTheEndOrItsTimeOut) {
   const End end = make();
   std::promise<double> next;
-  end->start_receive(std::make_unique<Promised>(next));
+  end->start_receive(std::make_unique<PromisedPacket>(next));
   EXPECT_TRUE(end->accept(1, packet(1.5), 8));
   end->deliver();
   EXPECT_EQ(next.get_future().get(), 1.5);
@@ -271,11 +275,11 @@ TEST_F(PipeEndTest, ACompletionGetsThePacketTheEndOrItsTimeOut) {
   {
     const CallOptions options{1ms, {}};
     const CallOptionsScope scope(options);
-    end->start_receive(std::make_unique<Promised>(late));
+    end->start_receive(std::make_unique<PromisedPacket>(late));
   }
   EXPECT_EQ(failure([&] { late.get_future().get(); }), ErrorCode::request_timeout);
   std::promise<double> never;
-  end->start_receive(std::make_unique<Promised>(never));
+  end->start_receive(std::make_unique<PromisedPacket>(never));
   end->finish();
   EXPECT_EQ(failure([&] { never.get_future().get(); }), ErrorCode::invalid_operation);
 }

@@ -80,6 +80,8 @@ class ArrivedValue {
 class WireEndTest : public ::testing::Test {
  protected:
   WireEndTest() { core_->start(); }
+  // Not by the last work that is posted, on a thread of its own.
+  ~WireEndTest() override { core_->stop(); }
 
   std::shared_ptr<FakeEnd> make(std::string path = "arm") {
     return std::make_shared<FakeEnd>(core_, std::move(path));
