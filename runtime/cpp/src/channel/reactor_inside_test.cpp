@@ -516,5 +516,30 @@ TEST(Reactor, AThreadStaysWithOneConnectionUntilItIsCalledBack) {
   ::close(descriptor);
 }
 
+// As a connection, whose timers are cancelled when it goes.
+class Timed final : public Pollable {
+ public:
+  explicit Timed(Reactor& reactor) : reactor_(reactor) {}
+  ~Timed() { reactor_.cancel(timer_); }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+  void on_ready(std::uint32_t) override {}
+
+ private:
+  Reactor& reactor_;
+  LongTimer timer_;
+};
+
+TEST(Reactor, WhatIsRetiredGoesWithoutItsLock) {
+  Reactor reactor(4);
+  auto early = std::make_shared<Timed>(reactor);
+  const std::weak_ptr<Timed> watch = early;
+  reactor.start();
+  reactor.retire(std::move(early));
+  reactor.stop();
+  EXPECT_TRUE(watch.expired());
+  reactor.retire(std::make_shared<Timed>(reactor));
+}
+
 }  // namespace
 }  // namespace rr::channel

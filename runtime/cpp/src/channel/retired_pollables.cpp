@@ -7,7 +7,7 @@
 
 namespace rr::channel {
 
-bool RetiredPollables::add(std::shared_ptr<Pollable> pollable) {
+bool RetiredPollables::add(std::shared_ptr<Pollable>&& pollable) {
   if (has_ended_) return false;
   retired_.push_back(std::move(pollable));
   return true;

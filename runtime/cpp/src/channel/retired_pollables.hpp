@@ -15,8 +15,8 @@ class RetiredPollables {
  public:
   using Pollables = std::vector<std::shared_ptr<Pollable>>;
 
-  /// False, and nothing is kept, once end() was called.
-  bool add(std::shared_ptr<Pollable> pollable);
+  /// False once end() was called: the pollable stays the caller's, who releases it without a lock.
+  bool add(std::shared_ptr<Pollable>&& pollable);
   /// A thread that does not poll any more is in the handler of `pollable`, until leave().
   void enter(const Pollable* pollable) { inside_.push_back(pollable); }
   void leave(const Pollable* pollable);

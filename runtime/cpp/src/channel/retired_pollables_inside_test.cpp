@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 
 #include "runtime/cpp/src/channel/reactor.hpp"
 #include "runtime/cpp/src/channel/retired_pollables.hpp"
@@ -53,7 +54,9 @@ TEST(RetiredPollables, AreNotKeptAfterTheEnd) {
   retired.enter(one.get());
   ASSERT_TRUE(retired.add(one));
   EXPECT_EQ(retired.end().size(), 1U);
-  EXPECT_FALSE(retired.add(one));
+  std::shared_ptr<Pollable> late = one;
+  EXPECT_FALSE(retired.add(std::move(late)));
+  EXPECT_EQ(late, one) << "its destructor may need the lock that the caller has";
   EXPECT_TRUE(retired.empty());
 }
 
