@@ -80,9 +80,10 @@ class ModelQueue {
   }
 
   // What the steps call.
-  [[nodiscard]] bool has_gathered() const {
-    return gathered_bytes_.load(std::memory_order_relaxed) != 0;
+  [[nodiscard]] std::size_t gathered_bytes() const {
+    return gathered_bytes_.load(std::memory_order_relaxed);
   }
+  [[nodiscard]] bool has_gathered() const { return gathered_bytes() != 0; }
   [[nodiscard]] bool has_room_for(std::size_t /*message*/) const { return true; }
   void gather(std::size_t message) {
     gathered_.add(message);

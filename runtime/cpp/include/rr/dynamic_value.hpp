@@ -127,7 +127,7 @@ concept AnyNumber = !std::is_enum_v<T> && (std::integral<T> || std::floating_poi
 /// used by several threads at once.
 ///
 /// A received value is of the declared type. One that a program makes need not be: what it is given
-/// to converts it (ValueType::convert).
+/// to converts it (ValueType::convert). Large because each kind of value has functions of its own.
 class Value {
  public:
   /// Null.

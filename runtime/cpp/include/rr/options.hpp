@@ -155,8 +155,8 @@ struct LoginOptions {
   unsigned max_failures = 5;
 };
 
-/// How a node behaves. The defaults are those of the existing implementations. Times over a hundred
-/// years, as milliseconds::max(), never come.
+/// How a node behaves, by default as the existing implementations. Large because each field is one
+/// choice of a program. Times over a hundred years, as milliseconds::max(), never come.
 struct NodeOptions {
   /// Name of the node: letters, digits, underscores, points and hyphens, a letter first, 1024 at
   /// most. Empty for none. Another one makes the node throw rr::Error (invalid_argument).

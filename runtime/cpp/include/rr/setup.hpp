@@ -16,9 +16,9 @@
 /// A node that is set up by its command line and environment, as users know it.
 namespace RR_VISIBLE rr {
 
-/// What a set-up starts. Each has a flag `--robotraconteur-...` named as itself, with `-` for `_`,
-/// and a variable `ROBOTRACONTEUR_...`, in capitals; flags win over variables, these over the file
-/// that the flag or variable `config` names, and that over what the program says.
+/// What a set-up starts. Large because each has a flag `--robotraconteur-...` named as itself, with
+/// `-` for `_`, and a variable `ROBOTRACONTEUR_...`, in capitals; flags win over variables, these
+/// over the file that the flag or variable `config` names, and that over what the program says.
 struct SetupOptions {
   /// All that no flag says. Its name and id are those of the node.
   NodeOptions node{};

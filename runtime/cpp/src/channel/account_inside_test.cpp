@@ -212,5 +212,83 @@ TEST(Account, WhatIsOfferedAndNotDrawnIsGivenBack) {
   EXPECT_EQ(pool->held(), 0U);
 }
 
+TEST(Pool, SaysWhenItFallsAndWhenItRefuses) {
+  Pool pool(10 * mib, 0);
+  std::vector<std::size_t> fallen;
+  int refused = 0;
+  pool.set_on_fall(2 * mib, [&](std::size_t bytes) { fallen.push_back(bytes); });
+  pool.set_on_full([&] { ++refused; });
+  EXPECT_EQ(pool.limit(), 10 * mib);
+  Account account(std::shared_ptr<Pool>(std::shared_ptr<void>(), &pool), no_limit);
+  ASSERT_TRUE(account.draw(6 * mib));
+  EXPECT_EQ(refused, 0);
+  EXPECT_FALSE(account.draw(5 * mib));
+  EXPECT_GE(refused, 1);
+  account.give_back(mib);
+  EXPECT_TRUE(fallen.empty());
+  account.give_back(5 * mib);
+  ASSERT_EQ(fallen.size(), 1U);
+  EXPECT_EQ(fallen.front(), 6 * mib);
+}
+
+TEST(Account, WhatMayNeverComeLeavesThreeQuartersOfThePool) {
+  const auto pool = pool_of(16 * mib);
+  Account account(pool, no_limit);
+  EXPECT_TRUE(account.draw_ahead(3 * mib));
+  EXPECT_FALSE(account.draw_ahead(2 * mib));
+  EXPECT_TRUE(account.draw(2 * mib)) << "others may";
+}
+
+TEST(Account, WhatHandlersMakeLeavesASixteenth) {
+  const auto pool = pool_of(16 * mib);
+  Accounts accounts = accounts_of(pool);
+  draw_all(accounts, &Account::draw_making);
+  EXPECT_LE(pool->held(), 15 * mib);
+  EXPECT_GE(pool->held(), 13 * mib);
+  Account other(pool, no_limit);
+  EXPECT_FALSE(other.draw_making(mib / 2 + 1));
+  EXPECT_TRUE(other.draw(mib / 4)) << "for answers";
+}
+
+TEST(Account, AnOfferEnds) {
+  const auto pool = pool_of(16 * mib);
+  Account account(pool, no_limit);
+  ASSERT_TRUE(account.draw(4 * mib));
+  account.offer(4 * mib);
+  EXPECT_EQ(account.held(), 4 * mib);
+  EXPECT_TRUE(account.draw(3 * mib)) << "once more";
+  EXPECT_EQ(account.held(), 4 * mib);
+  account.end_offer(4 * mib);
+  EXPECT_EQ(account.held(), 3 * mib);
+}
+
+TEST(Charge, DrawsForEachUseAsItsAccountDoes) {
+  const auto pool = pool_of(16 * mib);
+  const auto account = std::make_shared<Account>(pool, no_limit);
+  EXPECT_FALSE(Charge().has_account());
+  Charge charge(account);
+  EXPECT_TRUE(charge.has_account());
+  EXPECT_TRUE(charge.add_part(mib));
+  EXPECT_TRUE(charge.add_rest(mib));
+  EXPECT_TRUE(charge.add_reading(mib));
+  EXPECT_TRUE(charge.add_making(mib));
+  EXPECT_EQ(charge.bytes(), 4 * mib);
+  EXPECT_FALSE(charge.add_ahead(mib)) << "a quarter of the pool is taken";
+  EXPECT_TRUE(charge.can_add(6 * mib));
+  EXPECT_FALSE(charge.can_add(7 * mib)) << "two thirds are for one";
+  EXPECT_EQ(account->held(), 4 * mib);
+  charge.add_anyway(100 * mib);
+  EXPECT_EQ(charge.bytes(), 104 * mib);
+  EXPECT_EQ(account->held(), 104 * mib);
+  EXPECT_FALSE(charge.add_part(1));
+  EXPECT_FALSE(charge.add_rest(1));
+  EXPECT_FALSE(charge.add_reading(1));
+  EXPECT_FALSE(charge.add_making(1));
+  EXPECT_EQ(charge.bytes(), 104 * mib);
+  Charge free_of_limits;
+  EXPECT_TRUE(free_of_limits.add_ahead(100 * mib));
+  EXPECT_TRUE(free_of_limits.can_add(100 * mib));
+}
+
 }  // namespace
 }  // namespace rr::channel

@@ -87,5 +87,34 @@ TEST(Admission, WarnsOnceASecond) {
   EXPECT_THAT(accepting.warnings(), SizeIs(1));
 }
 
+TEST(Admission, APlaceIsLeftOnce) {
+  const auto admission =
+      std::make_shared<Admission>(std::make_shared<const NodeOptions>(NodeOptions{}));
+  const auto place = admission->enter("10.0.0.1");
+  EXPECT_EQ(place->address(), "10.0.0.1");
+  EXPECT_EQ(admission->strangers(), 1U);
+  place->set_authorised(true);
+  EXPECT_EQ(admission->strangers(), 0U);
+  EXPECT_EQ(admission->size(), 1U);
+  place->set_authorised(false);
+  EXPECT_EQ(admission->strangers(), 1U);
+  place->leave();
+  place->leave();
+  EXPECT_EQ(admission->size(), 0U);
+}
+
+TEST(Admission, TheOldestStrangerGivesWay) {
+  const auto admission =
+      std::make_shared<Admission>(std::make_shared<const NodeOptions>(NodeOptions{}));
+  EXPECT_FALSE(admission->give_way());
+  const auto session = admission->enter("10.0.0.1");
+  session->set_authorised(true);
+  EXPECT_FALSE(admission->give_way());
+  const auto stranger = admission->enter("");
+  EXPECT_TRUE(admission->give_way());
+  EXPECT_EQ(admission->size(), 1U);
+  EXPECT_FALSE(stranger->take(nullptr)) << "the place is another's";
+}
+
 }  // namespace
 }  // namespace rr::channel

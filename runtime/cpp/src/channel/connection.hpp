@@ -69,6 +69,9 @@ enum class Priority : std::uint8_t {
 
 /// Carries messages to and from one other node. Any thread may send.
 ///
+/// Large because it is all that sessions of both sides and of all channels need: terms, sending,
+/// waiting for answers, and the strand.
+///
 /// Reading has no thread of its own: a thread that waits for an answer reads the connection itself
 /// if nobody does, and hands on what belongs to others; while nobody waits, the reactor reads.
 class Connection {

@@ -62,7 +62,7 @@ void GatheringSteps<Queue>::uncork(Queue& queue,
   Time before = Sync::now();
   std::size_t gathered = 0;
   while (expected.load(std::memory_order_relaxed) != 0) {
-    const std::size_t now_gathered = queue.gathered_bytes_.load(std::memory_order_relaxed);
+    const std::size_t now_gathered = queue.gathered_bytes();
     if (now_gathered == gathered) break;  // none has come
     gathered = now_gathered;
     Sync::yield();

@@ -54,5 +54,14 @@ TEST(LateWork, MayOwnItself) {
   while (!has_ended) std::this_thread::yield();
 }
 
+TEST(LateWork, KnowsItsThread) {
+  LateWork late;
+  std::atomic<bool> is_own{false};
+  late.add([&] { is_own = late.is_own_thread(); });
+  late.wait();
+  EXPECT_TRUE(is_own);
+  EXPECT_FALSE(late.is_own_thread());
+}
+
 }  // namespace
 }  // namespace rr::channel

@@ -251,5 +251,15 @@ TEST_F(UrgentTest, MessagesOfManyRoundsStayWhole) {
   EXPECT_EQ(std::count(order.begin(), order.end(), "u"), 67);
 }
 
+TEST_F(OutboxTest, ForgetsWhatWaits) {
+  add("one");
+  add_newest(1, 1, "two");
+  outbox_.clear();
+  EXPECT_TRUE(outbox_.empty());
+  EXPECT_EQ(outbox_.size(), 0U);
+  add("three");
+  EXPECT_EQ(flush(), "three");
+}
+
 }  // namespace
 }  // namespace rr::channel

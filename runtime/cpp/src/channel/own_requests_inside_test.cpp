@@ -129,5 +129,15 @@ TEST_F(OwnRequestsTest, AnUnknownOperationIsAnError) {
   EXPECT_EQ(error(), ErrorCode::protocol_error);
 }
 
+TEST_F(OwnRequestsTest, ATestIsARequestOfTheConnection) {
+  const OwnSide side{options_, link_, layers_, remote_node_, MessageVersion::v2, is_server_};
+  Writer writer;
+  OwnRequests(side, writer).write_test();
+  answer_ = writer.copy();
+  ASSERT_TRUE(read_message(answer_, {}, false, answered_, entry_));
+  EXPECT_TRUE(is_own(entry_.type));
+  EXPECT_EQ(answered_.sender_node, options_.id);
+}
+
 }  // namespace
 }  // namespace rr::channel

@@ -2,7 +2,6 @@
 #include "runtime/cpp/src/channel/reactor.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -29,8 +28,7 @@ Reactor::Reactor(Terms terms)
     : terms_(std::move(terms)),
       max_threads_(std::max(terms_.max_threads, duties)),
       max_stays_(std::min(std::max(std::thread::hardware_concurrency(), 1U), max_threads_ / 4)),
-      reserve_(max_threads_ / threads_for_one_in_reserve),
-      events_(std::make_unique<Event[]>(events_at_once)) {}
+      reserve_(max_threads_ / threads_for_one_in_reserve) {}
 
 Reactor::~Reactor() { stop(); }
 
@@ -64,10 +62,9 @@ void Reactor::stop() {
   wake_polling_thread();
   for (std::thread& thread : threads) thread.join();
   late_.wait();
-  std::vector<std::shared_ptr<Pollable>> retired;
+  RetiredPollables::Pollables retired;  // go without the lock
   const MutexLock lock(mutex_);
-  has_ended_ = true;
-  retired.swap(retired_);
+  retired = retired_.end();
 }
 
 bool Reactor::is_stopping() const {
@@ -90,8 +87,7 @@ void Reactor::remove(int socket) { sockets_.remove(socket); }
 void Reactor::retire(std::shared_ptr<Pollable> pollable) {
   {
     const MutexLock lock(mutex_);
-    if (has_ended_) return;
-    retired_.push_back(std::move(pollable));
+    if (!retired_.add(std::move(pollable))) return;
     has_work_.store(true, std::memory_order_release);
   }
   wake_polling_thread();
@@ -110,21 +106,6 @@ void Reactor::post(Posted posted) {
   wake_polling_thread();
 }
 
-void Reactor::begin_connection() {
-  const MutexLock lock(mutex_);
-  ++connections_;
-}
-
-void Reactor::end_connection() {
-  const MutexLock lock(mutex_);
-  if (--connections_ == 0) no_connection_.notify_all();
-}
-
-void Reactor::wait_for_connections() {
-  const MutexLock lock(mutex_);
-  while (connections_ != 0) no_connection_.wait(mutex_);
-}
-
 void Reactor::wake_polling_thread() { sockets_.wake(); }
 
 void Reactor::wake_watching_thread() {
@@ -140,11 +121,10 @@ void Reactor::poll(Polling& polling) {
   while (handle_events(polling)) {
     if (has_work_.load(std::memory_order_acquire) && !run_posted(polling)) break;
     if (is_stopping_.load(std::memory_order_acquire)) break;
-    if (next_event_ != event_count_) continue;  // find_others() has found some meanwhile
+    if (!events_.empty()) continue;  // find_others() has found some meanwhile
     const bool must_go_on = has_work_.load(std::memory_order_acquire);
     if (must_go_on) yield_processor(yield_at);
-    event_count_ = sockets_.wait({events_.get(), events_at_once}, !must_go_on);
-    next_event_ = 0;
+    events_.fetch([&](auto room) { return sockets_.wait(room, !must_go_on); });
   }
   current_polling = nullptr;
 }
@@ -160,8 +140,8 @@ void Reactor::enter(Polling& polling, Pollable* pollable) {
 bool Reactor::leave(Polling& polling) { return turn_.leave(polling.turn); }
 
 bool Reactor::handle_events(Polling& polling) {
-  while (next_event_ != event_count_) {
-    const Event& event = events_[next_event_++];
+  while (!events_.empty()) {
+    const ReadyEvents::Event& event = events_.take();
     if (event.key == nullptr) continue;  // a wake-up
     auto* const pollable = static_cast<Pollable*>(event.key);
     const std::uint32_t events = event.events;
@@ -193,30 +173,7 @@ bool Reactor::is_posted_for_others(const Pollable* own) const {
 // get more and more, is kept once.
 bool Reactor::find_others(const Pollable* own) {
   if (has_work_.load(std::memory_order_acquire) && is_posted_for_others(own)) return true;
-  bool is_found = false;
-  Event* kept = nullptr;
-  const auto look_at = [&](Event& event) {
-    if (event.key == nullptr) return;
-    if (event.key != own) {
-      is_found = true;
-    } else if (kept == nullptr) {
-      kept = &event;
-    } else {
-      kept->events |= event.events;
-      event.key = nullptr;
-    }
-  };
-  for (std::size_t i = next_event_; i < event_count_; ++i) look_at(events_[i]);
-  if (is_found) return true;
-  const std::span room(events_.get() + event_count_, events_at_once - event_count_);
-  const std::size_t found = room.empty() ? 0 : sockets_.wait(room, false);
-  for (std::size_t i = 0; i < found; ++i) look_at(room[i]);
-  // What was the last one, and has been merged, leaves its place to others.
-  event_count_ += found;
-  while (event_count_ > next_event_ && events_[event_count_ - 1].key == nullptr) {
-    --event_count_;
-  }
-  return is_found;
+  return events_.find_others(own, [&](auto room) { return sockets_.wait(room, false); });
 }
 
 // One at a time, then it is polled: connections that always have more to read post that again and
@@ -238,17 +195,10 @@ bool Reactor::run_posted(Polling& polling) {
 
 // No event is left that could name them. A thread that has lost its turn may still be about to
 // enter the handler of one.
-std::vector<std::shared_ptr<Pollable>> Reactor::take_retired() {
+RetiredPollables::Pollables Reactor::take_retired() {
   const MutexLock lock(mutex_);
   has_work_.store(false, std::memory_order_relaxed);
-  const auto is_inside = [&](const auto& pollable) RR_REQUIRES(mutex_) {
-    return std::find(inside_.begin(), inside_.end(), pollable.get()) != inside_.end();
-  };
-  const auto kept = std::partition(retired_.begin(), retired_.end(), is_inside);
-  std::vector<std::shared_ptr<Pollable>> retired(std::make_move_iterator(kept),
-                                                 std::make_move_iterator(retired_.end()));
-  retired_.erase(kept, retired_.end());
-  return retired;
+  return retired_.take();
 }
 
 // What throws here is code of the program that nobody guards: the node goes on.
@@ -351,7 +301,7 @@ bool Reactor::begin_stay() {
   if (polling == nullptr || polling->reactor != this) return false;
   const MutexLock lock(mutex_);
   if (stays_ >= max_stays_ || is_stay_over_ || is_tight_) return false;
-  if (!is_inside(*polling) || event_count_ > 1) return false;
+  if (!is_inside(*polling) || events_.size() > 1) return false;
   if (!hand_over(*polling, false)) return false;
   ++stays_;
   return true;

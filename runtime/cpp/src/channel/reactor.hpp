@@ -11,15 +11,17 @@
 #include <string>
 #include <string_view>
 #include <thread>
-#include <unordered_map>
 #include <vector>
 
 #include "rr/mutex.hpp"
 #include "rr/visibility.hpp"
+#include "runtime/cpp/src/channel/connection_count.hpp"
 #include "runtime/cpp/src/channel/flusher.hpp"
 #include "runtime/cpp/src/channel/late_work.hpp"
 #include "runtime/cpp/src/channel/polling_turn.hpp"
 #include "runtime/cpp/src/channel/readers.hpp"
+#include "runtime/cpp/src/channel/ready_events.hpp"
+#include "runtime/cpp/src/channel/retired_pollables.hpp"
 #include "runtime/cpp/src/channel/thread_share.hpp"
 #include "runtime/cpp/src/channel/time.hpp"
 #include "runtime/cpp/src/channel/timer_heap.hpp"
@@ -59,6 +61,9 @@ class Pollable {
 ///
 /// A thread that has found one busy connection alone may stay with it, in receive calls that block,
 /// which are a third cheaper than the poller's; somebody else polls from then on.
+///
+/// Large because the duties of its threads, polling, watching, timers, posted work and standing by,
+/// pass from one thread to another under one lock, which guards the state of each.
 class RR_INSIDE Reactor final : public Watcher {
  public:
   /// What a program, or a test, says of the threads.
@@ -114,11 +119,8 @@ class RR_INSIDE Reactor final : public Watcher {
   /// Records which accepted connections receive data.
   [[nodiscard]] Readers& readers() { return readers_; }
 
-  // A connection counts from when it has a receiver until it has told that one of its end.
-  void begin_connection();
-  void end_connection();
-  /// Waits until there is none. Not from a thread of the reactor.
-  void wait_for_connections();
+  /// How many connections there are. No thread of the reactor may wait for their end.
+  [[nodiscard]] ConnectionCount& connections() { return connections_; }
 
   /// Sends what streams leave behind; see Flusher. Stops when this does.
   [[nodiscard]] Flusher& flusher() { return flusher_; }
@@ -189,7 +191,7 @@ class RR_INSIDE Reactor final : public Watcher {
   bool take_over(std::uint64_t turn) RR_REQUIRES(mutex_);
   bool hand_over(Polling& polling, bool is_held) RR_REQUIRES(mutex_);
   void note_loss(Polling& polling) RR_REQUIRES(mutex_);
-  std::vector<std::shared_ptr<Pollable>> take_retired();
+  RetiredPollables::Pollables take_retired();
   void hold(Polling& polling) RR_REQUIRES(mutex_);
   void release(Polling& polling) RR_REQUIRES(mutex_);
   [[nodiscard]] Handling look_up(const ThreadShare& share);
@@ -228,19 +230,13 @@ class RR_INSIDE Reactor final : public Watcher {
   std::atomic<bool> has_work_{false};  // posted or retired
 
   // Of the thread whose turn it is; handed over with turn_.
-  using Event = platform::Poller::Event;
-  static constexpr std::size_t events_at_once = platform::Poller::most_events;
-  std::unique_ptr<Event[]> events_;
-  std::size_t next_event_ = 0;
-  std::size_t event_count_ = 0;
+  ReadyEvents events_;
   Pollable* handling_ = nullptr;
 
   mutable Mutex mutex_;
   Condition idle_;
   Condition watch_;
   std::atomic<bool> is_stopping_{false};  // written under mutex_
-  bool has_ended_ RR_GUARDED_BY(mutex_) =
-      false;  // no thread is left that could name what is retired
   bool is_polled_ RR_GUARDED_BY(mutex_) = false;
   bool is_watched_ RR_GUARDED_BY(mutex_) = false;
   Polling* poller_ RR_GUARDED_BY(mutex_) = nullptr;  // of the thread whose turn it is
@@ -249,8 +245,7 @@ class RR_INSIDE Reactor final : public Watcher {
   std::atomic<bool> is_tight_{false};  // hardly any thread is left; written under mutex_
   Time no_thread_until_ RR_GUARDED_BY(mutex_) = Time::min();  // none could be made a moment ago
   bool must_report_ RR_GUARDED_BY(mutex_) = false;            // and nobody has been told
-  std::unordered_map<std::string, std::weak_ptr<AddressThreads>> addresses_ RR_GUARDED_BY(mutex_);
-  std::size_t swept_addresses_ RR_GUARDED_BY(mutex_) = 0;  // that were left of them
+  AddressTable addresses_ RR_GUARDED_BY(mutex_);
   unsigned idle_threads_ RR_GUARDED_BY(mutex_) = 0;
   unsigned wanted_threads_ RR_GUARDED_BY(mutex_) = 0;  // idle ones that have been woken
   unsigned live_threads_ RR_GUARDED_BY(mutex_) = 0;
@@ -261,11 +256,8 @@ class RR_INSIDE Reactor final : public Watcher {
   TimerHeap timers_ RR_GUARDED_BY(mutex_);
   std::deque<Posted> posted_ RR_GUARDED_BY(mutex_);
   std::deque<Posted> waiting_ RR_GUARDED_BY(mutex_);  // for threads of their shares
-  std::vector<std::shared_ptr<Pollable>> retired_ RR_GUARDED_BY(mutex_);
-  std::vector<const Pollable*> inside_
-      RR_GUARDED_BY(mutex_);  // whose handlers threads are in that do not poll any more
-  std::size_t connections_ RR_GUARDED_BY(mutex_) = 0;
-  Condition no_connection_;
+  RetiredPollables retired_ RR_GUARDED_BY(mutex_);
+  ConnectionCount connections_;
   LateWork late_;  // what is posted from is_stopping_ on
 };
 

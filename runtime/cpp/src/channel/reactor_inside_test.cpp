@@ -22,6 +22,7 @@
 namespace rr::channel {
 namespace {
 
+using std::chrono_literals::operator""h;
 using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 
@@ -361,6 +362,183 @@ TEST(Reactor, RunsAllThatIsPostedBeforeItSleeps) {
   reactor.post(next);
   EXPECT_EQ(last.get_future().wait_for(10s), std::future_status::ready);
   reactor.stop();
+}
+
+TEST(Reactor, KnowsItsOwnThreadsAndThatItEnds) {
+  Reactor reactor(4);
+  reactor.start();
+  EXPECT_FALSE(reactor.is_own_thread());
+  std::promise<bool> is_own;
+  reactor.post([&] { is_own.set_value(reactor.is_own_thread()); });
+  EXPECT_TRUE(is_own.get_future().get());
+  EXPECT_FALSE(reactor.is_stopping());
+  EXPECT_EQ(reactor.session_threads(), Reactor::Terms{}.session_threads);
+  EXPECT_EQ(reactor.metrics(), nullptr);
+  EXPECT_EQ(reactor.shared_metrics(), nullptr);
+  EXPECT_GE(reactor.live_threads(), 2U);
+  reactor.connections().begin();
+  reactor.connections().end();
+  reactor.stop();
+  EXPECT_TRUE(reactor.is_stopping());
+  EXPECT_EQ(reactor.live_threads(), 0U);
+  std::promise<bool> is_late;
+  reactor.post([&] { is_late.set_value(reactor.is_own_thread()); });
+  EXPECT_TRUE(is_late.get_future().get()) << "on a thread that is made for it";
+}
+
+TEST(Reactor, ASocketIsWatchedForSomethingElse) {
+  Reactor reactor(4);
+  reactor.start();
+  std::promise<std::uint32_t> heard;
+  Guest guest(reactor, [&] { heard.set_value(0); });
+  const int descriptor = ::eventfd(1, EFD_NONBLOCK | EFD_CLOEXEC);
+  reactor.add(descriptor, 0, guest);
+  std::promise<void> nothing;
+  reactor.post([&] { nothing.set_value(); });
+  nothing.get_future().get();
+  auto future = heard.get_future();
+  EXPECT_EQ(future.wait_for(0s), std::future_status::timeout);
+  reactor.change(descriptor, EPOLLIN, guest);
+  EXPECT_EQ(future.wait_for(10s), std::future_status::ready);
+  reactor.remove(descriptor);
+  reactor.stop();
+  ::close(descriptor);
+}
+
+TEST(Reactor, ATimerThatIsCancelledDoesNotRun) {
+  Reactor reactor(4);
+  reactor.start();
+  const auto owner = std::make_shared<int>();
+  LongTimer cancelled;
+  LongTimer later;
+  reactor.schedule(cancelled, owner, Clock::now() + 24h);
+  reactor.cancel(cancelled);
+  reactor.schedule(later, owner, Clock::now());
+  later.begun.get_future().wait();
+  later.may_end.set_value();
+  EXPECT_EQ(cancelled.begun.get_future().wait_for(0s), std::future_status::timeout);
+  reactor.stop();
+}
+
+// What a pollable does that nobody counts and that holds nothing back.
+TEST(Reactor, APollableOfNobodyHasNoShare) {
+  Reactor reactor(4);
+  Bell bell(reactor);
+  Pollable& pollable = bell;
+  EXPECT_EQ(pollable.thread_share(), nullptr);
+  pollable.on_stuck();
+  EXPECT_EQ(reactor.admission(nullptr), Handling::in_place);
+  EXPECT_FALSE(reactor.readers().are_several(Clock::now()));
+  class Nothing final : public Flushable {
+   public:
+    void flush_streamed() override { flushed.set_value(); }
+    std::promise<void> flushed;
+  };
+  const auto nothing = std::make_shared<Nothing>();
+  EXPECT_TRUE(reactor.flusher().add(nothing));
+  nothing->flushed.get_future().get();
+}
+
+TEST(Reactor, AnotherThreadPollsWhenOneGivesWay) {
+  Reactor reactor(4);
+  reactor.start();
+  Reactor::give_way();  // this thread polls nothing
+  const auto share = reactor.open_share("somewhere");
+  std::promise<bool> still_polls;
+  std::promise<void> may_end;
+  std::promise<Handling> handling;
+  reactor.post(
+      [&] {
+        Reactor::give_way();
+        still_polls.set_value(reactor.is_polling());
+        handling.set_value(reactor.admission(share));
+        may_end.get_future().get();
+      },
+      share);
+  EXPECT_FALSE(still_polls.get_future().get());
+  EXPECT_EQ(handling.get_future().get(), Handling::in_place) << "it holds up nobody";
+  EXPECT_EQ(reactor.held(), 1U);
+  std::promise<void> other;
+  reactor.post([&] { other.set_value(); });
+  EXPECT_EQ(other.get_future().wait_for(10s), std::future_status::ready);
+  may_end.set_value();
+  reactor.stop();
+}
+
+TEST(Reactor, WorkThatHasToWaitIsLookedAtAgain) {
+  Reactor reactor({.max_threads = 4, .session_threads = 1});
+  reactor.start();
+  const auto share = reactor.open_share("somewhere");
+  std::promise<void> has_begun;
+  std::promise<void> may_end;
+  std::atomic<bool> has_run{false};
+  reactor.post(
+      [&] {
+        Reactor::give_way();
+        has_begun.set_value();
+        may_end.get_future().get();
+      },
+      share);
+  has_begun.get_future().get();
+  reactor.post([&] { has_run = true; }, share);
+  const auto deadline = Clock::now() + 10s;
+  while (reactor.waiting() == 0 && Clock::now() < deadline) std::this_thread::yield();
+  EXPECT_EQ(reactor.waiting(), 1U) << "its session holds as many threads as it may";
+  reactor.reconsider();
+  EXPECT_EQ(reactor.waiting(), 1U);
+  share->depart();
+  reactor.reconsider();
+  EXPECT_EQ(reactor.waiting(), 0U);
+  may_end.set_value();
+  reactor.stop();
+}
+
+// Only one thread of four may, and only from inside a handler.
+TEST(Reactor, AThreadStaysWithOneConnectionUntilItIsCalledBack) {
+  Reactor reactor(4);
+  reactor.start();
+  EXPECT_FALSE(reactor.begin_stay()) << "it does not poll";
+  EXPECT_FALSE(reactor.is_stay_over());
+  std::promise<std::array<bool, 3>> done;
+  Guest guest(reactor, [&] {
+    const bool stays = reactor.begin_stay();
+    const bool is_counted = reactor.stays() == (stays ? 1U : 0U);
+    const bool polls = reactor.is_polling();
+    if (stays) reactor.end_stay();
+    done.set_value({stays, is_counted, polls});
+  });
+  const int descriptor = ::eventfd(1, EFD_NONBLOCK | EFD_CLOEXEC);
+  reactor.add(descriptor, EPOLLIN | EPOLLET, guest);
+  EXPECT_EQ(done.get_future().get(), (std::array<bool, 3>{true, true, false}));
+  EXPECT_EQ(reactor.stays(), 0U);
+  reactor.stop();
+  EXPECT_TRUE(reactor.is_stay_over());
+  ::close(descriptor);
+}
+
+// As a connection, whose timers are cancelled when it goes.
+class Timed final : public Pollable {
+ public:
+  explicit Timed(Reactor& reactor) : reactor_(reactor) {}
+  ~Timed() { reactor_.cancel(timer_); }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+  void on_ready(std::uint32_t) override {}
+
+ private:
+  Reactor& reactor_;
+  LongTimer timer_;
+};
+
+TEST(Reactor, WhatIsRetiredGoesWithoutItsLock) {
+  Reactor reactor(4);
+  auto early = std::make_shared<Timed>(reactor);
+  const std::weak_ptr<Timed> watch = early;
+  reactor.start();
+  reactor.retire(std::move(early));
+  reactor.stop();
+  EXPECT_TRUE(watch.expired());
+  reactor.retire(std::make_shared<Timed>(reactor));
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ void Reactor::poll_until_lost() {
 // The thread of `polling` has lost its turn in a handler.
 void Reactor::note_loss(Polling& polling) {
   polling.inside = handling_;
-  if (polling.inside != nullptr) inside_.push_back(polling.inside);
+  if (polling.inside != nullptr) retired_.enter(polling.inside);
 }
 
 // It will be there for a while.
@@ -149,7 +149,7 @@ void Reactor::hold(Polling& polling) {
 
 void Reactor::release(Polling& polling) {
   if (polling.inside != nullptr) {
-    inside_.erase(std::find(inside_.begin(), inside_.end(), polling.inside));
+    retired_.leave(polling.inside);
     if (!retired_.empty()) {
       has_work_.store(true, std::memory_order_release);
       wake_polling_thread();
@@ -201,19 +201,8 @@ void Reactor::reconsider() {
 }
 
 std::shared_ptr<ThreadShare> Reactor::open_share(const std::string& key) {
-  constexpr std::size_t first_sweep = 64;
   const MutexLock lock(mutex_);
-  if (addresses_.size() >= std::max(first_sweep, swept_addresses_ * 2)) {
-    std::erase_if(addresses_, [](const auto& item) { return item.second.expired(); });
-    swept_addresses_ = addresses_.size();
-  }
-  std::weak_ptr<AddressThreads>& place = addresses_[key];
-  std::shared_ptr<AddressThreads> address = place.lock();
-  if (!address) {
-    address = std::make_shared<AddressThreads>(key);
-    place = address;
-  }
-  return std::make_shared<ThreadShare>(std::move(address));
+  return std::make_shared<ThreadShare>(addresses_.open(key));
 }
 
 }  // namespace rr::channel

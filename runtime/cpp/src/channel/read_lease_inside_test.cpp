@@ -149,5 +149,12 @@ TEST_F(ReadLeaseTest, ExpectsThoseThatItHasWokenAndTheirLeader) {
   EXPECT_FALSE(lease_.arrive());
 }
 
+TEST_F(ReadLeaseTest, APinnedThreadCountsAsAUse) {
+  EXPECT_EQ(lease_.uses(), 0U);
+  lease_.count_use();
+  lease_.count_use();
+  EXPECT_EQ(lease_.uses(), 2U);
+}
+
 }  // namespace
 }  // namespace rr::channel

@@ -6,7 +6,7 @@
 namespace rr::channel {
 namespace {
 
-class ReadersTest : public testing::Test {
+class ReadersTest : public ::testing::Test {
  protected:
   const Time begin_ = Time() + Milliseconds(1'000'000);
   const int one_ = 1;

@@ -2,12 +2,10 @@
 // What a send queue gathers for some microseconds, so that it leaves in one system call. How
 // several callers do it is in gathering_steps.hpp.
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 #include "runtime/cpp/src/channel/connection_tap.hpp"
 #include "runtime/cpp/src/channel/send_queue.hpp"
-#include "runtime/cpp/src/channel/stream_sizes.hpp"
 
 namespace rr::channel {
 namespace {
@@ -45,18 +43,19 @@ SendQueue::Sent SendQueue::stream(Writer& message) {
   const Time last_here = std::exchange(last_streamed_here, now);
   const MutexLock lock(gathering_);
   const Time last = std::exchange(last_streamed_, now);
-  is_first = gathered_size_ == 0;
+  is_first = gathered_.empty();
   if (!has_room_for(message)) return false;
   if (is_first && (now - last_here > pause_between || now - last > pause_on_connection)) {
     return false;
   }
   gather(message);
-  if (terms_.is_server) gathered_packets_.add(1);
+  if (terms_.is_server) gathered_.note_packet();
   return true;
 }
 
 Corked SendQueue::cork(Writer& message, unsigned expected) {
-  if (message.size() >= Writer::attach_threshold || is_closed()) return Corked::no;
+  if (message.size() >= Writer::attach_threshold || is_closed_.load(std::memory_order_relaxed))
+    return Corked::no;
   return GatheringSteps<SendQueue>::cork(*this, message, expected);
 }
 
@@ -65,29 +64,20 @@ void SendQueue::uncork(const std::atomic<unsigned>& expected) {
 }
 
 bool SendQueue::has_room_for(const Writer& message) const {
-  return message.size() <= stream_chunk - gathered_size_;
+  return gathered_.has_room_for(message.size());
 }
 
 // When there is room.
 [[gnu::hot]] void SendQueue::gather(Writer& message) {
-  if (gathered_size_ == 0) gathered_ = allocate(stream_chunk);
-  for (const Piece& piece : message.pieces()) {
-    std::memcpy(gathered_.bytes + gathered_size_, piece.data, piece.size);
-    gathered_size_ += piece.size;
-  }
-  gathered_bytes_.store(gathered_size_, std::memory_order_relaxed);
-  gathered_messages_.add(1);
-  all_gathered_bytes_.add(message.size());
+  gathered_.add(message);
   if (tap_.is_open()) tap_.sent(message.pieces());
 }
 
 [[gnu::hot]] void SendQueue::take_gathered() { GatheringSteps<SendQueue>::take_gathered(*this); }
 
 void SendQueue::move_gathered() {
-  Allocation memory = std::exchange(gathered_, {});
-  const std::size_t size = std::exchange(gathered_size_, 0);
-  gathered_bytes_.store(0, std::memory_order_relaxed);
-  if (size != 0) outbox_.add(std::move(memory), size);
+  GatheredMessages::Taken taken = gathered_.take();
+  if (taken.size != 0) outbox_.add(std::move(taken.memory), taken.size);
   note_waiting();
 }
 

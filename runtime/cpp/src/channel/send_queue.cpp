@@ -48,7 +48,7 @@ SendQueue::Sent SendQueue::send(Writer& message, const How& how) {
 
 // False when the connection is broken or far too much waits.
 [[gnu::hot]] bool SendQueue::send_under_lock(Writer& message, const How& how, bool& has_rest) {
-  if (is_closed()) return false;
+  if (is_closed_.load(std::memory_order_relaxed)) return false;
   const bool is_unsent = has_unsent_.load(std::memory_order_relaxed);
   // A small one that is sent at once costs nothing; of a large one something is mostly left.
   const bool may_wait = is_unsent || message.size() >= Writer::attach_threshold;
@@ -61,9 +61,9 @@ SendQueue::Sent SendQueue::send(Writer& message, const How& how) {
     mark = take_gathered_and_tell(message);
   }
   // Before it leaves: a receiver finds it counted.
-  note_sent(message.size());
-  if (how.newest != nullptr) wire_values_.add(1);
-  if (how.is_packet) packets_.add(1);
+  sent_.add(message.size());
+  if (how.newest != nullptr) sent_.wire_values.add(1);
+  if (how.is_packet) sent_.packets.add(1);
   const bool overtakes = how.priority == Priority::urgent && !outbox_.empty();
   if (overtakes) outbox_.add_urgent(message);
   const std::span<const Piece> rest = overtakes ? std::span<const Piece>() : message.pieces();
@@ -124,7 +124,7 @@ void SendQueue::queue(Writer& message, std::size_t sent, const How& how,
     queue_newest_and_tell(message, *how.newest);
   } else if (how.newest != nullptr && sent == 0) {
     const Outbox::Queued queued = outbox_.add_newest(message, how.newest->stream, how.newest->time);
-    if (queued.mark == nullptr || queued.is_replacement) values_skipped_.add(1);
+    if (queued.mark == nullptr || queued.is_replacement) sent_.values_skipped.add(1);
     if (queued.mark != nullptr) *queued.mark = mark.value_or(0);
   } else {
     outbox_.add(message, sent);
@@ -138,7 +138,7 @@ void SendQueue::queue_newest_and_tell(Writer& message, const Newest& newest) {
   const MutexLock lock(gathering_);
   move_gathered();
   const Outbox::Queued queued = outbox_.add_newest(message, newest.stream, newest.time);
-  if (queued.mark == nullptr || queued.is_replacement) values_skipped_.add(1);
+  if (queued.mark == nullptr || queued.is_replacement) sent_.values_skipped.add(1);
   if (queued.mark == nullptr) return;
   if (queued.is_replacement) tap_.replaced(*queued.mark);
   *queued.mark = tap_.sent(message.pieces());
@@ -161,7 +161,7 @@ bool SendQueue::hold_back(Writer& message, Priority priority) try {
     outbox_.add(message, 0);
     if (priority == Priority::fixed) outbox_.fix_order();
   }
-  note_sent(message.size());
+  sent_.add(message.size());
   answer_bytes_ += message.size();
   note_waiting();
   return true;
@@ -173,7 +173,8 @@ SendQueue::Flushed SendQueue::flush() {
   Flushed result;
   const MutexLock lock(mutex_);
   take_gathered();
-  if ((outbox_.empty() && carrier_unsent() == 0) || is_closed()) return result;
+  if ((outbox_.empty() && carrier_unsent() == 0) || is_closed_.load(std::memory_order_relaxed))
+    return result;
   const std::size_t before = unsent();
   result.is_broken =
       (carrier_ != nullptr && !carrier_->flush()) || outbox_.send(terms_.socket, {}, carrier_) < 0;
@@ -192,7 +193,9 @@ SendQueue::Flushed SendQueue::flush() {
 
 bool SendQueue::check_answers() {
   const MutexLock lock(mutex_);
-  if (has_unsent() && !is_closed() && waiting_answers() > most_answers()) answers_wait_ = true;
+  if (has_unsent() && !is_closed_.load(std::memory_order_relaxed) &&
+      waiting_answers() > most_answers())
+    answers_wait_ = true;
   return do_answers_wait();
 }
 
@@ -212,20 +215,16 @@ std::size_t SendQueue::waiting_answers() const { return std::min(answer_bytes_, 
   outbox_bytes_.store(waiting, std::memory_order_relaxed);
 }
 
-void SendQueue::note_sent(std::size_t size) {
-  messages_.add(1);
-  bytes_.add(size);
-}
-
 // What is taken off is read before what it is taken off from: no difference is ever smaller than it
 // was before.
 Traffic SendQueue::traffic() const {
-  const std::uint64_t skipped = values_skipped_.get();
-  return {.messages_sent = messages_.get() + gathered_messages_.get(),
-          .bytes_sent = bytes_.get() + all_gathered_bytes_.get(),
-          .wire_values = wire_values_.get(),
+  const std::uint64_t skipped = sent_.values_skipped.get();
+  const GatheredMessages& also = gathered();
+  return {.messages_sent = sent_.messages.get() + also.message_count(),
+          .bytes_sent = sent_.bytes.get() + also.byte_count(),
+          .wire_values = sent_.wire_values.get(),
           .values_skipped = skipped,
-          .pipe_packets = packets_.get() + gathered_packets_.get()};
+          .pipe_packets = sent_.packets.get() + also.packet_count()};
 }
 
 std::size_t SendQueue::unsent() const { return outbox_.size() + carrier_unsent(); }
@@ -244,8 +243,7 @@ void SendQueue::clear() {
   outbox_.clear();
   charge_.clear();
   const MutexLock gathering(gathering_);
-  gathered_ = {};
-  gathered_size_ = 0;
+  gathered_.take();
 }
 
 }  // namespace rr::channel

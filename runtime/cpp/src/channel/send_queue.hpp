@@ -13,6 +13,7 @@
 #include "rr/writer.hpp"
 #include "runtime/cpp/src/channel/account.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
+#include "runtime/cpp/src/channel/gathered_messages.hpp"
 #include "runtime/cpp/src/channel/gathering_steps.hpp"
 #include "runtime/cpp/src/channel/metrics.hpp"
 #include "runtime/cpp/src/channel/outbox.hpp"
@@ -108,12 +109,9 @@ class SendQueue {
 
   /// The socket has not taken all.
   [[nodiscard]] bool has_unsent() const { return has_unsent_.load(std::memory_order_relaxed); }
-  [[nodiscard]] bool has_gathered() const {
-    return gathered_bytes_.load(std::memory_order_relaxed) != 0;
-  }
+  [[nodiscard]] bool has_gathered() const { return gathered_bytes() != 0; }
   [[nodiscard]] std::size_t waiting_bytes() const {
-    return outbox_bytes_.load(std::memory_order_relaxed) +
-           gathered_bytes_.load(std::memory_order_relaxed);
+    return outbox_bytes_.load(std::memory_order_relaxed) + gathered_bytes();
   }
   /// Nothing waits but what is gathered.
   [[nodiscard]] bool is_empty() const;
@@ -130,14 +128,30 @@ class SendQueue {
   using Sync = Synchronization;
   friend struct GatheringSteps<SendQueue>;
 
-  [[nodiscard]] bool is_closed() const { return is_closed_.load(std::memory_order_relaxed); }
+  // What was sent, or has waited in the outbox; see Traffic.
+  struct SentCounts {
+    Tally messages;
+    Tally bytes;
+    Tally wire_values;
+    Tally values_skipped;
+    Tally packets;
+    void add(std::size_t size) {
+      messages.add(1);
+      bytes.add(size);
+    }
+  };
+
+  // For what of it needs no lock.
+  [[nodiscard]] const GatheredMessages& gathered() const RR_NO_THREAD_SAFETY_ANALYSIS {
+    return gathered_;
+  }
+  [[nodiscard]] std::size_t gathered_bytes() const { return gathered().bytes(); }
   bool send_under_lock(Writer& message, const How& how, bool& has_rest) RR_REQUIRES(mutex_);
   void queue(Writer& message, std::size_t sent, const How& how, std::optional<std::uint64_t> mark)
       RR_REQUIRES(mutex_);
   void queue_newest_and_tell(Writer& message, const Newest& newest) RR_REQUIRES(mutex_);
   [[nodiscard]] bool admit(std::size_t size, ErrorCode refusal) RR_REQUIRES(mutex_);
   void settle() RR_REQUIRES(mutex_);
-  void note_sent(std::size_t size) RR_REQUIRES(mutex_);
   void note_waiting() RR_REQUIRES(mutex_);
   [[nodiscard]] std::size_t unsent() const RR_REQUIRES(mutex_);
   [[nodiscard]] std::size_t carrier_unsent() const RR_REQUIRES(mutex_);
@@ -166,27 +180,16 @@ class SendQueue {
   std::atomic<bool> has_unsent_{false};
   std::atomic<std::size_t> outbox_bytes_{0};
   std::atomic<Time> last_sent_;
-  // What was sent: written under mutex_.
-  Tally messages_;
-  Tally bytes_;
-  Tally wire_values_;
-  Tally values_skipped_;
-  Tally packets_;
+  SentCounts sent_;  // written under mutex_
 
   Mutex gathering_;
-  Allocation gathered_ RR_GUARDED_BY(gathering_);  // whole messages, which follow the outbox
-  std::size_t gathered_size_ RR_GUARDED_BY(gathering_) = 0;
+  GatheredMessages gathered_ RR_GUARDED_BY(gathering_);  // they follow the outbox
   Time last_streamed_ RR_GUARDED_BY(gathering_){};
   bool is_corked_ RR_GUARDED_BY(gathering_) =
       false;  // a caller waits for others, and sends what they ask
   unsigned missing_ RR_GUARDED_BY(gathering_) =
       0;                  // callers, until half of those expected have come
   Time crowded_until_{};  // nobody corks before; the same, or by the one who has corked
-  std::atomic<std::size_t> gathered_bytes_{0};  // the same as gathered_size_
-  // The same of what was gathered: written under gathering_.
-  Tally gathered_messages_;
-  Tally all_gathered_bytes_;
-  Tally gathered_packets_;
 };
 
 }  // namespace rr::channel

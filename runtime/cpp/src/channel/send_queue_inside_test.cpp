@@ -318,5 +318,48 @@ TEST_F(SendQueueTest, WhatWasGatheredGoesBeforeWhatIsSentLater) {
   EXPECT_EQ(queue_.waiting_bytes(), 0U);
 }
 
+TEST_F(SendQueueTest, CountsWhatHasLeftOrWaits) {
+  socket_.room = 3;
+  send("one");
+  Writer writer;
+  for (const std::int64_t time : {1, 2}) {
+    put(writer, "value");
+    const Newest newest{.stream = 1, .time = time};
+    queue_.send(writer, {.now = Time{} + Milliseconds(5), .newest = &newest});
+  }
+  put(writer, "packet");
+  queue_.send(writer, {.now = Time{} + Milliseconds(7), .is_packet = true});
+  const Traffic traffic = queue_.traffic();
+  EXPECT_EQ(traffic.messages_sent, 4U);
+  EXPECT_EQ(traffic.bytes_sent, 3U + 2 * 5U + 6U);
+  EXPECT_EQ(traffic.wire_values, 2U);
+  EXPECT_EQ(traffic.values_skipped, 1U);
+  EXPECT_EQ(traffic.pipe_packets, 1U);
+  EXPECT_EQ(queue_.last_sent(), Time{} + Milliseconds(7));
+  EXPECT_EQ(cork("corked", 2), Corked::no) << "something waits";
+  EXPECT_EQ(queue_.traffic().messages_sent, 4U);
+}
+
+TEST_F(SendQueueTest, CountsWhatWasGathered) {
+  ASSERT_EQ(cork("corked", 2), Corked::first);
+  EXPECT_EQ(queue_.traffic().messages_sent, 1U);
+  EXPECT_EQ(queue_.traffic().bytes_sent, 6U);
+  queue_.close();
+  queue_.clear();
+  EXPECT_FALSE(queue_.has_gathered());
+  EXPECT_EQ(queue_.traffic().messages_sent, 1U) << "what was counted stays";
+}
+
+TEST_F(SendQueueTest, ManyAnswersAreWorthALook) {
+  EXPECT_EQ(queue_.carrier(), &socket_);
+  EXPECT_FALSE(queue_.has_many_answers());
+  socket_.room = 0;
+  answer(std::string(100, 'x'));
+  EXPECT_FALSE(queue_.has_many_answers());
+  answer("x");
+  EXPECT_TRUE(queue_.has_many_answers());
+  EXPECT_TRUE(queue_.check_answers());
+}
+
 }  // namespace
 }  // namespace rr::channel

@@ -56,7 +56,7 @@ StreamConnection::Received StreamConnection::receive_bytes(Scratch& scratch, boo
       if (failure.empty()) {
         return fail_reading({ErrorCode::connection_error, "the other side closed the connection"});
       }
-      if (Metrics* const metrics = was_heard_ ? nullptr : reactor_->metrics()) {
+      if (Metrics* const metrics = keep_alive_.was_heard() ? nullptr : reactor_->metrics()) {
         metrics->count_failed_handshake();
       }
       log(*options_, LogLevel::warning,
@@ -66,7 +66,7 @@ StreamConnection::Received StreamConnection::receive_bytes(Scratch& scratch, boo
     note_received();
     may_block = false;
     is_full = true;  // the socket may have more
-    if (!was_heard_ && layers_.is_layered() && !layers_.is_proven()) note_peer();
+    if (!keep_alive_.was_heard() && layers_.is_layered() && !layers_.is_proven()) note_peer();
     result = take_bytes(scratch, static_cast<std::size_t>(size));
     if (result != Received::some) return result;
   } while (layers_.carrier()->has_received());
@@ -93,7 +93,7 @@ void StreamConnection::note_peer() {
 // taken for something that was said inside.
 StreamConnection::Received StreamConnection::begin_tls() {
   layers_.forget_tls();
-  was_heard_ = false;  // so that the handshake has its time limit too
+  keep_alive_.set_heard(false);  // so that the handshake has its time limit too
   const Carrier* const carrier = layers_.carrier();
   const bool has_more = inbox_.is_assembling() || !inbox_.kept().empty() ||
                         (carrier != nullptr && carrier->has_received()) ||

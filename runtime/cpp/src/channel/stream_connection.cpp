@@ -16,9 +16,13 @@ std::string remote_address_of(int descriptor, const LinkTerms& terms) {
   return terms.scheme == "rr+intra" ? "intra" : terms.scheme;
 }
 
-}  // namespace
+// A server waits a little longer, so that the client's heartbeat comes first.
+Milliseconds heartbeat_period(bool is_server, const LinkTerms& terms) {
+  const Milliseconds period = terms.heartbeat_period;
+  return is_server ? period + period / 5 : period;
+}
 
-static_assert(std::atomic<Time>::is_always_lock_free);
+}  // namespace
 
 StreamConnection::StreamConnection(Role role, Descriptor socket, std::shared_ptr<Reactor> reactor,
                                    std::shared_ptr<const NodeOptions> options)
@@ -48,8 +52,10 @@ StreamConnection::StreamConnection(Role role, Descriptor socket, std::shared_ptr
                .must_certify_clients = options_->tls.must_certify_clients},
               terms_, sending_, std::move(carrier)),
       strand_(options_->request_queue_limit, account_),
-      last_received_(coarse_now()),
-      created_(coarse_now()),
+      keep_alive_({.first_message_timeout = options_->first_message_timeout,
+                   .receive_timeout = terms_.receive_timeout,
+                   .heartbeat_period = heartbeat_period(role_ == Role::server, terms_)},
+                  coarse_now()),
       watch_(*reactor_, socket_.get(), *this),
       meter_(reactor_->metrics(), *this) {
   platform::set_stream_options(socket_.get());
@@ -83,7 +89,7 @@ void StreamConnection::tell_handshake(std::span<const std::byte> request,
 }
 
 void StreamConnection::start(std::shared_ptr<Receiver> receiver) {
-  was_heard_ = role_ == Role::client;
+  keep_alive_.set_heard(role_ == Role::client);
   {
     const MutexLock lock(mutex_);
     if (is_closing_) return;
@@ -96,14 +102,13 @@ void StreamConnection::start(std::shared_ptr<Receiver> receiver) {
         if (const auto self = weak.lock()) reactor->post([self] { self->flush(); });
       });
     }
-    reactor_->begin_connection();
+    reactor_->connections().begin();
     self_ = shared_from_this();
     watch_.begin(role_ == Role::client, sending_.has_unsent());
   }
   constexpr Milliseconds first_look{400};  // 04, section 5
   const Milliseconds soon = role_ == Role::server ? options_->first_message_timeout : first_look;
-  reactor_->schedule(life_timer_, weak_from_this(),
-                     after(Clock::now(), std::min(soon, heartbeat_period())));
+  reactor_->schedule(life_timer_, weak_from_this(), keep_alive_.first_look(Clock::now(), soon));
 }
 
 std::string StreamConnection::local_url() const {
@@ -140,49 +145,25 @@ Limits StreamConnection::limits() const {
   return {.message_size = largest_message(), .depth = options_->limits.depth};
 }
 
-Milliseconds StreamConnection::heartbeat_period() const {
-  const Milliseconds period = terms_.heartbeat_period;
-  return role_ == Role::server ? period + period / 5 : period;
-}
-
 // On the watching thread.
 void StreamConnection::look_after() {
-  const Time now = Clock::now();
-  const Time close_at = close_at_;
-  if (now >= close_at) {
-    close(Error(ErrorCode::connection_error, "the connection was closed"));
-    return;
-  }
-  const Time first_message_due = after(created_, options_->first_message_timeout);
-  if (!was_heard_ && now >= first_message_due) {
-    close(Error(ErrorCode::connection_error, "the other side has not said who it is"));
-    return;
-  }
-  const Time last_sent = sending_.last_sent();
   bool is_full = false;  // then it is not the other side that is slow
   {
     const MutexLock lock(mutex_);
     is_full = strand_.is_full();
   }
-  if (!is_full && last_sent - last_received_.load() > terms_.receive_timeout) {
-    close(Error(ErrorCode::connection_error, "the other side does not answer any more"));
+  const KeepAlive::Look look = keep_alive_.look(Clock::now(), sending_.last_sent(), is_full);
+  if (look.failure != nullptr) {
+    close(Error(ErrorCode::connection_error, look.failure));
     return;
   }
-  Time next = after(last_sent, heartbeat_period());
-  if (next <= now) {
-    if (was_heard_) send_test();
-    next = after(now, heartbeat_period());
-  }
-  if (!was_heard_) next = std::min(next, first_message_due);
-  // Many connections of one age are looked after together.
-  constexpr Milliseconds grain{50};
-  if (next != never && heartbeat_period() > 100 * grain) next += grain - (next - Time{}) % grain;
-  reactor_->schedule(life_timer_, weak_from_this(), std::min(next, close_at));
+  if (look.is_test_due) send_test();
+  reactor_->schedule(life_timer_, weak_from_this(), look.next);
 }
 
 void StreamConnection::close_after(Milliseconds delay) {
   const Time when = after(Clock::now(), delay);
-  close_at_ = when;
+  keep_alive_.close_at(when);
   reactor_->schedule(life_timer_, weak_from_this(), when);
 }
 

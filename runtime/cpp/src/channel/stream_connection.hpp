@@ -13,6 +13,7 @@
 #include "runtime/cpp/src/channel/connection_tap.hpp"
 #include "runtime/cpp/src/channel/flusher.hpp"
 #include "runtime/cpp/src/channel/inbox.hpp"
+#include "runtime/cpp/src/channel/keep_alive.hpp"
 #include "runtime/cpp/src/channel/link_terms.hpp"
 #include "runtime/cpp/src/channel/member_timer.hpp"
 #include "runtime/cpp/src/channel/message_deadline.hpp"
@@ -42,6 +43,7 @@ struct CallerSteps;
 ///   of.
 /// - SendQueue: what leaves, and what waits for room.
 /// - SocketWatch: whether the reactor looks for input.
+/// - KeepAlive: when a heartbeat is due, and when the other side counts as gone.
 /// - PeerLayers: TLS and web sockets, and who the other side is.
 ///
 /// Lease, strand and watch share one lock, `mutex_`, because most events change two of them. It is
@@ -52,8 +54,8 @@ struct CallerSteps;
 /// more of a message. What waits is charged to the account; a message that is handled where it was
 /// received, and answered at once, never touches it.
 ///
-/// Larger than other classes: it implements the thirty functions of Connection, and every function
-/// beside them joins two or more parts.
+/// Large because it implements the thirty functions of Connection, and every function beside them
+/// joins two or more parts, most of them under the lock that these share.
 class StreamConnection final : public Connection,
                                public Pollable,
                                public Flushable,
@@ -240,7 +242,6 @@ class StreamConnection final : public Connection,
   void finish_close();
   [[nodiscard]] Limits limits() const;
   [[nodiscard]] std::uint32_t largest_message() const;
-  [[nodiscard]] Milliseconds heartbeat_period() const;
 
   // For the functions of the lease that say that they need no lock.
   [[nodiscard]] ReadLease& lease() RR_NO_THREAD_SAFETY_ANALYSIS { return lease_; }
@@ -290,11 +291,8 @@ class StreamConnection final : public Connection,
   bool holds_back_answers_ = false;  // with the strand
 
   MessageDeadline message_deadline_;
-  std::atomic<Time> last_received_;
+  KeepAlive keep_alive_;
   std::atomic<bool> is_end_in_sight_{false};  // the reactor has been told of it, once
-  std::atomic<bool> was_heard_{false};        // a whole message has come
-  std::atomic<Time> close_at_{never};
-  const Time created_;
   MemberTimer<StreamConnection, &StreamConnection::look_after> life_timer_{*this};
   MemberTimer<StreamConnection, &StreamConnection::look_at_watch> watch_timer_{*this};
   MemberTimer<StreamConnection, &StreamConnection::look_at_message> look_timer_{*this};

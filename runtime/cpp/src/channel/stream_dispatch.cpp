@@ -147,7 +147,7 @@ void StreamConnection::queue_rest(StrandTurn& turn) {
       lock.unlock();
       receiver_->closed();
       receiver_.reset();
-      reactor_->end_connection();
+      reactor_->connections().end();
       lock.lock();
     } else {
       break;

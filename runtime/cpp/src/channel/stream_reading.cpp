@@ -103,12 +103,12 @@ void StreamConnection::read_as_reactor(bool until_end) {
   std::size_t bytes = 0;
   for (int left = receives_at_once; left != 0; --left) {
     bool is_full = false;
-    const Time last_received = last_received_.load(std::memory_order_relaxed);
+    const Time last_received = keep_alive_.last_received();
     const Received received = receive(*scratch, false, is_full);
     bytes += std::exchange(scratch->received, 0);
     const bool is_end_near = until_end || is_end_in_sight_.load(std::memory_order_relaxed);
     const bool has_more = received == Received::some && (is_full || is_end_near);
-    const Time now_received = last_received_.load(std::memory_order_relaxed);
+    const Time now_received = keep_alive_.last_received();
     const bool may_pin = pace_.is_busy(last_received, now_received, lease().uses());
     const bool is_again = leave_read_lease(*scratch, true);
     if (!is_again && !has_more) {
@@ -181,13 +181,13 @@ Error StreamConnection::no_memory(std::string_view why) {
 // With the read lease.
 [[gnu::hot]] void StreamConnection::note_received() {
   const Time now = coarse_now();
-  last_received_.store(now, std::memory_order_relaxed);
+  keep_alive_.note_received(now);
   if (role_ == Role::server) reactor_->readers().note(this, now);
 }
 
 // With the read lease: other connections receive data at the same time.
 bool StreamConnection::is_beside_others() const {
-  return reactor_->readers().are_several(last_received_.load(std::memory_order_relaxed));
+  return reactor_->readers().are_several(keep_alive_.last_received());
 }
 
 // With the read lease.
@@ -263,9 +263,9 @@ void StreamConnection::refuse_stream(const Scratch& scratch, std::size_t size) {
                     message, first, &Reactor::yield)) {
     return false;
   }
-  if (!was_heard_.load(std::memory_order_relaxed)) {
+  if (!keep_alive_.was_heard()) {
     had_message_ = true;
-    was_heard_ = true;
+    keep_alive_.set_heard(true);
   }
   if (layers_.begins_tls()) {
     layers_.note_bytes_behind();

@@ -118,9 +118,7 @@ void StreamConnection::fail_later() {
       if (!sending_.hold_back(message, priority)) fail_later();
     } else {
       // The request came a moment ago.
-      send(message, {.now = last_received_.load(std::memory_order_relaxed),
-                     .priority = priority,
-                     .is_answer = true});
+      send(message, {.now = keep_alive_.last_received(), .priority = priority, .is_answer = true});
     }
   } catch (const Error& error) {
     // When the client is gone nobody is left that could be told.
@@ -140,7 +138,7 @@ void StreamConnection::send_own(Writer& message) {
 void StreamConnection::flush() {
   const SendQueue::Flushed flushed = sending_.flush();
   // Whoever takes answers is there, though it is not read.
-  if (flushed.took_answers) last_received_.store(coarse_now(), std::memory_order_relaxed);
+  if (flushed.took_answers) keep_alive_.note_received(coarse_now());
   if (flushed.may_read_on) reactor_->post([self = shared_from_this()] { self->go_on(); });
   if (flushed.is_broken) {
     close(Error(ErrorCode::connection_error, not_taken));

@@ -20,7 +20,7 @@ void StreamConnection::watch_input() {
 // A caller has ended reading, and nobody goes on.
 [[gnu::hot]] void StreamConnection::end_call() {
   const bool has_more = lease_.is_asked_again();
-  const Time last_received = last_received_.load(std::memory_order_relaxed);
+  const Time last_received = keep_alive_.last_received();
   if (watch_.end_call(last_received, lease_.uses(), has_more, sending_.has_unsent())) {
     schedule_watch_timer();
   }
@@ -76,10 +76,10 @@ void StreamConnection::acknowledge_late() {
     const unsigned since = receives++ % receives_of_late_acknowledgements;
     if (pace_.acknowledges_late() && since == 0) acknowledge_late();
     bool is_full = false;
-    const Time before = last_received_.load(std::memory_order_relaxed);
+    const Time before = keep_alive_.last_received();
     const Received received = receive(scratch, true, is_full);
     if (since == 1 || since == 2) {
-      pace_.look_for_waiting_sender(before, last_received_.load(std::memory_order_relaxed));
+      pace_.look_for_waiting_sender(before, keep_alive_.last_received());
     }
     is_again = leave_read_lease(scratch, true);
     give_way_to_others(std::exchange(scratch.received, 0));

@@ -27,6 +27,21 @@ Handling admit(const ThreadUse& use, Pace pace) {
   return may_use_reserve ? Handling::in_place : Handling::later;
 }
 
+std::shared_ptr<AddressThreads> AddressTable::open(const std::string& key) {
+  constexpr std::size_t first_sweep = 64;
+  if (addresses_.size() >= std::max(first_sweep, swept_ * 2)) {
+    std::erase_if(addresses_, [](const auto& item) { return item.second.expired(); });
+    swept_ = addresses_.size();
+  }
+  std::weak_ptr<AddressThreads>& place = addresses_[key];
+  std::shared_ptr<AddressThreads> address = place.lock();
+  if (!address) {
+    address = std::make_shared<AddressThreads>(key);
+    place = address;
+  }
+  return address;
+}
+
 ThreadShare::ThreadShare(std::shared_ptr<AddressThreads> address) : address_(std::move(address)) {
   const Time last = address_->last_stall.load(std::memory_order_relaxed);
   if (last != Time::min() && coarse_now() - last < stall_memory) add_slowness(slow_from);

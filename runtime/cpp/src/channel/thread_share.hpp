@@ -2,9 +2,11 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <utility>
 
 #include "runtime/cpp/src/channel/time.hpp"
@@ -45,6 +47,19 @@ struct AddressThreads {
   const std::string key;
   unsigned held = 0;
   std::atomic<Time> last_stall{Time::min()};  ///< when a handler last blocked the polling thread
+};
+
+/// The remote addresses that connections are open from, or were a while ago. No lock of itself.
+class AddressTable {
+ public:
+  /// The one with this key, for as long as somebody keeps it.
+  std::shared_ptr<AddressThreads> open(const std::string& key);
+  /// Addresses, those without a connection that were not swept yet too.
+  [[nodiscard]] std::size_t size() const { return addresses_.size(); }
+
+ private:
+  std::unordered_map<std::string, std::weak_ptr<AddressThreads>> addresses_;
+  std::size_t swept_ = 0;  // that were left of them
 };
 
 /// The threads that handlers of one connection hold, and how long they use to take. A handler holds

@@ -2,6 +2,8 @@
 // Who may hold a thread, decided without any.
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "runtime/cpp/src/channel/remote_address.hpp"
@@ -153,6 +155,32 @@ TEST(RemoteKeys, AreTheAddressOrItsNetworkOf64Bits) {
   EXPECT_EQ(remote_key("2001:db8:1:2::9"), remote_key("2001:db8:1:2:ffff::1"));
   EXPECT_NE(remote_key("2001:db8:1:2::9"), remote_key("2001:db8:1:3::9"));
   EXPECT_EQ(remote_key("fe80::1%eth0"), "fe80::/64");
+}
+
+TEST(AddressTable, ConnectionsOfOneAddressShareIt) {
+  AddressTable table;
+  auto first = table.open("10.0.0.1");
+  EXPECT_EQ(first->key, "10.0.0.1");
+  EXPECT_EQ(table.open("10.0.0.1"), first);
+  EXPECT_NE(table.open("10.0.0.2"), first);
+  first->held = 3;
+  first.reset();
+  EXPECT_EQ(table.open("10.0.0.1")->held, 0U) << "nobody has kept it";
+}
+
+TEST(AddressTable, AddressesWithoutAConnectionAreSwept) {
+  AddressTable table;
+  const auto kept = table.open("kept");
+  for (int i = 0; i < 10'000; ++i) table.open("address " + std::to_string(i));
+  EXPECT_LE(table.size(), 64U);
+  EXPECT_EQ(table.open("kept"), kept);
+}
+
+TEST(ThreadShare, OneThatHasDepartedIsKnown) {
+  ThreadShare share(std::make_shared<AddressThreads>("10.0.0.1"));
+  EXPECT_FALSE(share.has_departed());
+  share.depart();
+  EXPECT_TRUE(share.has_departed());
 }
 
 }  // namespace

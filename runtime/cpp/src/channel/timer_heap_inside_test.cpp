@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "runtime/cpp/src/channel/member_timer.hpp"
 #include "runtime/cpp/src/channel/timer_heap.hpp"
 
 namespace rr::channel {
@@ -127,6 +128,20 @@ TEST_F(TimerHeaps, KeepTheOrderWhateverIsScheduledMovedAndCancelled) {
   }));
   EXPECT_EQ(static_cast<std::ptrdiff_t>(log.size()),
             std::count_if(due.begin(), due.end(), [](int time) { return time >= 0; }));
+}
+
+class Owner {
+ public:
+  void count() { ++calls; }
+  int calls = 0;
+  MemberTimer<Owner, &Owner::count> timer{*this};
+};
+
+TEST(MemberTimer, CallsAFunctionOfItsOwner) {
+  Owner owner;
+  owner.timer.on_timer();
+  owner.timer.on_timer();
+  EXPECT_EQ(owner.calls, 2);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,10 +41,10 @@ std::string name(SocketWatch::State state) {
   return {};
 }
 
-template <class Part>
-std::vector<std::string> rows_of_code() {
+template <class State>
+std::vector<std::string> rows_of_code(std::span<const Transition<State>> transitions) {
   std::vector<std::string> rows;
-  for (const auto& row : Part::transitions()) {
+  for (const auto& row : transitions) {
     rows.push_back("| " + name(row.from) + " | " + row.by + " | " + name(row.to) + " |");
   }
   return rows;
@@ -63,11 +64,12 @@ std::vector<std::string> rows_of_page(const std::string& heading) {
 }
 
 TEST(Transitions, OfTheStrandAreThoseOfThePage) {
-  EXPECT_EQ(rows_of_page("### States of the strand"), rows_of_code<Strand>());
+  EXPECT_EQ(rows_of_page("### States of the strand"), rows_of_code(Strand::transitions()));
 }
 
 TEST(Transitions, OfTheSocketWatchAreThoseOfThePage) {
-  EXPECT_EQ(rows_of_page("### States of the socket watch"), rows_of_code<SocketWatch>());
+  EXPECT_EQ(rows_of_page("### States of the socket watch"),
+            rows_of_code(SocketWatch::transitions()));
 }
 
 // The cells of a row, without blanks and backquotes at their ends.
@@ -97,6 +99,21 @@ std::string body_of(const std::string& text, const std::string& function) {
   return text.substr(begin, text.find("\n}", begin) - begin);
 }
 
+// The arrows of the diagram behind a heading: what calls, but for the last one, which is an answer.
+std::vector<std::string> arrows_of_page(const std::string& heading) {
+  std::ifstream page(ROBDEF_SOURCE_DIR "/docs/architecture.md");
+  std::vector<std::string> arrows;
+  bool is_behind = false;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("#")) is_behind = line == heading;
+    const std::size_t colon = line.find(": ");
+    if (is_behind && line.find("->>") < colon && line.find("-->>") > colon) {
+      arrows.push_back(line.substr(line.find("->>") + 3));
+    }
+  }
+  return arrows;
+}
+
 class Sequences : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Sequences, NameFunctionsAndTheirLocks) {
@@ -113,6 +130,20 @@ TEST_P(Sequences, NameFunctionsAndTheirLocks) {
     const bool is_under_lock = cell[1].find("under_lock") != std::string::npos;
     EXPECT_EQ(locks || is_under_lock, cell[3] == "mutex_");
   }
+}
+
+// An arrow leads to the class of the function, which it names with its file and the lock.
+TEST_P(Sequences, AreDrawnStepByStep) {
+  std::vector<std::string> expected;
+  for (const std::string& row : rows_of_page(GetParam())) {
+    const std::vector<std::string> cell = cells(row);
+    ASSERT_EQ(cell.size(), 4U) << row;
+    const std::string owner = cell[1].substr(0, cell[1].find_first_of("<:"));
+    const std::string file = cell[2].substr(cell[2].rfind('/') + 1);
+    expected.push_back(owner + ": " + cell[1] + " (" + file + ")" +
+                       (cell[3].empty() ? "" : " [" + cell[3] + "]"));
+  }
+  EXPECT_EQ(arrows_of_page(GetParam()), expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(Pages, Sequences,

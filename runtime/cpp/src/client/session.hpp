@@ -66,6 +66,9 @@ struct SessionLimits {
 };
 
 /// A client's end of a connection: the session of one client with one service.
+///
+/// Large because all kinds of requests meet here: they take numbers and wait for answers in one
+/// table, which one lock guards. Pipes, wires, callbacks, stubs and definitions are parts.
 class Session final : public channel::Receiver,
                       public endpoint::Attended,
                       public endpoint::Caller,

@@ -13,15 +13,6 @@
 namespace rr {
 namespace {
 
-constexpr std::size_t queue_packets = 65'536;
-constexpr std::size_t queue_bytes = std::size_t{64} * 1024 * 1024;
-// Packets that have come before earlier ones. Nobody sends them so on purpose.
-constexpr std::size_t held_packets = 1024;
-constexpr std::size_t held_bytes = std::size_t{16} * 1024 * 1024;
-// What a packet takes besides its bytes, about; and how much is drawn at a time.
-constexpr std::size_t packet_cost = 128;
-constexpr std::size_t quantum = 1024;
-
 Error closed_error() { return {ErrorCode::invalid_operation, "the pipe endpoint is closed"}; }
 
 }  // namespace
@@ -91,9 +82,7 @@ PipeEnd::State::State(std::shared_ptr<const endpoint::Core> core,
       index_text_(std::to_string(identity.index)),
       threads_(side ? side->connection().threads() : nullptr),
       side_(std::move(side)),
-      charge_(side_->connection().account()),
-      limit_(queue_packets),
-      byte_limit_(queue_bytes) {}
+      packets_(side_->connection().account()) {}
 
 [[gnu::hot]] bool PipeEnd::State::may_receive() const {
   return (identity.member->access & (identity.is_client ? writeonly : readonly)) == 0;
@@ -107,77 +96,12 @@ PipeEnd::State::State(std::shared_ptr<const endpoint::Core> core,
     const MutexLock lock(mutex_);
     if (is_closed_) return true;
     is_awaited = waiting_ != 0;
-    Packet packet{std::move(value), size, packet_cost + size + memory};
-    if (identity.is_unreliable) {
-      has_room = push(std::move(packet));
-    } else if (number != expected_) {
-      return hold_back(number, std::move(packet));
-    } else {
-      ++expected_;
-      has_room = push(std::move(packet));
-      while (!held_.empty()) {
-        const auto next = held_.find(expected_);
-        if (next == held_.end()) break;
-        ++expected_;
-        held_bytes_ -= next->second.size;
-        give_back(next->second.cost);  // the queue draws again
-        has_room = push(std::move(next->second)) && has_room;
-        held_.erase(next);
-      }
-    }
+    has_room = identity.is_unreliable
+                   ? packets_.add(std::move(value), size, memory)
+                   : packets_.add_numbered(number, std::move(value), size, memory);
   }
   if (is_awaited) arrived_.notify_all();  // a packet is there for all until one takes it
   return has_room;
-}
-
-// Numbers that have passed already come from a sender that counts wrong.
-bool PipeEnd::State::hold_back(std::uint32_t number, Packet packet) {
-  if (static_cast<std::int32_t>(number - expected_) < 0) return true;
-  if (held_.size() >= held_packets || held_bytes_ + packet.size > held_bytes) return false;
-  if (held_.contains(number)) return true;
-  if (!draw(packet.cost)) return false;
-  held_bytes_ += packet.size;
-  held_.emplace(number, std::move(packet));
-  return true;
-}
-
-[[gnu::hot]] bool PipeEnd::State::push(Packet packet) {
-  while (true) {
-    const bool is_full =
-        !queue_.empty() && (queue_.size() >= limit_ || queue_bytes_ + packet.size > byte_limit_);
-    if (!is_full && draw(packet.cost)) break;
-    if (when_full_ == WhenFull::close) return false;
-    ++lost_;
-    if (when_full_ == WhenFull::drop_newest || queue_.empty()) return true;
-    pop();
-  }
-  queue_bytes_ += packet.size;
-  queue_.push_back(std::move(packet));
-  return true;
-}
-
-[[gnu::hot]] PipeEnd::State::Packet PipeEnd::State::pop() {
-  Packet packet = std::move(queue_.front());
-  queue_.pop_front();
-  queue_bytes_ -= packet.size;
-  give_back(packet.cost);
-  return packet;
-}
-
-// False when the other side makes this one hold too much.
-[[gnu::hot]] bool PipeEnd::State::draw(std::size_t cost) {
-  if (cost_ + cost > charge_.bytes()) {
-    const std::size_t more = cost_ + cost - charge_.bytes();
-    if (!charge_.add(more + quantum) && !charge_.add(more)) return false;
-  }
-  cost_ += cost;
-  return true;
-}
-
-// A little stays drawn, for the packet that comes next.
-[[gnu::hot]] void PipeEnd::State::give_back(std::size_t cost) {
-  cost_ -= cost;
-  if (charge_.bytes() > cost_ + 2 * quantum) charge_.reduce(charge_.bytes() - cost_ - quantum);
 }
 
 [[gnu::hot]] void PipeEnd::State::deliver() {
@@ -195,15 +119,15 @@ bool PipeEnd::State::hold_back(std::uint32_t number, Packet packet) {
     auto ended = std::exchange(receiver_, nullptr);
     const MutexUnlock unlock(mutex_);
     ended.reset();
-  } else if (!waitings_.empty() && (!queue_.empty() || is_closed_)) {
+  } else if (!waitings_.empty() && (!packets_.empty() || is_closed_)) {
     std::shared_ptr<Waiting> waiting = std::move(waitings_.front());
     waitings_.pop_front();
-    std::shared_ptr<void> value = queue_.empty() ? nullptr : pop().value;
+    std::shared_ptr<void> value = packets_.empty() ? nullptr : packets_.pop();
     const MutexUnlock unlock(mutex_);
     complete(std::move(waiting), std::move(value));
-  } else if (receiver_ && !queue_.empty()) {
+  } else if (receiver_ && !packets_.empty()) {
     auto receiver = receiver_;
-    std::shared_ptr<void> value = pop().value;
+    std::shared_ptr<void> value = packets_.pop();
     const MutexUnlock unlock(mutex_);
     hand_to(std::move(receiver), std::move(value));
   } else if (is_closed_ && (receiver_ || closed_function_)) {
@@ -246,18 +170,18 @@ void PipeEnd::State::deliver_soon() {
 
 std::shared_ptr<void> PipeEnd::State::take() {
   const MutexLock lock(mutex_);
-  return queue_.empty() ? nullptr : pop().value;
+  return packets_.empty() ? nullptr : packets_.pop();
 }
 
 std::shared_ptr<const void> PipeEnd::State::peek() const {
   const MutexLock lock(mutex_);
-  return queue_.empty() ? nullptr : queue_.front().value;
+  return packets_.empty() ? nullptr : packets_.front();
 }
 
 bool PipeEnd::State::wait(std::chrono::milliseconds limit) {
   const channel::Time deadline = channel::after(channel::Clock::now(), limit);
   MutexLock lock(mutex_);
-  if (queue_.empty() && !is_closed_) {
+  if (packets_.empty() && !is_closed_) {
     const auto side = side_;
     lock.unlock();
     side->connection().expect();  // no caller will read it
@@ -265,28 +189,26 @@ bool PipeEnd::State::wait(std::chrono::milliseconds limit) {
     lock.lock();
   }
   ++waiting_;
-  while (queue_.empty() && !is_closed_ && channel::Clock::now() < deadline) {
+  while (packets_.empty() && !is_closed_ && channel::Clock::now() < deadline) {
     channel::wait_until(arrived_, mutex_, deadline);
   }
   --waiting_;
-  return !queue_.empty();
+  return !packets_.empty();
 }
 
 std::size_t PipeEnd::State::available() const {
   const MutexLock lock(mutex_);
-  return queue_.size();
+  return packets_.size();
 }
 
 std::size_t PipeEnd::State::lost_count() const {
   const MutexLock lock(mutex_);
-  return lost_;
+  return packets_.lost_count();
 }
 
 void PipeEnd::State::set_queue_limit(std::size_t packets, WhenFull when_full, std::size_t bytes) {
   const MutexLock lock(mutex_);
-  limit_ = packets;
-  byte_limit_ = bytes;
-  when_full_ = when_full;
+  packets_.set_limit(packets, when_full, bytes);
 }
 
 Subscription PipeEnd::State::on_received(Function<void(std::shared_ptr<void>)> function) {
@@ -297,7 +219,7 @@ Subscription PipeEnd::State::on_received(Function<void(std::shared_ptr<void>)> f
   {
     const MutexLock lock(mutex_);
     receiver_.swap(before);
-    has_more = !queue_.empty();
+    has_more = !packets_.empty();
     side = side_;
   }
   if (has_more) deliver_soon();
@@ -320,7 +242,7 @@ void PipeEnd::State::start_receive(std::unique_ptr<Completion> completion) {
     const MutexLock lock(mutex_);
     has_ended = waiting->ended_by != ErrorCode::none;
     if (!has_ended) waitings_.push_back(waiting);
-    is_due = !has_ended && (!queue_.empty() || is_closed_);
+    is_due = !has_ended && (!packets_.empty() || is_closed_);
     side = side_;
   }
   if (has_ended) fail_receive(waiting);
@@ -367,16 +289,14 @@ void PipeEnd::State::on_closed(Function<void()> function) {
 
 bool PipeEnd::State::finish() {
   std::shared_ptr<endpoint::PipeSide> side;
-  std::map<std::uint32_t, Packet> held;
+  endpoint::ReceivedPackets::Held held;  // goes without a lock
   {
     const MutexLock sending(sending_);
     const MutexLock lock(mutex_);
     if (is_closed_) return false;
     is_closed_ = true;
     side = std::move(side_);
-    held.swap(held_);
-    for (const auto& [number, packet] : held) give_back(packet.cost);
-    held_bytes_ = 0;
+    held = packets_.drop_held();
   }
   arrived_.notify_all();
   deliver_soon();

@@ -8,7 +8,6 @@
 #include <deque>
 #include <exception>
 #include <functional>
-#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -19,6 +18,7 @@
 #include "rr/writer.hpp"
 #include "runtime/cpp/src/channel/connection.hpp"
 #include "runtime/cpp/src/endpoint/core.hpp"
+#include "runtime/cpp/src/endpoint/received_packets.hpp"
 #include "runtime/cpp/src/endpoint/subscription.hpp"
 #include "runtime/cpp/src/endpoint/user_code.hpp"
 
@@ -109,21 +109,11 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   [[nodiscard]] std::shared_ptr<endpoint::PipeSide> side() const;
 
  private:
-  struct Packet {
-    std::shared_ptr<void> value;
-    std::size_t size = 0;
-    std::size_t cost = 0;  // what is drawn for it
-  };
   class Receiver;
   class Waiting;
 
   template <class Write>
   std::uint32_t send_packet(const Write& write_value);
-  [[nodiscard]] bool hold_back(std::uint32_t number, Packet packet) RR_REQUIRES(mutex_);
-  [[nodiscard]] bool push(Packet packet) RR_REQUIRES(mutex_);
-  Packet pop() RR_REQUIRES(mutex_);
-  [[nodiscard]] bool draw(std::size_t cost) RR_REQUIRES(mutex_);
-  void give_back(std::size_t cost) RR_REQUIRES(mutex_);
   bool deliver_one() RR_REQUIRES(mutex_);
   void complete(std::shared_ptr<Waiting> waiting, std::shared_ptr<void> value) const;
   void hand_to(std::shared_ptr<Receiver> receiver, std::shared_ptr<void> value) const;
@@ -158,18 +148,7 @@ struct PipeEnd::State : std::enable_shared_from_this<State> {
   mutable Mutex mutex_;
   mutable Condition arrived_;
   std::size_t waiting_ RR_GUARDED_BY(mutex_) = 0;  // threads in wait()
-  std::uint32_t expected_ RR_GUARDED_BY(mutex_) = 1;
-  std::map<std::uint32_t, Packet> held_ RR_GUARDED_BY(mutex_);
-  std::size_t held_bytes_ RR_GUARDED_BY(mutex_) = 0;
-  std::deque<Packet> queue_ RR_GUARDED_BY(mutex_);
-  std::size_t queue_bytes_ RR_GUARDED_BY(mutex_) = 0;
-  channel::Charge charge_
-      RR_GUARDED_BY(mutex_);  // for packets that are held back or in the queue, and a little more
-  std::size_t cost_ RR_GUARDED_BY(mutex_) = 0;  // of those packets
-  std::size_t limit_ RR_GUARDED_BY(mutex_);
-  std::size_t byte_limit_ RR_GUARDED_BY(mutex_);
-  WhenFull when_full_ RR_GUARDED_BY(mutex_) = WhenFull::close;
-  std::size_t lost_ RR_GUARDED_BY(mutex_) = 0;
+  endpoint::ReceivedPackets packets_ RR_GUARDED_BY(mutex_);
   bool is_delivering_ RR_GUARDED_BY(mutex_) = false;
   std::shared_ptr<Receiver> receiver_ RR_GUARDED_BY(mutex_);
   std::deque<std::shared_ptr<Waiting>> waitings_

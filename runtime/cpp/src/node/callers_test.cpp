@@ -62,7 +62,7 @@ class SharedConnection : public ::testing::Test {
   ~SharedConnection() override {
     connection_->close(Error(ErrorCode::connection_error, "the test is over"));
     EXPECT_TRUE(eventually([&] { return callers_->is_closed.load(); }));
-    reactor_->wait_for_connections();
+    reactor_->connections().wait_for_none();
     reactor_->stop();
   }
 

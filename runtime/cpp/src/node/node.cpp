@@ -93,7 +93,7 @@ void NodeState::finish_end() {
     old_workers.swap(workers);
   }
   for (Worker& worker : old_workers) worker.thread.join();
-  core->reactor().wait_for_connections();
+  core->reactor().connections().wait_for_none();
   core->stop();
 }
 

@@ -90,7 +90,7 @@ class Staying : public ::testing::Test {
     for (const auto& link : links_) {
       link->connection->close(Error(ErrorCode::connection_error, "the test is over"));
     }
-    reactor_->wait_for_connections();
+    reactor_->connections().wait_for_none();
     reactor_->stop();
   }
 

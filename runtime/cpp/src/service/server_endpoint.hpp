@@ -66,6 +66,9 @@ inline Admission admission_of(const Question& question) {
 
 /// The service's end of a connection: answers special requests, and holds the session once a client
 /// has connected to a service.
+///
+/// Large because each kind of request has a function here, and all go by the same rights, user and
+/// object. Pipes, wires, callbacks, generators and the audit trail are parts.
 class ServerEndpoint final : public channel::Receiver,
                              public endpoint::Attended,
                              public std::enable_shared_from_this<ServerEndpoint> {

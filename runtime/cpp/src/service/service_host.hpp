@@ -25,6 +25,9 @@ class Directory;
 class ServerEndpoint;
 
 /// A service of a node: its objects, and the clients that use it.
+///
+/// Large because it is two things in one: what a program may do with its service (ServiceContext),
+/// and what each session asks of it. Objects, locks, monitors and rights are parts.
 class ServiceHost final : public ServiceContext, public std::enable_shared_from_this<ServiceHost> {
  public:
   ServiceHost(std::shared_ptr<endpoint::Core> core, std::weak_ptr<Directory> directory,

@@ -37,6 +37,9 @@ class FindingSource {
 /// The state of a subscription: services that have appeared, and a connection to each of them. Who
 /// says that services appear and disappear is somebody else: UrlSource, or discovery.
 ///
+/// Large because it serves handles, sources of services and members alike, and each change of a
+/// service concerns all three under one lock.
+///
 /// Everything happens on threads of the node, but for an attempt to connect, which blocks and has a
 /// thread aside while it lasts. Its members are told of clients by `inner_`, in the order in which
 /// these come and go.

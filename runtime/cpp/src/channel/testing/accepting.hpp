@@ -121,7 +121,7 @@ class Accepting {
     for (const auto& connection : connections_) {
       connection->close(Error(ErrorCode::connection_error, "the test is over"));
     }
-    context_.reactor->wait_for_connections();
+    context_.reactor->connections().wait_for_none();
     connections_.clear();
     receivers_.clear();
     context_.reactor->stop();
