@@ -31,7 +31,11 @@ function(robdef_embed target)
     DEPENDS ${arg_FILES} "${robdef_embed_script}"
     COMMENT "Embedding the files of ${arg_FUNCTION}"
     VERBATIM)
-  target_sources(${target} PRIVATE "${output}")
-  # For a program of another folder, robdef_at_once().
-  add_custom_target(${target}_embedded DEPENDS "${output}")
+  robdef_compiled_in(home ${target})
+  target_sources(${home} PRIVATE "${output}")
+  if(NOT home STREQUAL target)
+    # Of another folder, it does not see the command.
+    add_custom_target(${target}_embedded DEPENDS "${output}")
+    add_dependencies(${home} ${target}_embedded)
+  endif()
 endfunction()

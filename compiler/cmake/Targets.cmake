@@ -9,11 +9,13 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 # What goes into no shared library is smaller and compiles faster without.
 if(ROBDEF_COMPILER_ONLY)
   set(CMAKE_POSITION_INDEPENDENT_CODE OFF)
-  # g++ looks for memory to free each time that it has grown twofold: to do so less often saves a fourteenth of the time
-  # (docs/project/measurements.md).
-  add_compile_options("$<$<CXX_COMPILER_ID:GNU>:SHELL:--param=ggc-min-expand=200 --param=ggc-min-heapsize=300000>")
 else()
   set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+endif()
+# g++ looks for memory to free each time that it has grown twofold: to do so less often saves a tenth of the time
+# (docs/project/measurements.md). Not for sanitizers, whose code takes twice the memory.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize|ggc-min-expand")
+  string(PREPEND CMAKE_CXX_FLAGS "--param=ggc-min-expand=300 ")
 endif()
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 
@@ -58,31 +60,53 @@ macro(robdef_tables_first list)
   list(PREPEND ${list} ${tables})
 endmacro()
 
-# robdef_at_once(PROGRAM NAME LIBRARIES...)
-# Compiles the sources of these libraries as one, as part of a program that is not linked with them. Headers are read and
-# templates made once then, which is most of the work.
-function(robdef_at_once program name)
-  set(all "")
-  foreach(library IN LISTS ARGN)
-    get_target_property(sources ${library} SOURCES)
-    get_target_property(folder ${library} SOURCE_DIR)
-    foreach(source IN LISTS sources)
-      cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${folder})
-      cmake_path(IS_PREFIX CMAKE_BINARY_DIR ${source} is_made)
-      if(is_made)
-        set_source_files_properties(${source} PROPERTIES GENERATED ON)
-      endif()
-      list(APPEND all ${source})
-    endforeach()
-    set_target_properties(${library} PROPERTIES EXCLUDE_FROM_ALL ON)
-    if(TARGET ${library}_embedded)
-      add_dependencies(${program} ${library}_embedded)
-    endif()
+# robdef_joint(NAME FOLDERS...)
+# A static library of FOLDERS, libraries that robdef_library() declares after it: their sources are compiled as one, so
+# that headers are read and templates made once. Each of them is a name that leads to it.
+function(robdef_joint name)
+  add_library(${name} STATIC)
+  target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+  target_link_libraries(${name} PRIVATE robdef_warnings)
+  # A program gets the functions that it uses, not all folders.
+  target_compile_options(${name} PRIVATE -ffunction-sections -fdata-sections)
+  robdef_unity(${name} 0)
+  foreach(folder IN LISTS ARGN)
+    set_property(GLOBAL PROPERTY ROBDEF_JOINT_OF_${folder} ${name})
+  endforeach()
+endfunction()
+
+# robdef_compiled_in(VARIABLE LIBRARY)
+# The target that compiles the sources of a library: itself, or the one that it is a part of.
+function(robdef_compiled_in variable library)
+  get_property(joint GLOBAL PROPERTY ROBDEF_JOINT_OF_${library})
+  if(NOT joint)
+    set(joint ${library})
+  endif()
+  set(${variable} ${joint} PARENT_SCOPE)
+endfunction()
+
+# robdef_join(JOINT NAME SOURCES... [DEPENDS targets...])
+# robdef_library(NAME) as a part of JOINT.
+function(robdef_join joint name)
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "SOURCES;DEPENDS")
+  get_target_property(all ${joint} SOURCES)
+  if(NOT all)
+    set(all "")
+  endif()
+  foreach(source IN LISTS arg_SOURCES)
+    cmake_path(ABSOLUTE_PATH source)
+    list(APPEND all ${source})
   endforeach()
   robdef_tables_first(all)
-  target_sources(${program} PRIVATE ${all})
-  set_source_files_properties(${all} PROPERTIES UNITY_GROUP ${name})
-  set_target_properties(${program} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  set_target_properties(${joint} PROPERTIES SOURCES "${all}")
+  foreach(target IN LISTS arg_DEPENDS)
+    robdef_compiled_in(home ${target})
+    if(NOT home STREQUAL joint)
+      target_link_libraries(${joint} PUBLIC ${target})
+    endif()
+  endforeach()
+  add_library(${name} INTERFACE)
+  target_link_libraries(${name} INTERFACE ${joint})
 endfunction()
 
 set(robdef_standard_headers
@@ -142,9 +166,14 @@ target_compile_options(robdef_warnings INTERFACE
   $<$<BOOL:${ROBDEF_WERROR}>:-Werror>)
 
 # robdef_library(NAME SOURCES... [DEPENDS targets...])
-# A static library of one folder. Includes are written from the root of the tree.
+# A static library of one folder, or a part of a joint one. Includes are written from the root of the tree.
 function(robdef_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS")
+  robdef_compiled_in(joint ${name})
+  if(NOT joint STREQUAL name)
+    robdef_join(${joint} ${name} SOURCES ${arg_SOURCES} DEPENDS ${arg_DEPENDS})
+    return()
+  endif()
   robdef_tables_first(arg_SOURCES)
   add_library(${name} STATIC ${arg_SOURCES})
   target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)

@@ -11,7 +11,7 @@
 namespace rr {
 namespace {
 
-constexpr std::size_t largest_file = 64 * 1024;
+constexpr std::size_t largest_setup_file = 64 * 1024;
 
 SetupLine setting_of(std::string_view line, std::string place) {
   const std::size_t equals = line.find('=');
@@ -27,7 +27,7 @@ SetupLine setting_of(std::string_view line, std::string place) {
 }  // namespace
 
 std::vector<SetupLine> read_setup_file(const std::string& path) {
-  const auto text = platform::read_small_file(path, largest_file);
+  const auto text = platform::read_small_file(path, largest_setup_file);
   if (!text) {
     throw Error(ErrorCode::invalid_configuration,
                 "the configuration file cannot be read, or has more than 64 KiB: `" + path + "`");

@@ -13,7 +13,6 @@
 namespace rr::serial {
 namespace {
 
-using dynamic::Kind;
 using dynamic::TypeNode;
 using dynamic::Value;
 
@@ -118,17 +117,17 @@ Value unpack_array(const TypeNode& type, std::span<const std::uint8_t>& bytes) {
 
 void pack(const TypeNode& type, const Value& value, std::vector<std::uint8_t>& bytes) {
   switch (type.kind()) {
-    case Kind::number:
-    case Kind::enumeration:
+    case dynamic::Kind::number:
+    case dynamic::Kind::enumeration:
       pack_number(type.number(), value, bytes);
       return;
-    case Kind::text:
+    case dynamic::Kind::text:
       pack_text(type, value, bytes);
       return;
-    case Kind::array:
+    case dynamic::Kind::array:
       pack_array(type, value, bytes);
       return;
-    case Kind::record:
+    case dynamic::Kind::record:
       if (value.is_null()) refuse(ErrorCode::null_value, type, "a board has no null");
       for (const dynamic::FieldTable& field : type.record()->fields) {
         pack(*field.type, value.at(field.name), bytes);
@@ -142,17 +141,17 @@ void pack(const TypeNode& type, const Value& value, std::vector<std::uint8_t>& b
 Value unpack(const TypeNode& type, std::span<const std::uint8_t>& bytes) {
   const auto as_type = [&](const Value& value) { return type.convert(value, dynamic::Place({})); };
   switch (type.kind()) {
-    case Kind::number:
-    case Kind::enumeration:
+    case dynamic::Kind::number:
+    case dynamic::Kind::enumeration:
       return as_type(unpack_number(type, type.number(), bytes));
-    case Kind::text: {
+    case dynamic::Kind::text: {
       const std::size_t count = take(type, 1, bytes)[0];
       const auto text = take(type, count, bytes);
       return Value(std::string(text.begin(), text.end()));
     }
-    case Kind::array:
+    case dynamic::Kind::array:
       return as_type(unpack_array(type, bytes));
-    case Kind::record: {
+    case dynamic::Kind::record: {
       dynamic::Fields fields;
       for (const dynamic::FieldTable& field : type.record()->fields) {
         fields.emplace_back(field.name, unpack(*field.type, bytes));

@@ -29,7 +29,7 @@ speed_t speed_of(std::uint32_t baud) {
               "serial ports have no rate of " + std::to_string(baud) + " baud");
 }
 
-std::string reason(int error) {
+std::string port_reason(int error) {
   switch (error) {
     case EBUSY:
     case EWOULDBLOCK:
@@ -57,19 +57,19 @@ SerialPort::~SerialPort() { SerialPort::close(); }
 
 std::string SerialPort::open_file(const std::function<bool()>& /*is_over*/) {
   file_ = ::open(path().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (file_ < 0) return reason(errno);
+  if (file_ < 0) return port_reason(errno);
   // Two who read one line would each get half of the answers. The lock is for those who ask for it,
   // as we do; TIOCEXCL is for all others but those of root.
-  if (::flock(file_, LOCK_EX | LOCK_NB) != 0) return reason(errno);
+  if (::flock(file_, LOCK_EX | LOCK_NB) != 0) return port_reason(errno);
   termios settings{};
-  if (::tcgetattr(file_, &settings) != 0) return reason(errno);
+  if (::tcgetattr(file_, &settings) != 0) return port_reason(errno);
   (void)::ioctl(file_, TIOCEXCL);
   ::cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
   settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
   ::cfsetispeed(&settings, speed_of(baud_));
   ::cfsetospeed(&settings, speed_of(baud_));
-  if (::tcsetattr(file_, TCSANOW, &settings) != 0) return reason(errno);
+  if (::tcsetattr(file_, TCSANOW, &settings) != 0) return port_reason(errno);
   ::tcflush(file_, TCIOFLUSH);
   return {};
 }

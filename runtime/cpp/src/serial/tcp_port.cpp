@@ -27,7 +27,7 @@ constexpr std::string_view scheme = "tcp://";
 /// For all addresses of a name together.
 constexpr auto connect_patience = 3s;
 
-std::string reason(int error) {
+std::string connect_reason(int error) {
   switch (error) {
     case ECONNREFUSED:
       return "refuses connections";
@@ -111,7 +111,7 @@ std::string TcpPort::open_file(const std::function<bool()>& is_over) {
       return {};
     }
   }
-  return reason(error);
+  return connect_reason(error);
 }
 
 std::ptrdiff_t TcpPort::put(std::span<const std::uint8_t> bytes) {

@@ -13,7 +13,7 @@
 namespace rr {
 namespace {
 
-constexpr std::size_t largest_file = 1024 * 1024;
+constexpr std::size_t largest_rights_file = 1024 * 1024;
 constexpr std::string_view blanks = " \t\r";
 
 /// A word and where it stands in its line, from 1.
@@ -243,11 +243,11 @@ Rights::Rights(const std::vector<Rule>& rules) {
 
 std::shared_ptr<const Rights> Rights::from_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  std::string text(largest_file + 1, '\0');
+  std::string text(largest_rights_file + 1, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   const auto size = static_cast<std::size_t>(file.gcount());
   if (!file.eof() || file.bad()) {
-    const char* const what = size > largest_file ? "` has more than 1 MiB" : "`";
+    const char* const what = size > largest_rights_file ? "` has more than 1 MiB" : "`";
     throw Error(ErrorCode::invalid_configuration, "cannot read `" + path + what);
   }
   return std::make_shared<const Rights>(std::string_view(text).substr(0, size), path);
