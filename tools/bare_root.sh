@@ -9,6 +9,8 @@ make_bare_root() {
   mmdebstrap --quiet --mode=root --variant=minbase --skip=check/empty \
     --setup-hook='mkdir -p "$1/etc/apt"; cp -rL /etc/apt/sources.list* /etc/apt/apt.conf.d "$1/etc/apt/" 2>/dev/null || true' \
     bookworm "$root" "$sources" >"$log" 2>&1 || { tail -n 30 "$log" >&2; return 1; }
+  # Of a container: they forget what was downloaded.
+  rm -f "$root"/etc/apt/apt.conf.d/docker-*
   cp /etc/resolv.conf /etc/hosts "$root/etc/" 2>/dev/null || true
 }
 
