@@ -32,11 +32,13 @@ packages() {
 # missing_packages LEVEL: those that are not installed. What another one provides is there: Node's own
 # package has npm in it, and conflicts with Debian's.
 missing_packages() {
-  local name provided
+  local name provided own
+  own=$(dpkg --print-architecture)
   provided=$(dpkg-query -W -f '${db:Status-Status} ${Provides}\n' | sed -n 's/^installed \(.\)/, \1/p' |
     sed 's/ ([^)]*)//g; s/$/,/')
   for name in $(packages "$1"); do
-    [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] && continue
+    # One line for each architecture that it is there for.
+    dpkg-query -W -f '${db:Status-Status} ${Architecture}\n' "$name" 2>/dev/null | grep -qxE "installed ($own|all)" && continue
     grep -qF ", $name," <<<"$provided" || say "$name"
   done
 }
