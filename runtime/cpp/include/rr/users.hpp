@@ -64,8 +64,8 @@ class PasswordUsers final : public Users {
   static std::shared_ptr<PasswordUsers> from_file(const std::string& path);
   ~PasswordUsers() override;
 
-  /// A hash for a line, with a random salt: yescrypt or, on Windows, SHA-512. Throws rr::Error: invalid_argument for a
-  /// password that has a NUL or more than 511 bytes.
+  /// A hash for a line, with a random salt: yescrypt; on Windows SHA-512. Throws rr::Error:
+  /// invalid_argument for a password that has a NUL or more than 511 bytes.
   static std::string hash(std::string_view password);
 
   [[nodiscard]] User authenticate(const std::string& name,

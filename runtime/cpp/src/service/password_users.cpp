@@ -45,8 +45,7 @@ bool is_md5(std::string_view hash) {
 }
 
 bool can_be_hashed(std::string_view password) {
-  return password.size() <= most_password_bytes &&
-         password.find('\0') == std::string_view::npos;
+  return password.size() <= most_password_bytes && password.find('\0') == std::string_view::npos;
 }
 
 // What a password is compared with.
@@ -87,8 +86,8 @@ PasswordUsers::PasswordUsers(std::string_view text) {
     account.user.name = name;
     account.hash = next_word(line, blanks);
     account.is_unsalted = is_md5(account.hash);
-    const bool is_hash = account.is_unsalted ||
-                         (account.hash.starts_with('$') && service::knows_hash(account.hash));
+    const bool is_hash =
+        account.is_unsalted || (account.hash.starts_with('$') && service::knows_hash(account.hash));
     if (!is_hash) fail("the second word is no hash that is known");
     std::string_view privileges = next_word(line, blanks);
     if (privileges.empty()) fail("the third word says the privileges, `_` for none");
