@@ -270,7 +270,7 @@ def run_page(text, folder, environment, arguments):
             if block.heading == closed or not is_wanted(block.section, arguments):
                 continue
             missing = [name for name in block.notes.get("needs", "").split()
-                       if not shutil.which(name, path=environment["PATH"])]
+                       if shell.run(f"command -v {name}", 10)[0] != 0]
             if missing:
                 closed = block.heading
                 left_out.append(f"line {block.line}: there is no {', '.join(missing)}")
