@@ -11,21 +11,12 @@ here=$(cd "$(dirname "$0")" && pwd)
 top=$(dirname "$here")
 page=$here/howto/hardening.md
 
-[ "$(id -u)" = 0 ] || { echo 'only root can make a system' >&2; exit 77; }
-for program in debootstrap systemd-nspawn nsenter unshare setpriv python3 git ip pgrep; do
-  command -v $program >/dev/null || { echo "there is no $program" >&2; exit 77; }
-done
+# shellcheck source=tools/bare_root.sh
+source "$top/tools/bare_root.sh"
+need_for_root debootstrap systemd-nspawn nsenter unshare setpriv python3 git ip pgrep
 unshare --mount --net --pid --fork true 2>/dev/null || { echo 'no namespaces can be made here' >&2; exit 77; }
 
-stays=
-if [ $# = 0 ]; then
-  work=$(mktemp -d)
-else
-  [ ! -e "$1" ] || { echo "$1 exists" >&2; exit 1; }
-  mkdir -p "$1"
-  work=$(cd "$1" && pwd)
-  stays=yes
-fi
+make_work "$@"
 root=$work/root
 group=robdef-hardening.$$
 job='' booted='' leader='' peer=''
@@ -95,9 +86,7 @@ supervise setpriv --pdeathsig TERM unshare --mount --pid --fork --kill-child --m
 # How this machine reaches its mirror.
 cp -r /etc/apt/apt.conf.d/. "$root/etc/apt/apt.conf.d/"
 rm -f "$root"/etc/apt/apt.conf.d/docker-* "$root"/etc/apt/apt.conf.d/{20packagekit,50appstream}
-# The sources, as somebody has them who unpacks them.
-mkdir -p "$root/root/robdef"
-git -C "$top" ls-files -z | tar -C "$top" --null --files-from=- --ignore-failed-read -c | tar -x -C "$root/root/robdef"
+unpack_tree "$root"
 
 run() { supervise python3 "$here/run_blocks.py" "$page" --keep "$root" --seconds 3000 --verbose "$@"; }
 environment="LANG=C.UTF-8 HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive"

@@ -19,3 +19,33 @@ in_bare_root() {
   printf '%s ' env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
     unshare --mount --pid --fork --kill-child "--root=$1" --mount-proc
 }
+
+# need_for_root PROGRAM...: ends with status 77 where no system can be made.
+need_for_root() {
+  local program
+  [ "$(id -u)" = 0 ] || { echo 'only root can make a system' >&2; exit 77; }
+  for program in "$@"; do
+    command -v "$program" >/dev/null || { echo "there is no $program" >&2; exit 77; }
+  done
+}
+
+# make_work [FOLDER]: sets `work`, the folder that a system is made in, which must not exist; and `stays` when it was named.
+make_work() {
+  stays=
+  if [ $# = 0 ]; then
+    work=$(mktemp -d)
+  else
+    [ ! -e "$1" ] || { echo "$1 exists" >&2; exit 1; }
+    mkdir -p "$1"
+    work=$(cd "$1" && pwd)
+    stays=yes
+  fi
+}
+
+# unpack_tree ROOT: the sources, as a reader has them who unpacks them, in robdef at the home of root.
+unpack_tree() {
+  local top
+  top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+  mkdir -p "$1/root/robdef"
+  git -C "$top" ls-files -z | tar -C "$top" --null --files-from=- --ignore-failed-read -c | tar -x -C "$1/root/robdef"
+}

@@ -54,8 +54,7 @@ SendQueue::Sent SendQueue::stream(Writer& message) {
 }
 
 Corked SendQueue::cork(Writer& message, unsigned expected) {
-  if (message.size() >= Writer::attach_threshold || is_closed_.load(std::memory_order_relaxed))
-    return Corked::no;
+  if (message.size() >= Writer::attach_threshold || is_closed_) return Corked::no;
   return GatheringSteps<SendQueue>::cork(*this, message, expected);
 }
 

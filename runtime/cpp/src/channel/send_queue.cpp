@@ -48,7 +48,7 @@ SendQueue::Sent SendQueue::send(Writer& message, const How& how) {
 
 // False when the connection is broken or far too much waits.
 [[gnu::hot]] bool SendQueue::send_under_lock(Writer& message, const How& how, bool& has_rest) {
-  if (is_closed_.load(std::memory_order_relaxed)) return false;
+  if (is_closed_) return false;
   const bool is_unsent = has_unsent_.load(std::memory_order_relaxed);
   // A small one that is sent at once costs nothing; of a large one something is mostly left.
   const bool may_wait = is_unsent || message.size() >= Writer::attach_threshold;
@@ -173,8 +173,7 @@ SendQueue::Flushed SendQueue::flush() {
   Flushed result;
   const MutexLock lock(mutex_);
   take_gathered();
-  if ((outbox_.empty() && carrier_unsent() == 0) || is_closed_.load(std::memory_order_relaxed))
-    return result;
+  if ((outbox_.empty() && carrier_unsent() == 0) || is_closed_) return result;
   const std::size_t before = unsent();
   result.is_broken =
       (carrier_ != nullptr && !carrier_->flush()) || outbox_.send(terms_.socket, {}, carrier_) < 0;
@@ -193,9 +192,7 @@ SendQueue::Flushed SendQueue::flush() {
 
 bool SendQueue::check_answers() {
   const MutexLock lock(mutex_);
-  if (has_unsent() && !is_closed_.load(std::memory_order_relaxed) &&
-      waiting_answers() > most_answers())
-    answers_wait_ = true;
+  if (has_unsent() && !is_closed_ && waiting_answers() > most_answers()) answers_wait_ = true;
   return do_answers_wait();
 }
 
