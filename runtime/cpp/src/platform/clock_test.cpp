@@ -38,6 +38,14 @@ TEST(TimeOfUtc, KnowsTheCalendar) {
   EXPECT_EQ(time_of_utc(parts_of(1969, 12, 31, 23, 59, 59)), point(-1));
 }
 
+TEST(Utc, HasTheDaysOfTheWeekAndTheYear) {
+  const std::tm parts = utc(951'782'400);  // a Tuesday, 29 February 2000
+  EXPECT_EQ(parts.tm_wday, 2);
+  EXPECT_EQ(parts.tm_yday, 59);
+  EXPECT_EQ(utc(-1).tm_wday, 3);
+  EXPECT_EQ(utc(-1).tm_yday, 364);
+}
+
 // As in certificates that are to be valid for ever.
 TEST(TimeOfUtc, WhatATimePointCannotHold) {
   EXPECT_EQ(time_of_utc(parts_of(9999, 12, 31, 23, 59, 59)), Point::max());

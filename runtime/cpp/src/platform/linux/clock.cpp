@@ -9,10 +9,4 @@ Time coarse_now() {
   return Time(std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec));
 }
 
-std::tm utc(std::time_t time) {
-  std::tm parts{};
-  gmtime_r(&time, &parts);
-  return parts;
-}
-
 }  // namespace rr::platform

@@ -6,10 +6,4 @@ namespace rr::platform {
 // The coarse clocks of Windows are not on the time line of the steady one.
 Time coarse_now() { return std::chrono::steady_clock::now(); }
 
-std::tm utc(std::time_t time) {
-  std::tm parts{};
-  gmtime_s(&parts, &time);
-  return parts;
-}
-
 }  // namespace rr::platform
