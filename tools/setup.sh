@@ -138,13 +138,16 @@ stop_jobs() {
 }
 
 # part NAME COMMAND...: one line of the table that print_parts shows; ends the script when COMMAND
-# fails, or goes on where parts_go_on says so: end_parts ends it then.
+# fails, or goes on where parts_go_on says so: end_parts ends it then. parts_wanted is an expression that the names of parts
+# have to match.
+parts_wanted=
 part_rows=()
 parts_go_on=
 failed_parts=0
 script_start=$SECONDS
 part() {
   local name=$1 start=$SECONDS status=0
+  [[ $name =~ $parts_wanted ]] || return 0
   shift
   say "[$(date +%H:%M:%S)] $name"
   "$@" || status=$?
