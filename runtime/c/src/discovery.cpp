@@ -146,10 +146,11 @@ std::vector<DetectedNode> update_nodes(const Discovery& discovery, const FindOpt
   return discovery.update_detected_nodes(options.wait);
 }
 
-using Functions = std::shared_ptr<const Handler<rr_discovery_handler>>;
-using Call = void (*)(void* context, const rr_detected_node* node);
+using DiscoveryFunctions = std::shared_ptr<const Handler<rr_discovery_handler>>;
+using DiscoveryCall = void (*)(void* context, const rr_detected_node* node);
 
-Function<void(const DetectedNode&)> telling(const Functions& functions, Call call) {
+Function<void(const DetectedNode&)> telling(const DiscoveryFunctions& functions,
+                                            DiscoveryCall call) {
   return [functions, call](const DetectedNode& node) {
     const DetectedNodeView view(node);
     call((*functions)->context, &view.info());

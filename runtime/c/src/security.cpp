@@ -11,14 +11,6 @@
 namespace rr::capi {
 namespace {
 
-std::vector<std::string> read_texts(const rr_str* texts, std::size_t count) {
-  std::vector<std::string> result;
-  if (count == 0) return result;
-  need(texts, "there are no texts");
-  for (std::size_t i = 0; i < count; ++i) result.emplace_back(text(texts[i]));
-  return result;
-}
-
 std::optional<bool> read_authorities(std::uint32_t given) {
   switch (given) {
     case RR_AUTHORITIES_UNLESS_GIVEN:
@@ -53,8 +45,10 @@ TlsOptions read_tls(const rr_tls_options* given) {
   TlsOptions options;
   options.certificate_file = text(from.certificate_file);
   options.key_file = text(from.key_file);
-  options.authority_files = read_texts(from.authority_files, from.authority_file_count);
-  options.revocation_files = read_texts(from.revocation_files, from.revocation_file_count);
+  options.authority_files =
+      read_texts(from.authority_files, from.authority_file_count, "there are no texts");
+  options.revocation_files =
+      read_texts(from.revocation_files, from.revocation_file_count, "there are no texts");
   if (from.pin_count != 0) need(from.pins, "there are no pins");
   for (std::size_t i = 0; i < from.pin_count; ++i) {
     options.pins.emplace(id_of(from.pins[i].node), text(from.pins[i].sha256));

@@ -16,10 +16,10 @@ struct rr_service_info_subscription {
 namespace rr::capi {
 namespace {
 
-using Functions = std::shared_ptr<const Handler<rr_service_info_handler>>;
-using Call = void (*)(void* context, const rr_found_service* service);
+using ServiceFunctions = std::shared_ptr<const Handler<rr_service_info_handler>>;
+using ServiceCall = void (*)(void* context, const rr_found_service* service);
 
-Function<void(const FoundService&)> telling(const Functions& functions, Call call) {
+Function<void(const FoundService&)> telling(const ServiceFunctions& functions, ServiceCall call) {
   return [functions, call](const FoundService& service) {
     const FoundServiceView view(service);
     call((*functions)->context, &view.info());
@@ -27,7 +27,7 @@ Function<void(const FoundService&)> telling(const Functions& functions, Call cal
 }
 
 std::vector<Subscription> watch(const ServiceInfoSubscription& services,
-                                const Functions& functions) {
+                                const ServiceFunctions& functions) {
   std::vector<Subscription> result;
   if (const auto call = (*functions)->on_lost; call != nullptr) {
     result.push_back(services.on_lost(telling(functions, call)));

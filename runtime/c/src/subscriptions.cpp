@@ -47,7 +47,7 @@ std::vector<std::vector<std::string>> read_services(const rr_service_urls* servi
   return result;
 }
 
-using Functions = std::shared_ptr<const Handler<rr_subscribe_options>>;
+using SubscribeFunctions = std::shared_ptr<const Handler<rr_subscribe_options>>;
 
 template <class Struct>
 Subscription tell_connected(ServiceSubscription& services,
@@ -70,7 +70,7 @@ Subscription tell_disconnected(ServiceSubscription& services,
   });
 }
 
-void listen(rr_service_subscription& to, const Functions& functions) {
+void listen(rr_service_subscription& to, const SubscribeFunctions& functions) {
   to.connected = tell_connected(to.services, functions);
   to.disconnected = tell_disconnected(to.services, functions);
   if ((*functions)->on_failed == nullptr) return;

@@ -33,7 +33,7 @@ void set_time(rr_time* place, const TimeSpec& time) {
   if (place != nullptr) *place = time_of(time);
 }
 
-rr_data* hand_out(const std::shared_ptr<const void>& value) {
+rr_data* hand_out_value(const std::shared_ptr<const void>& value) {
   if (!value) throw Error(ErrorCode::value_not_set, "Value not set");
   return Data(static_cast<const Raw*>(value.get())->data).hand_out();
 }
@@ -152,7 +152,7 @@ rr_status rr_wire_received(const rr_wire* wire, rr_data** out_value, rr_time* ou
   return guarded(error, [&] {
     output(out_value) = nullptr;
     rr::TimeSpec time;
-    *out_value = rr::capi::hand_out(end_of(wire).received(time));
+    *out_value = rr::capi::hand_out_value(end_of(wire).received(time));
     rr::capi::set_time(out_time, time);
   });
 }
@@ -162,7 +162,7 @@ rr_status rr_wire_sent(const rr_wire* wire, rr_data** out_value, rr_time* out_ti
   return guarded(error, [&] {
     output(out_value) = nullptr;
     rr::TimeSpec time;
-    *out_value = rr::capi::hand_out(end_of(wire).sent(time));
+    *out_value = rr::capi::hand_out_value(end_of(wire).sent(time));
     rr::capi::set_time(out_time, time);
   });
 }

@@ -13,7 +13,7 @@ constexpr int first_descriptor = 1'000'000;
 
 constexpr std::size_t most_datagrams = 200;
 
-Network* running = nullptr;
+Network* network_of_run = nullptr;
 
 }  // namespace
 
@@ -297,9 +297,9 @@ std::ptrdiff_t Datagrams::receive(std::span<std::byte> room, bool is_peek, std::
 
 // The network
 
-Network::Network(Scheduler& run) : run_(run) { running = this; }
-Network::~Network() { running = nullptr; }
-Network* Network::current() { return running; }
+Network::Network(Scheduler& run) : run_(run) { network_of_run = this; }
+Network::~Network() { network_of_run = nullptr; }
+Network* Network::current() { return network_of_run; }
 
 int Network::open(std::shared_ptr<File> file) {
   // The lowest free number, as of a system: mistakes with closed descriptors show.
@@ -380,7 +380,7 @@ int Network::connect(int descriptor, std::uint16_t port) {
   const auto delay = static_cast<Nanoseconds>(
       run_.random().below(static_cast<std::uint64_t>(Faults::current().longest_delay) + 1));
   run_.at(run_.now() + delay, [this, client] {
-    if (running != this) return;
+    if (network_of_run != this) return;
     const auto place = listeners_.find({client->family, client->remote_port});
     if (place == listeners_.end()) return client->finish(ECONNREFUSED);
     auto accepted = std::make_shared<Stream>(run_);

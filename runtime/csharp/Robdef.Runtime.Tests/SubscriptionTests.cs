@@ -60,6 +60,8 @@ public sealed class SubscriptionTests
 
         service.Dispose();
         serving.Dispose();
+        // Until then a packet is sent to the service that is gone, and counts.
+        Assert.True(SpinWait.SpinUntil(() => samples.Send(4) == 0, s_limit));
         using var again = new Node();
         using Service other = again.Register("arm", new TestArm());
         again.Listen($"rr+tcp://127.0.0.1:{port}");

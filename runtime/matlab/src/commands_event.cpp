@@ -19,7 +19,7 @@ void deliver(Runtime& runtime, std::uint64_t number, const List& arguments) {
 }
 
 // listen(object, event, function): number of the listener
-void listen(Runtime& runtime, Call& call) {
+void listen_to_event(Runtime& runtime, Call& call) {
   const auto object = object_of(runtime, call);
   const Resolved& member = object->resolve(call.text(1));
   const auto& connection = object->connection();
@@ -134,8 +134,8 @@ void set_callback(Runtime& runtime, const ObjectHandle& object, const Resolved& 
 }
 
 std::vector<Command> event_commands() {
-  return {{"listen", listen}, {"unlisten", unlisten},       {"events", events},
-          {"poll", poll},     {"poll_prompt", poll_prompt}, {"lost", lost}};
+  return {{"listen", listen_to_event},  {"unlisten", unlisten}, {"events", events}, {"poll", poll},
+          {"poll_prompt", poll_prompt}, {"lost", lost}};
 }
 
 }  // namespace rr::matlab

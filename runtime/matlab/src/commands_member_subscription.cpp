@@ -8,17 +8,13 @@ namespace rr::matlab {
 namespace {
 
 using dynamic::Value;
-using WireHandle = MemberSubscriptionHandle<WireSubscription<Value>>;
-using PipeHandle = MemberSubscriptionHandle<PipeSubscription<Value>>;
-using ObjectsHandle = MemberSubscriptionHandle<SubObjectSubscription>;
+using WireSubscriptionHandle = MemberSubscriptionHandle<WireSubscription<Value>>;
+using PipeSubscriptionHandle = MemberSubscriptionHandle<PipeSubscription<Value>>;
+using ObjectSubscriptionHandle = MemberSubscriptionHandle<SubObjectSubscription>;
 
 template <class Handle>
 std::shared_ptr<Handle> of(Runtime& runtime, Call& call) {
   return runtime.handles().get<Handle>(call.handle(0));
-}
-
-std::shared_ptr<SubscriptionHandle> sub_of(Runtime& runtime, Call& call) {
-  return of<SubscriptionHandle>(runtime, call);
 }
 
 // The object that has the member, at any client; null while there is none.
@@ -61,34 +57,35 @@ std::optional<Value> read(Handle& handle, const mxArray* given) {
 
 // wire_sub(subscription, name, path): number
 void wire(Runtime& runtime, Call& call) {
-  const auto sub = sub_of(runtime, call);
+  const auto sub = of<SubscriptionHandle>(runtime, call);
   const std::string name = call.text(1);
   const std::string path = call.text(2);
   call.give(give_handle(runtime,
-                        std::make_shared<WireHandle>(
+                        std::make_shared<WireSubscriptionHandle>(
                             sub, sub->subscription.subscribe_wire<Value>(name, path), name, path)));
 }
 
 // pipe_sub(subscription, name, path, most that wait): number
 void pipe(Runtime& runtime, Call& call) {
-  const auto sub = sub_of(runtime, call);
+  const auto sub = of<SubscriptionHandle>(runtime, call);
   const std::string name = call.text(1);
   const std::string path = call.text(2);
   const auto most = read_number<std::uint32_t>(call[3]);
   call.give(give_handle(
-      runtime, std::make_shared<PipeHandle>(
+      runtime, std::make_shared<PipeSubscriptionHandle>(
                    sub, sub->subscription.subscribe_pipe<Value>(name, path, most), name, path)));
 }
 
 // object_sub(subscription, path): number
 void objects(Runtime& runtime, Call& call) {
-  const auto sub = sub_of(runtime, call);
+  const auto sub = of<SubscriptionHandle>(runtime, call);
   const std::string path = call.text(1);
-  call.give(give_handle(runtime, std::make_shared<ObjectsHandle>(
+  call.give(give_handle(runtime, std::make_shared<ObjectSubscriptionHandle>(
                                      sub, sub->subscription.subscribe_sub_object(path), "", path)));
 }
 
-void give_client_value(Call& call, WireHandle& handle, const ClientValue<Value>& value) {
+void give_client_value(Call& call, WireSubscriptionHandle& handle,
+                       const ClientValue<Value>& value) {
   call.give(write(handle, value.value));
   call.give(time_to_mex(value.time));
   call.give(client_to_mex(value.client));
@@ -96,7 +93,7 @@ void give_client_value(Call& call, WireHandle& handle, const ClientValue<Value>&
 
 // wire_sub_in(wire): [value, time, client]
 void wire_in(Runtime& runtime, Call& call) {
-  const auto handle = of<WireHandle>(runtime, call);
+  const auto handle = of<WireSubscriptionHandle>(runtime, call);
   const auto value = handle->subscribed.try_in();
   if (!value) {
     throw Error(ErrorCode::value_not_set, "member " + handle->member + ": there is no value");
@@ -106,7 +103,7 @@ void wire_in(Runtime& runtime, Call& call) {
 
 // wire_sub_try_in(wire): [is_valid, value, time, client]
 void wire_try_in(Runtime& runtime, Call& call) {
-  const auto handle = of<WireHandle>(runtime, call);
+  const auto handle = of<WireSubscriptionHandle>(runtime, call);
   const auto value = handle->subscribed.try_in();
   call.give(mxCreateLogicalScalar(value.has_value()));
   if (value) give_client_value(call, *handle, *value);
@@ -114,7 +111,7 @@ void wire_try_in(Runtime& runtime, Call& call) {
 
 // wire_sub_all(wire): structs with Value, Time, Client, in cells
 void wire_all(Runtime& runtime, Call& call) {
-  const auto handle = of<WireHandle>(runtime, call);
+  const auto handle = of<WireSubscriptionHandle>(runtime, call);
   std::vector<mxArray*> all;
   for (const ClientValue<Value>& one : handle->subscribed.all_in()) {
     all.push_back(make_struct({{"Value", write(*handle, one.value)},
@@ -126,7 +123,7 @@ void wire_all(Runtime& runtime, Call& call) {
 
 // wire_sub_wait(wire, seconds): whether there is a value
 void wire_wait(Runtime& runtime, Call& call) {
-  const auto handle = of<WireHandle>(runtime, call);
+  const auto handle = of<WireSubscriptionHandle>(runtime, call);
   (void)runtime.wait_until(
       [&] { return handle->subscribed.try_in().has_value() || !handle->subscribed.is_open(); },
       call.seconds(1));
@@ -136,7 +133,7 @@ void wire_wait(Runtime& runtime, Call& call) {
 // wire_sub_lifespan(wire, seconds)
 void wire_lifespan(Runtime& runtime, Call& call) {
   const auto limit = call.seconds(1);
-  of<WireHandle>(runtime, call)
+  of<WireSubscriptionHandle>(runtime, call)
       ->subscribed.set_lifespan(limit == std::chrono::milliseconds::max()
                                     ? std::chrono::milliseconds(0)
                                     : std::max(limit, min_lifespan));
@@ -144,7 +141,7 @@ void wire_lifespan(Runtime& runtime, Call& call) {
 
 // wire_sub_set_out(wire, value): how many clients it was sent to
 void wire_set_out(Runtime& runtime, Call& call) {
-  const auto handle = of<WireHandle>(runtime, call);
+  const auto handle = of<WireSubscriptionHandle>(runtime, call);
   const auto value = read(*handle, call[1]);
   const std::size_t count = value ? handle->subscribed.set_out(*value) : 0;
   call.give(mxCreateDoubleScalar(static_cast<double>(count)));
@@ -152,7 +149,7 @@ void wire_set_out(Runtime& runtime, Call& call) {
 
 // wire_sub_listen(wire, function): number; the function gets value, time, client
 void wire_listen(Runtime& runtime, Call& call) {
-  const auto handle = of<WireHandle>(runtime, call);
+  const auto handle = of<WireSubscriptionHandle>(runtime, call);
   add_function(runtime, handle->owner->home, call, call[1], [&](std::uint64_t number) {
     return handle->subscribed.on_in(
         [&runtime, number, queue = runtime.queue(), weak = std::weak_ptr(handle)](
@@ -171,7 +168,7 @@ void wire_listen(Runtime& runtime, Call& call) {
 
 // pipe_sub_receive(pipe, seconds): [has_come, packet, client]
 void pipe_receive(Runtime& runtime, Call& call) {
-  const auto handle = of<PipeHandle>(runtime, call);
+  const auto handle = of<PipeSubscriptionHandle>(runtime, call);
   (void)runtime.wait_until(
       [&] { return handle->subscribed.available() != 0 || !handle->subscribed.is_open(); },
       call.seconds(1));
@@ -184,12 +181,12 @@ void pipe_receive(Runtime& runtime, Call& call) {
 // pipe_sub_available(pipe)
 void pipe_available(Runtime& runtime, Call& call) {
   call.give(mxCreateDoubleScalar(
-      static_cast<double>(of<PipeHandle>(runtime, call)->subscribed.available())));
+      static_cast<double>(of<PipeSubscriptionHandle>(runtime, call)->subscribed.available())));
 }
 
 // pipe_sub_send(pipe, packet): how many clients it was sent to
 void pipe_send(Runtime& runtime, Call& call) {
-  const auto handle = of<PipeHandle>(runtime, call);
+  const auto handle = of<PipeSubscriptionHandle>(runtime, call);
   const auto value = read(*handle, call[1]);
   const std::size_t count = value ? handle->subscribed.send(*value) : 0;
   call.give(mxCreateDoubleScalar(static_cast<double>(count)));
@@ -197,7 +194,7 @@ void pipe_send(Runtime& runtime, Call& call) {
 
 // object_sub_wait(objects, seconds): object's number
 void object_wait(Runtime& runtime, Call& call) {
-  const auto handle = of<ObjectsHandle>(runtime, call);
+  const auto handle = of<ObjectSubscriptionHandle>(runtime, call);
   std::shared_ptr<Stub> stub;
   (void)runtime.wait_until(
       [&] {
@@ -218,11 +215,11 @@ mxArray* last_error_of(Runtime& runtime, Call& call) {
 }
 
 // member_sub_error(wire, pipe or objects, kind): text; '' for none
-void last_error(Runtime& runtime, Call& call) {
+void last_error_of_member(Runtime& runtime, Call& call) {
   const std::string kind = call.text(1);
-  call.give(kind == "wire"   ? last_error_of<WireHandle>(runtime, call)
-            : kind == "pipe" ? last_error_of<PipeHandle>(runtime, call)
-                             : last_error_of<ObjectsHandle>(runtime, call));
+  call.give(kind == "wire"   ? last_error_of<WireSubscriptionHandle>(runtime, call)
+            : kind == "pipe" ? last_error_of<PipeSubscriptionHandle>(runtime, call)
+                             : last_error_of<ObjectSubscriptionHandle>(runtime, call));
 }
 
 }  // namespace
@@ -242,7 +239,7 @@ std::vector<Command> member_subscription_commands() {
           {"pipe_sub_available", pipe_available},
           {"pipe_sub_send", pipe_send},
           {"object_sub_wait", object_wait},
-          {"member_sub_error", last_error}};
+          {"member_sub_error", last_error_of_member}};
 }
 
 }  // namespace rr::matlab

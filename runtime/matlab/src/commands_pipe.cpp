@@ -30,7 +30,7 @@ std::shared_ptr<PipeHandle> pipe_of(Runtime& runtime, Call& call) {
 }
 
 // pipe_connect(object, name [, index]): number
-void connect(Runtime& runtime, Call& call) {
+void connect_pipe(Runtime& runtime, Call& call) {
   const auto object = object_of(runtime, call);
   const Resolved& member = object->resolve(call.text(1));
   const PipeOptions options{.index = call.has(2) ? read_number<std::int32_t>(call[2]) : -1,
@@ -70,7 +70,7 @@ void available(Runtime& runtime, Call& call) {
 }
 
 // pipe_about(endpoint): struct with index, is_open, is_unreliable, lost_count
-void about(Runtime& runtime, Call& call) {
+void about_pipe(Runtime& runtime, Call& call) {
   const auto pipe = pipe_of(runtime, call);
   call.give(make_struct(
       {{"index", make_number(pipe->end.index())},
@@ -81,7 +81,7 @@ void about(Runtime& runtime, Call& call) {
 }
 
 // pipe_listen(endpoint, function): number of the listener; the function gets each packet
-void listen(Runtime& runtime, Call& call) {
+void listen_to_pipe(Runtime& runtime, Call& call) {
   const auto pipe = pipe_of(runtime, call);
   const std::uint64_t number = add_listener(*pipe, call[1]);
   auto subscription =
@@ -94,7 +94,7 @@ void listen(Runtime& runtime, Call& call) {
 
 // pipe_hear(endpoint, 'closed' | 'acknowledged', function): number of the listener; the second gets
 // the number of each packet
-void hear(Runtime& runtime, Call& call) {
+void hear_pipe(Runtime& runtime, Call& call) {
   const auto pipe = pipe_of(runtime, call);
   const std::uint64_t number = add_listener(*pipe, call[2]);
   (call.text(1) == "closed" ? pipe->closed : pipe->acknowledged)->add(number);
@@ -123,17 +123,17 @@ void queue_limit(Runtime& runtime, Call& call) {
 }
 
 // pipe_close(endpoint)
-void close(Runtime& runtime, Call& call) { pipe_of(runtime, call)->end.close(); }
+void close_pipe(Runtime& runtime, Call& call) { pipe_of(runtime, call)->end.close(); }
 
 }  // namespace
 
 std::vector<Command> pipe_commands() {
-  return {{"pipe_connect", connect},     {"pipe_send", send},
-          {"pipe_receive", receive},     {"pipe_receive_wait", receive_wait},
-          {"pipe_available", available}, {"pipe_about", about},
-          {"pipe_listen", listen},       {"pipe_queue_limit", queue_limit},
-          {"pipe_hear", hear},           {"pipe_ask_acks", ask_acks},
-          {"pipe_close", close}};
+  return {{"pipe_connect", connect_pipe},  {"pipe_send", send},
+          {"pipe_receive", receive},       {"pipe_receive_wait", receive_wait},
+          {"pipe_available", available},   {"pipe_about", about_pipe},
+          {"pipe_listen", listen_to_pipe}, {"pipe_queue_limit", queue_limit},
+          {"pipe_hear", hear_pipe},        {"pipe_ask_acks", ask_acks},
+          {"pipe_close", close_pipe}};
 }
 
 }  // namespace rr::matlab

@@ -130,7 +130,7 @@ void release(Runtime& runtime, Call& call) {
 }
 
 // sub_listen(subscription, event, function): number of the listener
-void listen(Runtime& runtime, Call& call) {
+void listen_to_subscription(Runtime& runtime, Call& call) {
   const auto sub = sub_of(runtime, call);
   const std::string event = call.text(1);
   const auto queue = runtime.queue();
@@ -167,7 +167,7 @@ void listen(Runtime& runtime, Call& call) {
 }
 
 // sub_close(subscription)
-void close(Runtime& runtime, Call& call) { sub_of(runtime, call)->close(); }
+void close_subscription(Runtime& runtime, Call& call) { sub_of(runtime, call)->close(); }
 
 }  // namespace
 
@@ -184,8 +184,8 @@ std::vector<Command> subscription_commands() {
           {"sub_retry_delay", retry_delay},
           {"sub_claim", claim},
           {"sub_release", release},
-          {"sub_listen", listen},
-          {"sub_close", close}};
+          {"sub_listen", listen_to_subscription},
+          {"sub_close", close_subscription}};
 }
 
 }  // namespace rr::matlab

@@ -25,7 +25,7 @@ std::shared_ptr<WireHandle> wire_of(Runtime& runtime, Call& call) {
 }
 
 // wire_connect(object, name): number
-void connect(Runtime& runtime, Call& call) {
+void connect_wire(Runtime& runtime, Call& call) {
   const auto object = object_of(runtime, call);
   const Resolved& member = object->resolve(call.text(1));
   const dynamic::Wire wire = object->object().wire(member.member.name);
@@ -96,7 +96,7 @@ void lifespan(Runtime& runtime, Call& call) {
 }
 
 // wire_listen(wire, function): number of the listener
-void listen(Runtime& runtime, Call& call) {
+void listen_to_wire(Runtime& runtime, Call& call) {
   const auto wire = wire_of(runtime, call);
   const std::uint64_t number = add_listener(*wire, call[1]);
   // Only the newest value of a wire waits for the interpreter's thread.
@@ -110,7 +110,7 @@ void listen(Runtime& runtime, Call& call) {
 }
 
 // wire_hear(wire, function): number of the listener, which is called when the wire is closed
-void hear(Runtime& runtime, Call& call) {
+void hear_wire(Runtime& runtime, Call& call) {
   const auto wire = wire_of(runtime, call);
   const std::uint64_t number = add_listener(*wire, call[1]);
   wire->closed->add(number);
@@ -140,7 +140,7 @@ void poke(Runtime& runtime, Call& call) {
 }
 
 // wire_close(wire)
-void close(Runtime& runtime, Call& call) { wire_of(runtime, call)->end.close(); }
+void close_wire(Runtime& runtime, Call& call) { wire_of(runtime, call)->end.close(); }
 
 // wire_is_open(wire)
 void is_open(Runtime& runtime, Call& call) {
@@ -150,13 +150,20 @@ void is_open(Runtime& runtime, Call& call) {
 }  // namespace
 
 std::vector<Command> wire_commands() {
-  return {{"wire_connect", connect}, {"wire_in", in},
-          {"wire_try_in", try_in},   {"wire_out", out},
-          {"wire_has_out", has_out}, {"wire_set_out", set_out},
-          {"wire_wait", wait},       {"wire_lifespan", lifespan},
-          {"wire_listen", listen},   {"wire_peek", peek},
-          {"wire_poke", poke},       {"wire_close", close},
-          {"wire_is_open", is_open}, {"wire_hear", hear}};
+  return {{"wire_connect", connect_wire},
+          {"wire_in", in},
+          {"wire_try_in", try_in},
+          {"wire_out", out},
+          {"wire_has_out", has_out},
+          {"wire_set_out", set_out},
+          {"wire_wait", wait},
+          {"wire_lifespan", lifespan},
+          {"wire_listen", listen_to_wire},
+          {"wire_peek", peek},
+          {"wire_poke", poke},
+          {"wire_close", close_wire},
+          {"wire_is_open", is_open},
+          {"wire_hear", hear_wire}};
 }
 
 }  // namespace rr::matlab

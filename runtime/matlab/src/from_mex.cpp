@@ -13,7 +13,6 @@
 namespace rr::matlab {
 namespace {
 
-using dynamic::Fields;
 using dynamic::IntMap;
 using dynamic::Kind;
 using dynamic::List;
@@ -74,7 +73,7 @@ Value shaped_numbers(const Shaped& shaped, ElementType number, std::size_t numbe
 
 Value record_from_mex(const mxArray* given, std::size_t index, const TypePlan& plan,
                       const ReadContext& context) {
-  Fields fields;
+  dynamic::Fields fields;
   fields.reserve(plan.names.size());
   for (int i = 0; i < mxGetNumberOfFields(given); ++i) {
     const std::string name = mxGetFieldNameByNumber(given, i);
