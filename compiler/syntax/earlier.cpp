@@ -67,7 +67,7 @@ Earlier::Earlier(std::string_view earlier_text, ast::File& earlier, std::string_
 // From the earlier text to this one, of lines of this one that both have; nothing for others. The
 // line end belongs to a line: without it the line might go on.
 std::optional<std::int64_t> Earlier::distance(std::uint32_t begin, std::uint32_t end) const {
-  if (end == 0 || text_[end - 1] != '\n') return std::nullopt;
+  if (end == 0 || end > text_.size() || text_[end - 1] != '\n') return std::nullopt;
   if (end <= same_begin_) return 0;
   if (begin < text_.size() - same_end_) return std::nullopt;
   return static_cast<std::int64_t>(text_.size()) - static_cast<std::int64_t>(earlier_text_.size());

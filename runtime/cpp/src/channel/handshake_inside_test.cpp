@@ -22,7 +22,7 @@ const Url url = Url::parse("rr+tcp://host:2355/?nodename=board&service=s");
 
 // The only entry of a message, and what its header says.
 struct Read {
-  explicit Read(const Bytes& bytes) {
+  explicit Read(Bytes given) : bytes(std::move(given)) {
     is_whole = read_message(bytes, {}, false, message, nullptr) && EntryReader(message).next(entry);
   }
   std::string text(std::string_view name) {
@@ -31,6 +31,7 @@ struct Read {
     if (!find_element(decoder, entry.elements, entry.element_count, name, element)) return {};
     return std::string(element.text());
   }
+  Bytes bytes;  // that the message views
   Message message;
   Entry entry;
   bool is_whole = false;

@@ -214,8 +214,9 @@ TEST(Bounds, RequestsThatHadToWaitAreAllServed) {
   }
 }
 
-// The last two poll and watch: who wants another one waits, and others do not.
-TEST(Bounds, AllButTwoThreadsMayBeInHandlersThatWait) {
+// Whether a client that was quick is served while others hold all threads but two. On a busy
+// machine it may look slow: then it waits like others.
+bool serves_quick_ones_meanwhile(std::chrono::milliseconds patience) {
   const auto object = std::make_shared<GatedCounter>();
   Pair pair({.max_threads = 4}, {}, object);
   std::vector<Client<CounterStub>> clients;
@@ -229,19 +230,32 @@ TEST(Bounds, AllButTwoThreadsMayBeInHandlersThatWait) {
     calls.push_back(std::async(std::launch::async, [&, i] { clients[i]->reset(); }));
   };
   block(0);
-  ASSERT_TRUE(object->gate.has_entered(1));
+  EXPECT_TRUE(object->gate.has_entered(1));
   block(1);
-  ASSERT_TRUE(object->gate.has_entered(2));
-  EXPECT_EQ(clients[3]->add(1, 2), 3);
-  block(2);
-  for (int i = 0; i < 20; ++i) {
-    EXPECT_EQ(clients[3]->add(i, 2), i + 2);
-    std::this_thread::sleep_for(5ms);
-  }
+  EXPECT_TRUE(object->gate.has_entered(2));
+  const Error why = error_of([&] {
+    with_options(within(patience), [&] {
+      EXPECT_EQ(clients[3]->add(1, 2), 3);
+      block(2);
+      for (int i = 0; i < 20; ++i) {
+        EXPECT_EQ(clients[3]->add(i, 2), i + 2);
+        std::this_thread::sleep_for(5ms);
+      }
+    });
+  });
   EXPECT_EQ(object->gate.entered(), 2);
   object->gate.open();
   for (auto& call : calls) call.get();
-  EXPECT_EQ(object->gate.entered(), 3);
+  EXPECT_EQ(object->gate.entered(), 2 + static_cast<int>(calls.size() == 3));
+  EXPECT_TRUE(why.code() == ErrorCode::none || why.code() == ErrorCode::request_timeout)
+      << why.what();
+  return why.code() == ErrorCode::none;
+}
+
+// The last two poll and watch: a client that wants another one waits, and others do not.
+TEST(Bounds, AllButTwoThreadsMayBeInHandlersThatWait) {
+  EXPECT_TRUE(serves_quick_ones_meanwhile(2s) || serves_quick_ones_meanwhile(4s) ||
+              serves_quick_ones_meanwhile(8s));
 }
 
 TEST(Bounds, TimesWithoutAnEndNeverCome) {

@@ -63,6 +63,9 @@ class FewDescriptors {
 };
 
 TEST(Connections, IdleConnectionsShutNobodyOutWhenThereAreNoMoreDescriptors) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer itself needs descriptors to look at an object";
+#endif
   Pair pair;
   auto first = pair.connect();
   std::list<RawPeer> idle;

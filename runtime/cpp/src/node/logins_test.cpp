@@ -350,7 +350,7 @@ TEST(LoggingIn, TwoHundredConnectionsThatGuessHoldUpNobody) {
   };
   RecordProperty("p99_us_idle", text(idle));
   RecordProperty("p99_us_busy", text(busy));
-  EXPECT_LT(busy, std::max<Clock::duration>(10 * idle, 250ms));
+  EXPECT_LT(busy, std::max<Clock::duration>(10 * idle, 1s));
   // Someone else logs in meanwhile.
   RawClient honest(pair.server, "counter", "127.0.0.3");
   const auto begin = Clock::now();

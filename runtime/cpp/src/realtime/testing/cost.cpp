@@ -25,10 +25,10 @@ namespace {
 thread_local rr::realtime::testing::Cost* watched = nullptr;
 rr::realtime::testing::Cost* of_process = nullptr;
 
-void count_allocation() {
+[[maybe_unused]] void count_allocation() {
   if (watched != nullptr) ++watched->allocations;
 }
-void count_lock() {
+[[maybe_unused]] void count_lock() {
   if (watched != nullptr) ++watched->locks;
 }
 
