@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/cpp/src/service/password_hash.hpp"
 
+#include <openssl/crypto.h>
 #include <openssl/evp.h>
 
 #include <array>
@@ -10,6 +11,8 @@
 #include "runtime/cpp/src/service/sha_crypt.hpp"
 
 namespace rr::service {
+
+void begin_hashing() { OPENSSL_init_crypto(OPENSSL_INIT_LOAD_CONFIG, nullptr); }
 
 std::string md5(std::string_view text) {
   constexpr std::string_view digits = "0123456789abcdef";

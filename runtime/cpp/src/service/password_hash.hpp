@@ -6,6 +6,11 @@
 
 namespace rr::service {
 
+/// Has OpenSSL begin now and not within the first login, which would take some milliseconds more.
+/// OpenSSL may never free the list of errors of the thread that it begins on: that of a login ends
+/// before the program does.
+void begin_hashing();
+
 /// The MD5 of a text in 32 hexadecimal digits: the hash of passwords in existing files.
 std::string md5(std::string_view text);
 

@@ -70,6 +70,7 @@ Error refusal() { return {ErrorCode::authentication_error, "Invalid username or 
 PasswordUsers::~PasswordUsers() = default;
 
 PasswordUsers::PasswordUsers(std::string_view text) {
+  service::begin_hashing();
   std::size_t number = 0;
   while (!text.empty()) {
     std::string_view line = text.substr(0, text.find('\n'));
