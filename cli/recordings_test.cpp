@@ -114,7 +114,7 @@ TEST_F(Recordings, AreMadeOfConnectionsThatPassThrough) {
 }
 
 TEST_F(Recordings, ArePlayedToAServiceAndToAClient) {
-  const std::string path = record([](CounterStub& counter) {
+  record([](CounterStub& counter) {
     counter.set_value(2);
     counter.add(1, 2);
   });

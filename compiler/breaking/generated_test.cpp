@@ -9,10 +9,10 @@
 #include "compiler/breaking/testing.hpp"
 
 // The header of the program, once for each version.
-#define versioned before
+#define versioned before  // NOLINT(readability-identifier-naming): stands for a namespace
 #include "compiler/breaking/testing/user.hpp"
 #undef versioned
-#define versioned after
+#define versioned after  // NOLINT(readability-identifier-naming): stands for a namespace
 #include "compiler/breaking/testing/user.hpp"
 #undef versioned
 

@@ -15,9 +15,9 @@ void serve_nothing(const ServedObject& object, bool is_new) {
   static_cast<void>(is_new);
 }
 
-Serve stores(Value value) { return stores(value, value); }
+Serve stores(const Value& value) { return stores(value, value); }
 
-Serve stores(Value old_value, Value new_value) {
+Serve stores(const Value& old_value, const Value& new_value) {
   return [=](const ServedObject& object, bool is_new) {
     object.store("v", is_new ? new_value : old_value);
   };
@@ -29,14 +29,14 @@ Use gets(const std::string& field) {
   return [=](Meeting& meeting) { return meeting.object.get("v")[field].to_json(); };
 }
 
-Use sets(Value value) {
+Use sets(const Value& value) {
   return [=](Meeting& meeting) {
     meeting.object.set("v", value);
     return meeting.served.stored("v").to_json();
   };
 }
 
-Use sets(Value old_value, Value new_value) {
+Use sets(const Value& old_value, const Value& new_value) {
   return [=](Meeting& meeting) {
     meeting.object.set("v", meeting.is_client_new ? new_value : old_value);
     return std::string("set");

@@ -60,16 +60,16 @@ using Use = std::function<std::string(Meeting&)>;
 /// Does nothing.
 void serve_nothing(const rr::dynamic::ServedObject& object, bool is_new);
 /// Keeps a value in the property `v`.
-Serve stores(rr::dynamic::Value value);
-Serve stores(rr::dynamic::Value old_value, rr::dynamic::Value new_value);
+Serve stores(const rr::dynamic::Value& value);
+Serve stores(const rr::dynamic::Value& old_value, const rr::dynamic::Value& new_value);
 /// Gets the property `v`, as JSON.
 std::string get(Meeting& meeting);
 /// Gets a field of it.
 Use gets(const std::string& field);
 /// Sets the property `v`; what the service has then.
-Use sets(rr::dynamic::Value value);
+Use sets(const rr::dynamic::Value& value);
 /// Sets the property `v` to what is of the client's version, and is content when nothing fails.
-Use sets(rr::dynamic::Value old_value, rr::dynamic::Value new_value);
+Use sets(const rr::dynamic::Value& old_value, const rr::dynamic::Value& new_value);
 /// Two versions of the members of Root.
 Row members(std::string name, std::string codes, const std::string& before, const std::string& now,
             Serve serve, Use use, std::string old_client, std::string new_client);

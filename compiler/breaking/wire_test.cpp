@@ -111,7 +111,7 @@ class Bench {
 std::string outcome(const Row& row, bool is_client_new) {
   const std::string usual = Bench(row, is_client_new, is_client_new).run();
   EXPECT_THAT(usual, ::testing::StartsWith("done: ")) << row.name;
-  const std::string text = Bench(row, is_client_new, !is_client_new).run();
+  std::string text = Bench(row, is_client_new, !is_client_new).run();
   if (text.starts_with("refused: ")) return text;
   return text == usual ? "works" : "silent: " + text.substr(6);
 }

@@ -95,7 +95,7 @@ fs::path find_companion(const fs::path& folder, const std::string& name) {
 
 }  // namespace
 
-GoldenCorpus::GoldenCorpus(fs::path folder, std::string extension) {
+GoldenCorpus::GoldenCorpus(const fs::path& folder, const std::string& extension) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == extension) inputs_.push_back(entry.path());
   }

@@ -15,7 +15,8 @@ namespace robdef {
 class GoldenCorpus {
  public:
   /// `extension` is that of the inputs, with its dot.
-  explicit GoldenCorpus(std::filesystem::path folder, std::string extension = ".robdef");
+  explicit GoldenCorpus(const std::filesystem::path& folder,
+                        const std::string& extension = ".robdef");
 
   /// All inputs in the order of their names.
   [[nodiscard]] const std::vector<std::filesystem::path>& inputs() const { return inputs_; }

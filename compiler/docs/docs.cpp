@@ -19,9 +19,9 @@ void add_definition_pages(const TemplateSources& sources, std::string_view name,
   }
 }
 
-void add_model_page(const TemplateSources& sources, std::string_view name, std::string path,
+void add_model_page(const TemplateSources& sources, std::string_view name, const std::string& path,
                     const ModelView& view, FileSet& files) {
-  files.add(std::move(path), Template(sources, name, {&view_type<ModelView>()}).render({&view}));
+  files.add(path, Template(sources, name, {&view_type<ModelView>()}).render({&view}));
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ Place place_of(const model::Base& base) {
 }
 
 std::string Signatures::base(const model::Type& type) const {
-  const std::string label = markup_.text(model::written_base(type, definition_));
+  std::string label = markup_.text(model::written_base(type, definition_));
   const Place place = place_of(type.base);
   if (place.definition == nullptr) return label;
   return markup_.link(label, addresses_.address(definition_, place));

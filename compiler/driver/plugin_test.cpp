@@ -191,8 +191,9 @@ TEST_F(PluginCommand, MistakesInTheProjectFileAreFindings) {
 class ReferencePlugin : public testing::Test {
  protected:
   Ended run(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {"generate", "--no-config", "--plugin",
-                                         ROBDEF_EXAMPLE "/reference.py", "-o", "out"});
+    const std::string plugin = ROBDEF_EXAMPLE "/reference.py";
+    arguments.insert(arguments.begin(),
+                     {"generate", "--no-config", "--plugin", plugin, "-o", "out"});
     return run_robdef(folder_, arguments);
   }
 

@@ -109,7 +109,7 @@ std::size_t comment_lines(std::string_view text) {
 
 std::string fault_of_formatting(const Formatted& before) {
   const std::string& text = before.text;
-  const std::string gap = gap_in(before.file.written, text);
+  std::string gap = gap_in(before.file.written, text);
   if (!gap.empty()) return gap;
   const Formatted after(before.result);
   if (after.result != before.result) return "formatting it again changes more";

@@ -186,8 +186,10 @@ std::optional<ast::NamedText> Workspace::find_import(const std::string& service,
   return std::nullopt;
 }
 
-std::shared_ptr<Analysis> Workspace::analyse(const std::string& path, std::string text,
-                                             std::shared_ptr<Analysis> earlier) {
+// Its last owner: what is left of `earlier` ends here.
+std::shared_ptr<Analysis> Workspace::analyse(
+    const std::string& path, std::string text,
+    std::shared_ptr<Analysis> earlier) {  // NOLINT(performance-unnecessary-value-param)
   auto made = std::make_shared<Analysis>();
   const LoadedProject* const project = project_of(path);
   if (project != nullptr) set_levels(made->report, {&project->project.levels});

@@ -89,11 +89,10 @@ Object declared(const ast::Object& written, const Definition& definition) {
 
 // Makes room first: declarations point into the lists.
 void reserve_declarations(const ast::File& file, Definition& definition) {
-  const auto count = [&file](auto kind) {
+  const auto count = [&file]<class Kind>(const Kind& /*any*/) {
     return static_cast<std::size_t>(std::count_if(
-        file.declarations.begin(), file.declarations.end(), [](const ast::Declaration& written) {
-          return std::holds_alternative<decltype(kind)>(written);
-        }));
+        file.declarations.begin(), file.declarations.end(),
+        [](const ast::Declaration& written) { return std::holds_alternative<Kind>(written); }));
   };
   definition.constants.reserve(count(ast::Constant{}));
   definition.exceptions.reserve(count(ast::Exception{}));

@@ -18,7 +18,7 @@ constexpr ast::Version without_options{{0, 9, 2, 0}};
 // The name of a declaration as another file, or its own, has to write it.
 std::string name_in(const Definition& file, const Definition& owner, const std::string& name) {
   if (&owner == &file) return name;
-  const std::string qualified = owner.name + '.' + name;
+  std::string qualified = owner.name + '.' + name;
   for (const Alias& alias : file.aliases) {
     if (alias.qualified_name == qualified) return alias.name;
   }

@@ -226,7 +226,7 @@ std::vector<std::string> table_rows(const std::vector<std::string>& items, std::
 std::string class_head(std::string_view name, const std::vector<std::string>& bases,
                        std::size_t indent) {
   const std::string head = "class " + std::string(name);
-  const std::string flat = head + " : " + join(bases, ", ") + " {";
+  std::string flat = head + " : " + join(bases, ", ") + " {";
   if (fits(flat, indent)) return flat;
   const std::size_t column = indent + head.size() + 3;
   const bool is_aligned = std::ranges::all_of(

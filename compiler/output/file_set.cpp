@@ -27,7 +27,7 @@ bool holds(const fs::path& file, std::string_view content) {
 
 }  // namespace
 
-void FileSet::add(std::string path, std::string content) {
+void FileSet::add(const std::string& path, std::string content) {
   const fs::path normal = fs::path(path).lexically_normal();
   if (path.empty() || normal.has_root_path() || *normal.begin() == ".." || !normal.has_filename()) {
     throw std::logic_error("`" + path + "` is no path of a file below the output folder");
@@ -37,9 +37,9 @@ void FileSet::add(std::string path, std::string content) {
   }
 }
 
-void FileSet::add_draft(std::string path, std::string content) {
+void FileSet::add_draft(const std::string& path, std::string content) {
   std::string normal = fs::path(path).lexically_normal().generic_string();
-  add(std::move(path), std::move(content));
+  add(path, std::move(content));
   drafts_.insert(std::move(normal));
 }
 

@@ -24,10 +24,10 @@ class FileSet {
 
   /// `path` is relative and uses `/`. Throws std::logic_error for a path that is there already, or
   /// that leads out of the folder.
-  void add(std::string path, std::string content);
+  void add(const std::string& path, std::string content);
 
   /// The same for a file that the user goes on with: once it is there it is never touched again.
-  void add_draft(std::string path, std::string content);
+  void add_draft(const std::string& path, std::string content);
   /// A line for the user.
   void add_note(std::string note) { notes_.push_back(std::move(note)); }
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }

@@ -34,7 +34,7 @@ bool contains(const std::array<std::string_view, size>& words, std::string_view 
 
 constexpr std::size_t slots = 256;
 constexpr std::size_t slot_of(std::string_view word) {
-  return (static_cast<unsigned char>(word.front()) * 7U + word.size() * 31U) % slots;
+  return (std::size_t{static_cast<unsigned char>(word.front())} * 7U + word.size() * 31U) % slots;
 }
 
 // Which first letters and lengths words of a list have, because most words are none of them.

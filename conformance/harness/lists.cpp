@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace rr::conformance {
 namespace {
@@ -85,12 +86,12 @@ std::string_view name_of(Role role) {
 }
 
 ListEntry::ListEntry(std::vector<std::string> fields, std::string where_listed)
-    : scenario_(fields.at(0)),
-      versions_(fields.at(1)),
-      role_(fields.at(2)),
-      place_(fields.at(3)),
-      instead_(fields.at(4)),
-      reason_(fields.at(5)),
+    : scenario_(std::move(fields.at(0))),
+      versions_(std::move(fields.at(1))),
+      role_(std::move(fields.at(2))),
+      place_(std::move(fields.at(3))),
+      instead_(std::move(fields.at(4))),
+      reason_(std::move(fields.at(5))),
       where_listed_(std::move(where_listed)) {
   static constexpr std::string_view over = " over ";
   const std::size_t end = scenario_.find(over);

@@ -26,7 +26,7 @@ std::optional<std::string> fault_of_error(const Comparison& comparison, const St
                                           const Json& recorded, const Json& raised) {
   // An exception of the recorded client's own language: that there is one is all it says.
   if (!recorded.contains("code")) return std::nullopt;
-  const std::string both = said(recorded) + " recorded, " + said(raised) + " raised";
+  std::string both = said(recorded) + " recorded, " + said(raised) + " raised";
   if (recorded.at("code") != raised.value("code", Json())) return both;
   const std::string name = recorded.at("name");
   if (!comparison.is_host_specific(name) && name != raised.value("name", "")) return both;

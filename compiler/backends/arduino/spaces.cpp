@@ -51,7 +51,7 @@ void add_constant(const model::Constant& constant, const std::string& name,
     return;
   }
   if (const auto* text = std::get_if<std::string>(&constant.value)) {
-    lines.push_back("/// In flash.");
+    lines.emplace_back("/// In flash.");
     lines.push_back("constexpr char " + name + "[] PROGMEM = " + cpp::string_literal(*text) + ";");
     return;
   }
@@ -63,7 +63,7 @@ void add_constant(const model::Constant& constant, const std::string& name,
       items.push_back(number_literal((*numbers)[at], written[at].text, primitive));
     }
     if (items.empty()) return;  // C++ has no empty arrays
-    lines.push_back("/// In flash.");
+    lines.emplace_back("/// In flash.");
     lines.push_back("constexpr " + number_type(primitive) + " " + name + "[] PROGMEM = {" +
                     join(items, ", ") + "};");
     return;

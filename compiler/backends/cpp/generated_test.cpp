@@ -93,7 +93,7 @@ TEST(Generated, StructsThatContainThemselvesTravel) {
   Tree tree{.name = "root"};
   tree.left = Tree{.name = "left"};
   tree.others.emplace();
-  tree.others->push_back(Tree{.name = "other"});
+  tree.others->emplace_back(Tree{.name = "other"});
   expect_to_travel(tree);
   expect_to_travel(Even{.next = Odd{.next = Even{}}});
 }

@@ -63,7 +63,7 @@ std::string scalar(const Number& value, std::string_view written, Primitive prim
     const std::uint64_t bits = std::get<std::uint64_t>(value);
     if (model::size_of(primitive) == 8) return wide_bits(bits);
   }
-  const std::string number = plain_number(value, written, primitive);
+  std::string number = plain_number(value, written, primitive);
   if (primitive == Primitive::double_) return number;
   return std::string(model::name_of(primitive)) + "(" + number + ")";
 }

@@ -48,7 +48,7 @@ std::string escaped(const std::string& index) {
 
 // `objref` or `objref[index]`, as a step asks for it.
 std::string relative_path(const Json& step) {
-  const std::string member = step.at("member");
+  std::string member = step.at("member");
   if (!step.contains("index")) return member;
   const Json& index = step["index"];
   return member + "[" + escaped(index.is_string() ? index.get<std::string>() : index.dump()) + "]";

@@ -176,7 +176,7 @@ Frame Instrument::expose() {
 }
 
 std::shared_ptr<host::CameraHostSkeleton> make_host(std::shared_ptr<Instrument> instrument) {
-  return std::make_shared<Host>(instrument);
+  return std::make_shared<Host>(std::move(instrument));
 }
 
 }  // namespace asom

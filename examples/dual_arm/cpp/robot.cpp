@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace dual_arm {
 
@@ -28,7 +29,8 @@ SimulatedRun::SimulatedRun(Robot& robot, std::function<void(Nanoseconds)> betwee
   lockstep_.add(cycle_time,
                 [&robot](const Cycle& cycle) { robot.coordinator().step(cycle, cycle.due); });
   if (between) {
-    lockstep_.add(cycle_time, [between](const Cycle& cycle) { between(cycle.due); });
+    lockstep_.add(cycle_time,
+                  [between = std::move(between)](const Cycle& cycle) { between(cycle.due); });
   }
   for (std::size_t i = 0; i < node_count; ++i) {
     lockstep_.add(cycle_time,

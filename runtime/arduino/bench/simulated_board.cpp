@@ -16,8 +16,10 @@ extern "C" {
 }
 
 // The simulator never frees what it reads a program into, nor its own tables.
+// NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming)
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() { return "leak:libsimavr\n"; }
+// NOLINTEND(bugprone-reserved-identifier, readability-identifier-naming)
 
 namespace rr::serial::testing {
 namespace {

@@ -14,7 +14,7 @@
 namespace rr::models {
 namespace {
 
-constexpr std::string_view usage =
+constexpr const char* usage =
     "usage: rr_models [--iterations N | --all] [--model NAME] [--planted | --orders]\n"
     "  --iterations N  so many interleavings of each model, chosen at random (100000)\n"
     "  --all           all interleavings, of models that have few\n"
@@ -31,7 +31,7 @@ struct Options {
 };
 
 [[noreturn]] void refuse() {
-  std::fputs(usage.data(), stderr);
+  std::fputs(usage, stderr);
   std::exit(2);
 }
 

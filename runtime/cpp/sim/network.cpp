@@ -41,7 +41,7 @@ int Epoll::change(int operation, const std::shared_ptr<File>& file, const epoll_
                                   [&](const auto& each) { return each.first == file; });
   if (operation == EPOLL_CTL_ADD) {
     if (place != entries_.end()) return -EEXIST;
-    entries_.push_back({file, Entry{event->events, event->data, false}});
+    entries_.emplace_back(file, Entry{event->events, event->data, false});
     file->join(*this);
     changed(*file);
     return 0;

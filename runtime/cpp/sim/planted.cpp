@@ -110,11 +110,11 @@ void run_split_message(Scheduler& run) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   socklen_t size = sizeof address;
-  ::bind(listening, reinterpret_cast<sockaddr*>(&address), sizeof address);
+  static_cast<void>(::bind(listening, reinterpret_cast<sockaddr*>(&address), sizeof address));
   ::listen(listening, 1);
   ::getsockname(listening, reinterpret_cast<sockaddr*>(&address), &size);
   const int client = ::socket(AF_INET, SOCK_STREAM, 0);
-  ::connect(client, reinterpret_cast<sockaddr*>(&address), sizeof address);
+  static_cast<void>(::connect(client, reinterpret_cast<sockaddr*>(&address), sizeof address));
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   const int served = ::accept4(listening, nullptr, nullptr, 0);
   std::array<char, 100> message{};

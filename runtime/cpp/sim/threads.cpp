@@ -358,10 +358,13 @@ long syscall(long number, ...) noexcept {
   va_end(list);
   Scheduler* const run = Scheduler::current();
   if (run != nullptr && number == SYS_futex) {
+    // A system call has its pointers as numbers.
+    // NOLINTBEGIN(performance-no-int-to-ptr)
     return rr::sim::futex(*run,
                           {reinterpret_cast<std::uint32_t*>(a), static_cast<int>(b),
                            static_cast<std::uint32_t>(c), reinterpret_cast<const timespec*>(d)},
                           RR_CALLER);
+    // NOLINTEND(performance-no-int-to-ptr)
   }
   if (run != nullptr && number == SYS_sched_setattr) return 0;
   static constinit Real<long(long, ...)> call{"syscall"};

@@ -32,10 +32,11 @@ HostileLink::HostileLink(std::uint16_t port, const NodeId& server, int number)
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK + 1 + static_cast<std::uint32_t>(number) % 4);
-  ::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  static_cast<void>(::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address));
   address.sin_port = htons(port);
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  static_cast<void>(
+      ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address));
   ::fcntl(socket_, F_SETFL, O_NONBLOCK);
 }
 

@@ -39,6 +39,7 @@ void UserFunctions::abandon() {
   }
 }
 
+// By value: the arguments are used up. NOLINTNEXTLINE(performance-unnecessary-value-param)
 UserFunctions::Outcome UserFunctions::run(const Kept& function, std::vector<mxArray*> arguments,
                                           bool wants_result) {
   mxArray* const cells = make_cells(arguments);

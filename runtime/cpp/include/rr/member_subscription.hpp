@@ -217,7 +217,7 @@ class PipeSubscription : public PipeSubscriptionBase {
   /// Calls `function(T, client)` for packets, those that wait first, instead of keeping them; one
   /// at a time, on a thread of the node. The newest function counts.
   template <class Function>
-  Subscription on_packet(Function function) {
+  Subscription on_packet(Function function) {  // NOLINTNEXTLINE(performance-*): given away
     return on_received([function = std::move(function)](Packet packet) mutable {
       function(std::move(*static_cast<T*>(packet.value.get())),
                static_cast<const SubscriptionClientId&>(packet.client));

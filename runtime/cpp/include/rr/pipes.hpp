@@ -148,7 +148,7 @@ class PipeEndpoint : public PipeEnd {
   }
   /// Calls `function(T)` for packets, those that wait first, instead of keeping them.
   template <class Function>
-  Subscription on_packet(Function function) {
+  Subscription on_packet(Function function) {  // NOLINTNEXTLINE(performance-*): given away
     return on_received([function = std::move(function)](std::shared_ptr<void> packet) mutable {
       function(std::move(*static_cast<T*>(packet.get())));
     });

@@ -31,7 +31,7 @@ class StringTable {
 
   /// A table without strings, and without the standard codes. Not defaulted: value-initialization
   /// would clear the 4 kB of entries for every message.
-  StringTable() {}
+  StringTable() {}  // NOLINT(modernize-use-equals-default)
   /// Uses the standard codes too.
   explicit StringTable(bool standard) : standard_(standard) {}
   /// Copies the strings' places, not the texts: both tables view the same message.

@@ -191,7 +191,7 @@ TEST(Account, WhatIsOfferedIsDrawnOnceMore) {
   EXPECT_FALSE(sent.add(5 * mib));
   {
     const OfferedCharge offer(std::move(made));
-    EXPECT_EQ(made.bytes(), 0U);
+    EXPECT_EQ(made.bytes(), 0U);  // NOLINT(bugprone-use-after-move): is empty then
     EXPECT_TRUE(sent.add(5 * mib));
     EXPECT_EQ(account->held(), 6 * mib);
     EXPECT_FALSE(sent.add(5 * mib));  // 1 MiB is left, and the pool has not 4

@@ -296,7 +296,7 @@ TEST(Budgets, AnAnswerThatNobodyTakesIsRefusedWhenThePoolIsFull) {
     return handled == count;
   }));
   EXPECT_GT(refused, 5);
-  EXPECT_LE(accepting.sessions_hold(), 4 * mebibyte + count * 64 * kib);
+  EXPECT_LE(accepting.sessions_hold(), 4 * mebibyte + std::size_t{count} * 64 * kib);
   // Each gets one or the other.
   for (SocketPair& peer : peers) EXPECT_FALSE(peer.receive_message(10'000).empty());
   EXPECT_TRUE(comes_true([&] { return accepting.sessions_hold() == 0; }));

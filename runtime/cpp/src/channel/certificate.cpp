@@ -43,7 +43,7 @@ FilePtr open_certificate_file(const std::string& name) {
     BIO_get_fp(file.get(), &stream);
     if (stream != nullptr && std::fseek(stream, 0, SEEK_END) == 0) {
       const bool is_too_large = std::ftell(stream) > largest_file;
-      std::rewind(stream);
+      std::rewind(stream);  // NOLINT(bugprone-unsafe-functions): seeking has just worked
       if (is_too_large) refuse(name, "it is larger than 1 MiB");
     }
   }

@@ -5,10 +5,13 @@
 
 #include "rr/error.hpp"
 
+// Declared again to be weak here.
+// NOLINTBEGIN(readability-redundant-declaration)
 extern "C" {
 [[gnu::weak]] extern const rr::channel::TlsComponent rr_component_tls;
 [[gnu::weak]] extern const rr::channel::WebComponent rr_component_web;
 }
+// NOLINTEND(readability-redundant-declaration)
 
 namespace rr::channel {
 namespace {

@@ -27,7 +27,7 @@ class NotingTap final : public Tap {
   std::uint32_t opened(const ConnectionOpened& opened) override {
     client_url = opened.client_url;
     service_url = opened.service_url;
-    lines.push_back(opened.side == TapSide::client ? "client" : "service");
+    lines.emplace_back(opened.side == TapSide::client ? "client" : "service");
     return 7;
   }
   void agreed(std::uint32_t number, const ConnectionAgreed& agreement) override {

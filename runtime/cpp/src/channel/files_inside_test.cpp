@@ -6,7 +6,6 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <cstring>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -224,7 +223,7 @@ TEST_F(RunDirectoryTest, SocketsOfNodesThatLiveNoMoreAreRemoved) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   ASSERT_LT(path.size(), sizeof address.sun_path);
-  std::strcpy(address.sun_path, path.c_str());
+  path.copy(address.sun_path, path.size());
   ASSERT_EQ(::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
   ::close(socket);
   const std::string name = "transport/local/by-nodeid/x.info";

@@ -25,11 +25,11 @@ platform::File open_lock(const std::string& folder) {
 
 void replace_file(const std::string& path, std::span<const char> bytes, platform::Access access) {
   const std::string part = path + ".new";
-  platform::remove_file(part);  // what an interrupted run has left
+  static_cast<void>(platform::remove_file(part));  // what an interrupted run has left
   std::error_code error = platform::write_new_file(part, bytes, access);
   if (!error) {
     error = platform::rename_file(part, path);
-    if (error) platform::remove_file(part);
+    if (error) static_cast<void>(platform::remove_file(part));
   }
   if (error) refuse(path, "it cannot be written: " + error.message());
 }

@@ -25,7 +25,7 @@ Milliseconds heartbeat_period(bool is_server, const LinkTerms& terms) {
 }  // namespace
 
 StreamConnection::StreamConnection(Role role, Descriptor socket, std::shared_ptr<Reactor> reactor,
-                                   std::shared_ptr<const NodeOptions> options)
+                                   const std::shared_ptr<const NodeOptions>& options)
     : StreamConnection(role, std::move(socket), std::move(reactor), options, tcp_terms(*options),
                        nullptr) {}
 

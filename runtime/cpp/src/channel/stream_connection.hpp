@@ -65,12 +65,12 @@ class StreamConnection final : public Connection,
   enum class Role : std::uint8_t { client, server };
 
   StreamConnection(Role role, Descriptor socket, std::shared_ptr<Reactor> reactor,
-                   std::shared_ptr<const NodeOptions> options);
+                   const std::shared_ptr<const NodeOptions>& options);
   /// The same of another channel than TCP, or with a carrier; null for none.
   StreamConnection(Role role, Descriptor socket, std::shared_ptr<Reactor> reactor,
                    std::shared_ptr<const NodeOptions> options, LinkTerms terms,
                    std::unique_ptr<Carrier> carrier);
-  ~StreamConnection();
+  ~StreamConnection() override;
 
   /// Before start(): who the other side is and what was agreed with it.
   void set_agreement(const NodeId& remote_node, std::string remote_name,

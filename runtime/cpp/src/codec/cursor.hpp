@@ -65,7 +65,7 @@ struct Cursor {
     if (at == end) return false;
     const auto first = std::to_integer<std::uint8_t>(*at);
     if (first < 125 || first > 127) [[likely]] {
-      value = static_cast<std::int8_t>(first);
+      value = static_cast<std::int8_t>(first);  // NOLINT(bugprone-signed-char-misuse)
       ++at;
       return true;
     }

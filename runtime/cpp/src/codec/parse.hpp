@@ -172,7 +172,7 @@ template <UnknownCode unknown>
     name_size = third;
     element.number = 0;
   } else if (flags == element_flag::number && (third < 125 || third > 127)) {
-    element.number = static_cast<std::int8_t>(third);
+    element.number = static_cast<std::int8_t>(third);  // NOLINT(bugprone-signed-char-misuse)
   } else {
     return false;
   }

@@ -23,9 +23,9 @@ constexpr channel::Milliseconds rest{50};
 
 std::vector<const char*> groups_of(const DiscoveryNetwork& network, bool is_loopback) {
   std::vector<const char*> groups;
-  if (network.node_local) groups.push_back("ff01::ba86");
-  if (network.link_local && !is_loopback) groups.push_back("ff02::ba86");
-  if (network.site_local && !is_loopback) groups.push_back("ff05::ba86");
+  if (network.node_local) groups.emplace_back("ff01::ba86");
+  if (network.link_local && !is_loopback) groups.emplace_back("ff02::ba86");
+  if (network.site_local && !is_loopback) groups.emplace_back("ff05::ba86");
   return groups;
 }
 

@@ -17,7 +17,7 @@ inline DiscoveryNetwork loopback_network() {
   const channel::Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   sockaddr_in any{};
   any.sin_family = AF_INET;
-  bind(socket.get(), reinterpret_cast<const sockaddr*>(&any), sizeof any);
+  static_cast<void>(::bind(socket.get(), reinterpret_cast<const sockaddr*>(&any), sizeof any));
   return {.link_local = false,
           .ipv4_broadcast = true,
           .interfaces = {"lo"},

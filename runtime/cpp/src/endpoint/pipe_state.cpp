@@ -159,10 +159,13 @@ void PipeEnd::State::complete(std::shared_ptr<Waiting> waiting, std::shared_ptr<
   call([&] { receiver->receive(std::move(value)); });
 }
 
+// Both end here, without the lock.
+// NOLINTBEGIN(performance-unnecessary-value-param)
 void PipeEnd::State::tell_closed(std::shared_ptr<Receiver> /*receiver*/,
                                  Function<void()> function) const {
   if (function) call(function);
 }
+// NOLINTEND(performance-unnecessary-value-param)
 
 void PipeEnd::State::deliver_soon() {
   core_->reactor().post([self = shared_from_this()] { self->deliver(); }, threads_);

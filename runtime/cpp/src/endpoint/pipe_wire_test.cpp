@@ -153,7 +153,7 @@ struct Packet {
   bool asks = false;
 };
 
-RawClient::Elements packets(std::vector<Packet> all) {
+RawClient::Elements packets(const std::vector<Packet>& all) {
   return [all](Writer& writer) {
     for (auto each = all.rbegin(); each != all.rend(); ++each) {
       write_packet(writer, each->index, each->number, each->asks,

@@ -95,7 +95,7 @@ class WireEndTest : public ::testing::Test {
     return value ? value_of(value) : -1;
   }
   template <class Value>
-  void arrive(Value value, TimeSpec time) {
+  void arrive(const Value& value, TimeSpec time) {
     const ArrivedValue arrived(value, time);
     end_->take(arrived.message, arrived.entry, {}, types_, deferred_);
   }

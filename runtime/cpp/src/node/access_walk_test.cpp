@@ -144,7 +144,7 @@ RawClient::Elements at_once(const Situation&) { return element<std::int32_t>("ti
 
 // 150: "every other entry of an unauthenticated client on a service with requirevaliduser".
 const std::vector<Row>& requests() {
-  constexpr int S = silence;
+  constexpr int S = silence;  // NOLINT(readability-identifier-naming): as wide as a code
   using enum EntryType;
   static const std::vector<Row> rows{
       //                                                    un- bef. in   out  user cli. rel. locked
@@ -280,7 +280,7 @@ struct PacketRow {
 };
 
 const std::vector<PacketRow>& packets() {
-  constexpr int S = silence;
+  constexpr int S = silence;  // NOLINT(readability-identifier-naming): as wide as a code
   static const std::vector<PacketRow> rows{
       {"WirePacket",
        EntryType::wire_packet,

@@ -186,7 +186,7 @@ TEST_F(AuditLogTest, WritesALineForEachEventAtOnce) {
             "{\"time\":\"1970-01-01T00:00:01.500000Z\",\"event\":\"login\",\"outcome\":\"refused\","
             "\"service\":\"arm\",\"user\":\"alice\",\"client\":7,"
             "\"reason\":\"Invalid username or password\"}\n");
-  const AuditLog copy = log;
+  const AuditLog copy = log;  // NOLINT(performance-unnecessary-copy-initialization)
   copy(event);
   const std::string text = text_of();
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);

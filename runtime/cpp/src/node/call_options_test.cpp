@@ -26,6 +26,7 @@ using boost::asio::use_future;
 using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a coroutine outlives its arguments
 awaitable<ErrorCode> outcome_of_slow(CounterStub& counter, CallOptions options) {
   try {
     co_await counter.async_slow(0, options, use_awaitable);

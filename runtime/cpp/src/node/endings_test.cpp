@@ -251,7 +251,7 @@ TEST(Shutdown, EveryCompletionIsCalledWhateverReadsMeanwhile) {
   for (int round = 0; round < 10; ++round) {
     Pair pair;
     auto counter = pair.connect();
-    const auto stub = counter.stub();
+    const auto& stub = counter.stub();
     std::vector<std::thread> callers;
     for (int t = 0; t < 3; ++t) {
       callers.emplace_back([&] {

@@ -148,14 +148,14 @@ TEST(LogRecords, OfAClientSayWhichServiceItIs) {
 TEST(LogRecords, OfAnotherNodeHaveNoPeer) {
   Kept kept;
   struct Asking final : Counter {
-    explicit Asking(Node& other) : other_(other) {}
+    explicit Asking(Node& node) : other(node) {}
     // A password's weak hash makes the other node warn.
     void reset() override {
-      other_.register_service(
+      other.register_service(
           "counter", std::make_shared<Counter>(),
           {.users = std::make_shared<PasswordUsers>("bob b177f56968fdfe39a41e06e419013440 _\n")});
     }
-    Node& other_;
+    Node& other;
   };
   Kept of_other;
   Node other({.log_record = of_other.taker()});

@@ -177,7 +177,8 @@ TEST(Rights, AreGivenInCodeToo) {
 // Each word alone allows what it says and nothing else.
 TEST(RightsOfAService, EachWordAllowsItsOwnEntries) {
   using Ask = std::function<std::uint16_t(GuardedClient&)>;
-  const auto ask = [](EntryType type, std::string member, RawClient::Elements elements = nullptr) {
+  const auto ask = [](EntryType type, const std::string& member,
+                      const RawClient::Elements& elements = nullptr) {
     return [=](GuardedClient& client) { return client.ask(type, "guarded", member, elements); };
   };
   const auto part = [](bool has_data) {

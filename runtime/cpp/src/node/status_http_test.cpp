@@ -33,7 +33,7 @@ class StatusHttp : public ::testing::Test {
                                 const std::string& method = "GET") const {
     const RawSocket peer(port);
     peer.send(method + " " + path + " HTTP/1.1\r\nHost: " + here + "\r\n" + more + "\r\n");
-    const std::string head = peer.receive_until("\r\n\r\n");
+    std::string head = peer.receive_until("\r\n\r\n");
     const std::size_t at = head.find("Content-Length: ");
     if (at == std::string::npos) return head;
     const std::size_t length = std::stoul(head.substr(at + 16));

@@ -164,7 +164,7 @@ TEST(WireEnds, EndWhenTheirObjectIsReleasedWhileTheyAreConnected) {
   auto wired = pair.connect();
   const auto child = wired->get_child("left");
   std::atomic<bool> has_released = false;
-  pair.object->child->level().on_connect([&](ServedWire<double>) {
+  pair.object->child->level().on_connect([&](const ServedWire<double>&) {
     if (!has_released.exchange(true)) pair.service->release_path("wired.child[left]");
   });
   auto level = child->level().connect();

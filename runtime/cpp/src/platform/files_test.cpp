@@ -25,6 +25,10 @@ namespace {
 namespace fs = std::filesystem;
 
 class FilesTest : public ::testing::Test {
+ public:
+  FilesTest(const FilesTest&) = delete;
+  FilesTest& operator=(const FilesTest&) = delete;
+
  protected:
   FilesTest() {
     const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
@@ -36,8 +40,6 @@ class FilesTest : public ::testing::Test {
     std::error_code error;
     fs::remove_all(folder, error);
   }
-  FilesTest(const FilesTest&) = delete;
-  FilesTest& operator=(const FilesTest&) = delete;
 
   [[nodiscard]] std::string in(const char* name) const { return (folder / name).string(); }
   [[nodiscard]] std::string content(const char* name) const {

@@ -108,7 +108,7 @@ ThreadRights become_realtime(int priority) {
 CyclicLoop& Lockstep::add(Nanoseconds period, Function function) {
   parts_.push_back({std::make_unique<CyclicLoop>(period, clock_), std::move(function)});
   return *parts_.back().loop;
-}
+}  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks): the list has it
 
 void Lockstep::run_until(Nanoseconds time) {
   const auto due = [](const Part& part) { return part.loop->next_due(); };

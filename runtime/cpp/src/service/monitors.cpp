@@ -24,8 +24,8 @@ Error not_in_line() { return {ErrorCode::invalid_operation, "Not acquiring monit
 class Monitors::Attempt final : public channel::Timer,
                                 public std::enable_shared_from_this<Attempt> {
  public:
-  Attempt(std::shared_ptr<Monitors> monitors, std::weak_ptr<Monitor> monitor, std::uint32_t session,
-          channel::Time limit)
+  Attempt(const std::shared_ptr<Monitors>& monitors, std::weak_ptr<Monitor> monitor,
+          std::uint32_t session, channel::Time limit)
       : endpoint(session),
         deadline(limit),
         core_(monitors->core_),

@@ -15,7 +15,8 @@
 namespace rr::service {
 namespace {
 
-void run(channel::DeferredCallbacks deferred) {
+// What they hold ends with the call.
+void run(channel::DeferredCallbacks deferred) {  // NOLINT(performance-unnecessary-value-param)
   for (const std::function<void()>& later : deferred) later();
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "runtime/cpp/src/subscription/links.hpp"
 #include "runtime/cpp/src/subscription/waits.hpp"
@@ -15,7 +16,7 @@ class ObjectLinks final : public Links, public Waits {
  public:
   ObjectLinks(std::shared_ptr<endpoint::Core> core, std::weak_ptr<Services> services,
               std::string_view path)
-      : Links(core, services, {}, path), Waits(core), services_(services) {}
+      : Links(core, services, {}, path), Waits(std::move(core)), services_(std::move(services)) {}
 
   std::shared_ptr<Stub> find(const ObjectType* type) override;
 

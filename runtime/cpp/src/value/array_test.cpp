@@ -19,7 +19,7 @@ TEST(Array, OfASizeIsZero) {
 
 TEST(Array, CopiesShareTheirItems) {
   const Array<int> array{1, 2, 3};
-  const Array<int> copy = array;
+  const Array<int> copy = array;  // NOLINT(performance-unnecessary-copy-initialization)
   EXPECT_EQ(copy.data(), array.data());
 }
 

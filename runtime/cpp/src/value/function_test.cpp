@@ -40,7 +40,7 @@ TEST(Function, IgnoresAResultThatIsNotWanted) {
 
 TEST(Function, CopiesShareWhatTheyCall) {
   Function<int()> count = [calls = 0]() mutable { return ++calls; };
-  const Function<int()> other = count;
+  const Function<int()> other = count;  // NOLINT(performance-unnecessary-copy-initialization)
   EXPECT_EQ(count(), 1);
   EXPECT_EQ(other(), 2);
 }

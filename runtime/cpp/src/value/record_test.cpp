@@ -158,8 +158,8 @@ Tree chain(int depth) {
 TEST(Struct, MayContainItself) {
   Tree tree = chain(3);
   tree.leaves.emplace();
-  tree.leaves->push_back(std::nullopt);
-  tree.leaves->push_back(Leaf{"a", Mode::idle, std::nullopt});
+  tree.leaves->emplace_back();
+  tree.leaves->emplace_back(Leaf{"a", Mode::idle, std::nullopt});
   tree.by_name.emplace()["b"] = Leaf{"b", Mode::remote, expected_stats};
   EXPECT_TRUE(survives(tree));
 }

@@ -179,7 +179,7 @@ TEST_F(VarValues, NestingCountsAllElements) {
 
 TEST_F(VarValues, CopiesShareTheValue) {
   const VarValue value = Stats{1, 2, "x"};
-  const VarValue copy = value;
+  const VarValue copy = value;  // NOLINT(performance-unnecessary-copy-initialization)
   EXPECT_EQ(&value.get<Stats>(), &copy.get<Stats>());
   EXPECT_EQ(value, copy);
 }
@@ -206,7 +206,7 @@ TEST(Error, HasTheNameOfItsCode) {
 
 TEST(Error, CarriesAParameter) {
   const Error error(ErrorCode::remote_error, "a.b.Fault", "broken", "sub", VarValue("why"));
-  const Error copy = error;
+  const Error copy = error;  // NOLINT(performance-unnecessary-copy-initialization)
   EXPECT_EQ(copy.name(), "a.b.Fault");
   EXPECT_EQ(copy.message(), "broken");
   EXPECT_EQ(copy.subname(), "sub");

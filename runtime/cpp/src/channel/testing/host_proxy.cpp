@@ -31,7 +31,8 @@ sockaddr_in loopback(std::uint16_t port) {
 int connect_to(std::uint16_t port) {
   const int descriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   const sockaddr_in address = loopback(port);
-  ::connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  static_cast<void>(
+      ::connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address));
   return descriptor;
 }
 
@@ -60,7 +61,7 @@ HostProxy::HostProxy(const std::string& certificate_file, std::uint16_t target)
   listening_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address = loopback(0);
   socklen_t size = sizeof address;
-  ::bind(listening_, reinterpret_cast<const sockaddr*>(&address), size);
+  static_cast<void>(::bind(listening_, reinterpret_cast<const sockaddr*>(&address), size));
   ::listen(listening_, 8);
   ::getsockname(listening_, reinterpret_cast<sockaddr*>(&address), &size);
   port_ = ntohs(address.sin_port);

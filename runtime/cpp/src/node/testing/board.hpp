@@ -30,7 +30,7 @@ class Jam : public Error {
  public:
   explicit Jam(std::string message, std::string subname = {}, VarValue parameter = {})
       : Error(ErrorCode::remote_error, "test.board.Jam", std::move(message), std::move(subname),
-              parameter) {}
+              std::move(parameter)) {}
   explicit Jam(const Error& error) : Error(error) {}
 };
 

@@ -32,7 +32,7 @@ class Overrun : public Error {
  public:
   explicit Overrun(std::string message, std::string subname = {}, VarValue parameter = {})
       : Error(ErrorCode::remote_error, "test.counter.Overrun", std::move(message),
-              std::move(subname), parameter) {}
+              std::move(subname), std::move(parameter)) {}
   explicit Overrun(const Error& error) : Error(error) {}
 };
 

@@ -18,8 +18,8 @@ class OpenMetrics {
   explicit OpenMetrics(const std::string& text) {
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) take(line);
-    if (!has_ended_) faults_.push_back("no # EOF at the end");
-    if (!text.empty() && text.back() != '\n') faults_.push_back("no line feed at the end");
+    if (!has_ended_) faults_.emplace_back("no # EOF at the end");
+    if (!text.empty() && text.back() != '\n') faults_.emplace_back("no line feed at the end");
   }
 
   /// The value of `name{labels}`; not a number when it is not there.

@@ -64,7 +64,7 @@ class RawService {
   ~RawService() {
     is_over_ = true;
     hang_up();
-    RawSocketEnd(peer_.port());  // accept() returns
+    RawSocketEnd(peer_.port());  // NOLINT(bugprone-unused-raii): accept() returns
     thread_.join();
   }
   RawService(const RawService&) = delete;
@@ -145,7 +145,8 @@ class RawService {
       address.sin_family = AF_INET;
       address.sin_port = htons(port);
       address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-      ::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+      static_cast<void>(
+          ::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address));
     }
     ~RawSocketEnd() { ::close(socket); }
     int socket;

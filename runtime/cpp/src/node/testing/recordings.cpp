@@ -94,7 +94,8 @@ StuckWireClient::StuckWireClient(std::uint16_t port, const NodeId& server)
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   const int small = 4096;
   ::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &small, sizeof small);
-  if (::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
+  if (socket_ < 0 ||
+      ::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
     throw std::runtime_error("cannot connect");
   }
   const NodeId own = NodeId::random();

@@ -44,10 +44,13 @@ rr::realtime::testing::Cost* of_process = nullptr;
 
 #ifndef ROBDEF_CANNOT_WATCH
 extern "C" {
+// The names of the C library.
+// NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming)
 void* __libc_malloc(size_t size);
 void* __libc_calloc(size_t count, size_t size);
 void* __libc_realloc(void* memory, size_t size);
 void __libc_free(void* memory);
+// NOLINTEND(bugprone-reserved-identifier, readability-identifier-naming)
 
 void* malloc(size_t size) {
   count_allocation();
