@@ -19,7 +19,7 @@ struct Text {
   Text(const char* text) { *this = text; }
   /// What is longer is cut.
   Text& operator=(const char* text) {
-    strncpy(bytes, text, Limit);
+    memccpy(bytes, text, 0, Limit);
     bytes[Limit] = 0;
     return *this;
   }
