@@ -44,8 +44,8 @@ make_work() {
 
 # unpack_tree ROOT: the sources, as a reader has them who unpacks them, in robdef at the home of root.
 unpack_tree() {
-  local top
+  local top home=$1/root
   top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-  mkdir -p "$1/root/robdef"
-  git -C "$top" ls-files -z | tar -C "$top" --null --files-from=- --ignore-failed-read -c | tar -x -C "$1/root/robdef"
+  mkdir -p "$home/robdef"
+  git -C "$top" ls-files -z | tar -C "$top" --null --files-from=- --ignore-failed-read -c | tar -x -C "$home/robdef"
 }
