@@ -83,6 +83,11 @@ class TlsWhileANodeRuns : public ::testing::Test {
           "/?service=counter";
     client = std::make_unique<Node>(client_options);
   }
+  // At once: a file that is written in place is empty for a moment, which is logged as well.
+  static void replace(const std::string& file, const std::string& text) {
+    std::ofstream(file + ".new") << text;
+    ASSERT_FALSE(platform::rename_file(file + ".new", file));
+  }
   std::string refusal() {
     return error_of([&] { client->connect<CounterStub>(url); }).message();
   }
@@ -187,8 +192,8 @@ TEST_F(TlsWhileANodeRuns, AFileThatCannotBeUsedLeavesTheOldOneInUse) {
   EXPECT_NE(session.end(), "");
   const std::string good = folder + "/good";
   fs::copy(authority->revocation_file(), good);
-  std::ofstream(authority->revocation_file()) << "no list\n";
-  std::ofstream(server_options.tls.certificate_file) << "no certificate\n";
+  replace(authority->revocation_file(), "no list\n");
+  replace(server_options.tls.certificate_file, "no certificate\n");
   EXPECT_TRUE(eventually([&] {
     return times_logged("has no list of revoked certificates; what was read before stays in use") ==
                1 &&
