@@ -28,9 +28,9 @@ struct Note {
 /// `exception Jam`
 class Jam : public Error {
  public:
-  explicit Jam(std::string message, std::string subname = {}, VarValue parameter = {})
+  explicit Jam(std::string message, std::string subname = {}, const VarValue& parameter = {})
       : Error(ErrorCode::remote_error, "test.board.Jam", std::move(message), std::move(subname),
-              std::move(parameter)) {}
+              parameter) {}
   explicit Jam(const Error& error) : Error(error) {}
 };
 

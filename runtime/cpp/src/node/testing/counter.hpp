@@ -30,9 +30,9 @@ struct Reading {
 /// `exception Overrun`
 class Overrun : public Error {
  public:
-  explicit Overrun(std::string message, std::string subname = {}, VarValue parameter = {})
+  explicit Overrun(std::string message, std::string subname = {}, const VarValue& parameter = {})
       : Error(ErrorCode::remote_error, "test.counter.Overrun", std::move(message),
-              std::move(subname), std::move(parameter)) {}
+              std::move(subname), parameter) {}
   explicit Overrun(const Error& error) : Error(error) {}
 };
 
