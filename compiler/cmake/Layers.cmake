@@ -99,7 +99,7 @@ set(robdef_layers
   "runtime/cpp/models: runtime/cpp/include/rr runtime/cpp/src/channel runtime/cpp/src/endpoint"
 
   # Both ends of the protocol read its numbers from one file.
-  "runtime/cpp/src/serial: runtime/cpp/include/rr runtime/cpp/src/dynamic runtime/arduino/src/rr/protocol.h"
+  "runtime/cpp/src/serial: runtime/cpp/include/rr runtime/cpp/src/platform runtime/cpp/src/dynamic runtime/arduino/src/rr/protocol.h"
   "runtime/arduino: runtime/cpp/src/serial runtime/cpp/include/rr runtime/cpp/src/node/testing"
 
   # The suite's connections have the same layers around them as those of nodes.
@@ -121,7 +121,7 @@ set(robdef_outside_headers
   "^boost/| cli/inspect_page.cpp cli/live/node_metrics.cpp runtime/cpp/include/rr/async runtime/cpp/fuzz/client_programs.cpp runtime/cpp/src/channel/web_socket.cpp runtime/cpp/src/channel/memory_stream.hpp"
   "^openssl/| runtime/cpp/src/channel runtime/cpp/src/service/password_hash.cpp runtime/cpp/src/service/sha_crypt.cpp conformance/harness/web_socket_recording.cpp"
   "^rr/async(\\.hpp$|/)| runtime/cpp/include/rr/async.hpp runtime/cpp/include/rr/async runtime/cpp/src runtime/cpp/fuzz runtime/cpp/sim runtime/cpp/stress examples conformance benchmarks compiler/backends"
-  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| compiler/system/linux runtime/cpp/src/serial runtime/arduino/bench/tcp runtime/cpp/src/platform runtime/cpp/src/channel/testing runtime/cpp/src/discovery/testing.hpp runtime/cpp/src/realtime/udp_socket.cpp runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/sim runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp examples/hardening/sandbox_probe.cpp conformance benchmarks"
+  "^(sys/epoll\\.h|sys/socket\\.h|netinet/|arpa/|netdb\\.h|poll\\.h)| compiler/system/linux runtime/arduino/bench/tcp runtime/cpp/src/platform runtime/cpp/src/channel/testing runtime/cpp/src/realtime/udp_socket.cpp runtime/cpp/src/node/testing runtime/cpp/fuzz runtime/cpp/sim runtime/cpp/stress runtime/cpp/bench/fan_out_mosquitto.cpp examples/hardening/sandbox_probe.cpp conformance benchmarks"
   "^fmt/| cli compiler benchmarks"
   "^nlohmann/| compiler/lsp compiler/plugin/answer.cpp runtime/cpp/fuzz/write_service_seeds.cpp runtime/cpp/src/codec/captures.hpp runtime/cpp/src/codec/captures.cpp runtime/cpp/src/value/capture_codec.hpp runtime/cpp/src/value/capture_values.hpp runtime/cpp/src/dynamic/json.cpp conformance"
   "^toml\\+\\+/| compiler/project/toml_file.cpp"
@@ -133,7 +133,7 @@ set(robdef_outside_headers
 
 # Folders of the runtime above the platform seam, tests apart: they are the same for all systems. What they must not
 # include or name, and the only conditions of the preprocessor: they ask for a compiler or what it was asked for.
-set(robdef_above_seam_names channel endpoint service client node discovery codec tap replay subscription dynamic value)
+set(robdef_above_seam_names channel endpoint service client node discovery codec tap replay subscription dynamic serial value)
 list(TRANSFORM robdef_above_seam_names PREPEND runtime/cpp/src/)
 set(robdef_system_headers
   "^(sys|net|netinet|arpa|linux)/|^(netdb|unistd|fcntl|poll|pthread|dirent|ifaddrs|sched|signal|pwd|grp|dlfcn|malloc|windows|winsock2|ws2tcpip)\\.h$")

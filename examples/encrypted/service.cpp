@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Serves a lamp by TLS only, to clients whose certificates are of the same authority.
-#include <signal.h>
-
 #include <cstdint>
 #include <cstdio>
 #include <exception>
@@ -10,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "examples/serving/serving.hpp"
 #include "experimental/lamp.hpp"
 #include "rr/node.hpp"
 
@@ -30,13 +29,7 @@ int main(int argc, char** argv) try {
     std::fputs(usage, stderr);
     return 2;
   }
-  // Blocked before the node starts its threads, so that only the wait below takes them.
-  sigset_t stop;
-  sigemptyset(&stop);
-  sigaddset(&stop, SIGINT);
-  sigaddset(&stop, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &stop, nullptr);
-
+  serving::Stay stay(0);
   rr::NodeOptions options;
   options.name = "lamp.host";
   options.tls = {.certificate_file = argv[1],
@@ -54,11 +47,9 @@ int main(int argc, char** argv) try {
   const std::string address = argc > 5 ? argv[5] : "127.0.0.1";
   const auto wanted = static_cast<std::uint16_t>(argc > 6 ? std::stoul(argv[6]) : 0);
   const int port = node.listen_tcp(wanted, address);
-  std::printf("ready: rrs+tcp://%s:%d/?nodeid=%s&service=lamp\n", address.c_str(), port,
-              node.id().text().c_str());
-  std::fflush(stdout);
-  int signal = 0;
-  sigwait(&stop, &signal);
+  serving::announce("rrs+tcp://" + address + ":" + std::to_string(port) +
+                    "/?nodeid=" + node.id().text() + "&service=lamp");
+  stay.wait_for_end();
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "encrypted_service: %s\n", error.what());

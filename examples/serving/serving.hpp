@@ -2,26 +2,30 @@
 #pragma once
 
 #include <chrono>
-#include <csignal>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace serving {
 
-/// How long a program serves: until SIGINT or SIGTERM comes, and for so many seconds at most; 0
-/// sets no limit. Made before the first node, since threads that are there already would take the
-/// signals.
+/// How long a program serves: until SIGINT or SIGTERM comes (on Windows: until the console is told
+/// to end it), and for so many seconds at most; 0 sets no limit. Made before the first node, since
+/// threads that are there already would take the signals.
 class Stay {
  public:
   explicit Stay(int seconds);
+  ~Stay();
+  Stay(const Stay&) = delete;
+  Stay& operator=(const Stay&) = delete;
   /// Waits so long. False once the stay is over, without waiting.
   bool wait(std::chrono::milliseconds time);
   /// Waits for the end.
   void wait_for_end();
 
  private:
-  sigset_t signals_;
+  struct Signals;
+  std::unique_ptr<Signals> signals_;
   bool has_limit_;
   std::chrono::steady_clock::time_point end_;
   bool is_over_ = false;

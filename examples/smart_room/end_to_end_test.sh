@@ -14,7 +14,8 @@ for _ in $(seq 100); do
   grep -q '^ready: ' "$work/service" && break
   sleep 0.1
 done
-url=$(sed -n 's/^ready: //p' "$work/service")
+# A program for Windows ends its lines otherwise.
+url=$(tr -d '\r' <"$work/service" | sed -n 's/^ready: //p')
 
 "$2" "$url" --picture "$work/room.png" | tee "$work/client"
 grep -q '2 devices, 4 cameras' "$work/client"
@@ -27,6 +28,6 @@ grep -q 'lamp 99 is refused by the service: RobotRaconteur.InvalidArgument: lamp
 [ "$(head -c 8 "$work/room.png" | od -An -tx1 | tr -d ' ')" = 89504e470d0a1a0a ]
 
 kill -TERM "$service"
-wait "$service"
+wait "$service" || [ -n "${WINEPREFIX:-}" ]  # in wine a signal ends it without a word
 service=
 echo 'smart room: passed'

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Packs the runtime, lets a project use the package from a folder, without a network, and looks at what its builds do.
-#   package_test.sh ROBDEF NATIVE_DIR WORK
+#   package_test.sh ROBDEF NATIVE_DIR WORK [WINDOWS_DIR]
+# With a folder of robdef_c.dll and robdef.exe these are in the package, too.
 set -euo pipefail
-robdef=$1 native=$2 work=$3
+robdef=$1 native=$2 work=$3 windows=${4:-}
 here=$(cd "$(dirname "$0")" && pwd)
 export DOTNET_CLI_TELEMETRY_OPTOUT=1 DOTNET_NOLOGO=1
 version=$("$here/../../tools/version")
@@ -21,7 +22,7 @@ if ! dotnet restore "$here/Robdef.Runtime" --artifacts-path "$work/runtime" "-p:
 fi
 dotnet pack "$here/Robdef.Runtime" -c Release -m:2 --artifacts-path "$work/runtime" -o "$work/feed" \
   "-p:RobdefFrameworks=\"$frameworks\"" -p:RunAnalyzers=false -p:NativeDir="$native" -p:RobdefCompiler="$robdef" \
-  -p:RobdefProjectUrl=https://example.org/robdef -p:RobdefRepositoryUrl=https://example.org/robdef.git
+  -p:WindowsDir="$windows" -p:RobdefProjectUrl=https://example.org/robdef -p:RobdefRepositoryUrl=https://example.org/robdef.git
 
 dotnet pack "$here/Robdef.Hosting" -c Release -m:2 --artifacts-path "$work/runtime" -o "$work/feed" \
   "-p:RobdefFrameworks=\"$frameworks\"" -p:RunAnalyzers=false -p:NativeDir="$native" -p:RobdefCompiler="$robdef"
@@ -115,8 +116,15 @@ build edited.log
 publish() { dotnet publish -c Release -m:2 -r "$1" --self-contained false -p:UseAppHost=false -o "published-$1" >"publish-$1.log" 2>&1; }
 publish linux-x64 || { cat publish-linux-x64.log >&2; fail "publishing has failed"; }
 [ -f published-linux-x64/librobdef_c.so ] || fail "the native library is not published"
-! publish win-x64 || fail "a program without its native library was published"
-grep -q 'error ROBDEF001: Robdef.Runtime has no native library for win-x64' publish-win-x64.log || { cat publish-win-x64.log >&2; fail "the error is not shown"; }
+absent=win-x64
+if [ -n "$windows" ]; then
+  publish win-x64 || { cat publish-win-x64.log >&2; fail "publishing for Windows has failed"; }
+  cmp published-win-x64/robdef_c.dll "$windows/robdef_c.dll" || fail "the native library for Windows is not published"
+  cmp "$work/packages/robdef.runtime/$version/tools/win-x64/robdef.exe" "$windows/robdef.exe" || fail "the compiler for Windows is not packed"
+  absent=osx-x64
+fi
+! publish $absent || fail "a program without its native library was published"
+grep -q "error ROBDEF001: Robdef.Runtime has no native library for $absent" publish-$absent.log || { cat publish-$absent.log >&2; fail "the error is not shown"; }
 
 # The same project for .NET 8, with the C# of its time, in the .NET that is there.
 if [ "$frameworks" != net10.0 ]; then

@@ -4,6 +4,8 @@ function build_mex(build, output, from_sources, with_mex)
 %   `cmake --build --preset release`) and writes the toolbox to the folder `output`, which is then
 %   added to the path. MATLAB compiles the runtime's sources; Octave does with
 %   build_mex(build, output, true), and takes them from the build without.
+%   On Windows `build` is the folder of the unpacked zip robdef-VERSION-windows-x64, whose libraries are taken
+%   in MATLAB and in Octave. That is not tested.
 %   build_mex(build, output, true, true) uses the function mex and what else MATLAB's file is made with, in
 %   Octave too: for tests, with a function of this name.
 if nargin < 3
@@ -25,6 +27,7 @@ runtime = fullfile(build, 'runtime', 'cpp');
 place.includes = {top, fullfile(here, 'include'), fullfile(top, 'runtime', 'cpp', 'include')};
 place.own = fullfile(here, 'src');
 place.static = fullfile(here, 'static');
+place.windows = fullfile(here, 'windows');
 place.with_mex = with_mex;
 place.library = fullfile(build, 'runtime', 'matlab', 'librobdef_matlab_mex.a');
 if from_sources
@@ -32,6 +35,11 @@ if from_sources
 end
 place.archives = {fullfile(runtime, 'src', 'serial', 'librobdef_serial.a'), ...
                   fullfile(runtime, 'src', 'dynamic', 'librobdef_dynamic.a')};
+if ispc
+  runtime = fullfile(build, 'lib');
+  place.archives = {fullfile(runtime, 'librobdef_serial.a'), fullfile(runtime, 'librobdef_dynamic.a')};
+  place.library = '';
+end
 place.runtime = {fullfile(runtime, 'librobdef_tls.a'), fullfile(runtime, 'librobdef_web.a'), ...
                  fullfile(runtime, 'librobdef.a')};
 place.exports = fullfile(here, 'exports.map');

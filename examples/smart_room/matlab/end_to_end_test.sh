@@ -15,7 +15,8 @@ for _ in $(seq 100); do
   [ -e "$work/service" ] && grep -q '^ready: ' "$work/service" && break
   sleep 0.1
 done
-url=$(sed -n 's/^ready: //p' "$work/service")
+# A program for Windows ends its lines otherwise.
+url=$(tr -d '\r' <"$work/service" | sed -n 's/^ready: //p')
 
 "$2" --norc --path "$3" --path "$folder" \
   --eval "smart_room_client('$url', '$work/room.png')" | tee "$work/client"
@@ -29,6 +30,6 @@ grep -q 'a picture of 320 x 240 pixels' "$work/client"
 "$2" --norc --eval "I = double(imread('$work/room.png')); assert(size(I), [240 320 3]);
   m = squeeze(max(max(I, [], 1), [], 2)); assert(m(1) > m(3));"
 kill -TERM "$service"
-wait "$service"
+wait "$service" || [ -n "${WINEPREFIX:-}" ]  # in wine a signal ends it without a word
 service=
 echo 'smart room in Octave: passed'

@@ -28,6 +28,11 @@ int main(int count, char** arguments) {
   rr_node_release(service);
   all_members_release(offered);
   if (wrong == NULL && all_members_contexts() != 0) wrong = "contexts are left";
-  if (wrong != NULL) fprintf(stderr, "failed: %s\n", wrong);
-  return wrong == NULL ? 0 : 1;
+  if (wrong != NULL) {
+    fprintf(stderr, "failed: %s\n", wrong);
+    return 1;
+  }
+  /* In wine a program that crashes ends with 0, too. */
+  puts("all members: PASSED");
+  return 0;
 }

@@ -24,7 +24,7 @@ class Announced : public ::testing::Test {
   Announced() { listen(node_.get()); }
 
   void listen(rr_node* node, std::int32_t lifetime_ms = 0) const {
-    const rr_str interface = view("lo");
+    const rr_str interface = view(network_.interfaces.at(0));
     rr_listen_options options{};
     options.size = sizeof options;
     options.networks = RR_IPV4_BROADCAST;
@@ -36,7 +36,7 @@ class Announced : public ::testing::Test {
     EXPECT_EQ(rr_discovery_listen(node, &options, nullptr), RR_OK);
   }
   rr_status announce(rr_node* node) const {
-    const rr_str interface = view("lo");
+    const rr_str interface = view(network_.interfaces.at(0));
     rr_announce_options options{};
     options.size = sizeof options;
     options.networks = RR_IPV4_BROADCAST;

@@ -137,6 +137,7 @@ static void on_counter(void* context, rr_request* request, const rr_request_info
   packer value = {0};
   unpacked text;
   pthread_t thread;
+  pthread_attr_t detached;
   switch (info->member) {
     case COUNTER_NAME:
       pack_text(&value, "value", of->name);
@@ -168,8 +169,11 @@ static void on_counter(void* context, rr_request* request, const rr_request_info
       raise_error(request, &info->arguments);
       break;
     case COUNTER_SLOW:
-      if (pthread_create(&thread, NULL, answer_later, request) != 0) abort();
-      pthread_detach(thread);
+      /* Not pthread_detach(), with which winpthreads may lose a thread. */
+      pthread_attr_init(&detached);
+      pthread_attr_setdetachstate(&detached, PTHREAD_CREATE_DETACHED);
+      if (pthread_create(&thread, &detached, answer_later, request) != 0) abort();
+      pthread_attr_destroy(&detached);
       return;
     case COUNTER_FIRE:
       fire(of, unpack_int32(&info->arguments, "count"));

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <mutex>
@@ -47,7 +47,7 @@ void write(const std::string& path, std::string_view content) {
     std::ofstream file(path + ".new", std::ios::binary);
     file << content;
   }
-  ASSERT_EQ(std::rename((path + ".new").c_str(), path.c_str()), 0);
+  std::filesystem::rename(path + ".new", path);
 }
 
 std::vector<std::string> lines_of(const std::string& path) {

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/matlab/src/ending_signals.hpp"
 
-#ifdef RR_OCTAVE
+// Windows has no such signals: the console's events are the interpreter's.
+#if defined(RR_OCTAVE) && !defined(_WIN32)
+#define RR_HAS_SIGNALS
+#endif
+
+#ifdef RR_HAS_SIGNALS
 #include <octave/quit.h>
 #include <signal.h>
 
@@ -13,7 +18,7 @@
 
 namespace rr::matlab {
 
-#ifdef RR_OCTAVE
+#ifdef RR_HAS_SIGNALS
 namespace {
 
 struct Chained {

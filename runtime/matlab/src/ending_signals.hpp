@@ -5,7 +5,8 @@ namespace rr::matlab {
 
 /// SIGTERM and SIGHUP on their way to Octave, which notes them and ends itself between two
 /// statements, and so not while a call waits. Its handlers are called in any case; this one only
-/// says that they were. Nothing in MATLAB, which handles signals on threads of its own.
+/// says that they were. Nothing in MATLAB, which handles signals on threads of its own, and on
+/// Windows.
 class EndingSignals {
  public:
   /// Puts a handler before the interpreter's; the end takes it away again. Octave writes no

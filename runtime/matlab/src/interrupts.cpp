@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/matlab/src/interrupts.hpp"
 
-#include <signal.h>
-
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -11,6 +9,9 @@
 #include "rr/mutex.hpp"
 #include "runtime/matlab/src/ending_signals.hpp"
 
+#ifndef _WIN32
+#include <signal.h>
+#endif
 #ifdef RR_OCTAVE
 #include <octave/quit.h>
 #else
@@ -22,6 +23,21 @@ namespace {
 
 constexpr std::chrono::milliseconds period{50};  // of looking
 constexpr int idle_periods = 20;                 // without a call before the thread sleeps
+
+/// Signals are for the interpreter's own threads; Windows has none.
+std::thread thread_without_signals(std::function<void()> work) {
+#ifdef _WIN32
+  return std::thread(std::move(work));
+#else
+  sigset_t all;
+  sigset_t before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  std::thread made(std::move(work));
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  return made;
+#endif
+}
 
 }  // namespace
 
@@ -66,13 +82,7 @@ void Interrupts::State::look() {
 Interrupts::Interrupts(std::function<void()> told) : state_(std::make_unique<State>()) {
   state_->told = std::move(told);
   if (must_be_asked()) return;
-  // Signals are for the interpreter's own threads.
-  sigset_t all;
-  sigset_t before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);
-  state_->watcher = std::thread([state = state_.get()] { state->look(); });
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  state_->watcher = thread_without_signals([state = state_.get()] { state->look(); });
 }
 
 Interrupts::~Interrupts() {

@@ -16,6 +16,7 @@ place.library = fullfile(libraries, 'librobdef_matlab_mex.a');
 place.archives = in_folder(libraries, {'librobdef_serial.a', 'librobdef_dynamic.a'});
 place.runtime = in_folder(libraries, {'librobdef_tls.a', 'librobdef_web.a', 'librobdef.a'});
 place.static = fullfile(root, 'runtime', 'matlab', 'static');
+place.windows = fullfile(root, 'runtime', 'matlab', 'windows');
 place.with_mex = ~exist('OCTAVE_VERSION', 'builtin');
 place.exports = fullfile(support, 'exports.map');
 rr_compile_mex(folder, in_folder(folder, sources(:)'), place, varargin{:});

@@ -8,11 +8,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#if defined(__GNUC__)
+#if defined(__GNUC__) && !defined(_WIN32)
 /** Marks what the library exports. */
 #define RR_API __attribute__((visibility("default")))
 #else
-/** Marks what the library exports. */
+/** Marks what the library exports. On Windows the library has a list of it. */
 #define RR_API
 #endif
 

@@ -8,6 +8,7 @@
 #include "runtime/cpp/src/channel/status.hpp"
 #include "runtime/cpp/src/endpoint/user_code.hpp"
 #include "runtime/cpp/src/node/node_state.hpp"
+#include "runtime/cpp/src/platform/threads.hpp"
 
 namespace rr {
 
@@ -108,7 +109,7 @@ Node::~Node() {
     return;
   }
   // This thread cannot wait for its own end.
-  std::thread([state = std::move(state_)] { state->finish_end(); }).detach();
+  platform::run_apart([state = std::shared_ptr(std::move(state_))] { state->finish_end(); });
 }
 
 const NodeId& Node::id() const { return state_->core->options().id; }

@@ -66,6 +66,6 @@ enum class LookUp : std::uint8_t {
   everywhere,  ///< to listen at, on all interfaces; the name does not count
 };
 /// Empty when nothing is found. May take seconds. Ports are 0.
-std::vector<Address> look_up(const std::string& host, LookUp how);
+RR_INSIDE std::vector<Address> look_up(const std::string& host, LookUp how);
 
 }  // namespace rr::platform

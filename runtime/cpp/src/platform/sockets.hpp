@@ -58,9 +58,9 @@ enum class Wait : std::uint8_t {
 };
 /// 0 at the end of the stream. One that waits gives nothing_now when a signal interrupts it, or
 /// after the time of set_receive_timeout().
-std::ptrdiff_t receive(int socket, std::span<std::byte> room, Wait wait);
+RR_INSIDE std::ptrdiff_t receive(int socket, std::span<std::byte> room, Wait wait);
 /// Never waits, here and below: fewer bytes than asked when there is no more room.
-std::ptrdiff_t send(int socket, std::span<const std::byte> bytes);
+RR_INSIDE std::ptrdiff_t send(int socket, std::span<const std::byte> bytes);
 /// In one call of the system; at most 64 buffers.
 std::ptrdiff_t send_gathered(int socket, std::span<const Buffer> buffers);
 
@@ -69,9 +69,10 @@ std::ptrdiff_t send_gathered(int socket, std::span<const Buffer> buffers);
 enum class Connecting : std::uint8_t { done, begun, failed };
 /// A new socket that connects, without waiting. `begun`: connect_result() says what came of it once
 /// there is room to send.
-Connecting begin_connect(const Address& address, Descriptor& socket, std::error_code& error);
+RR_INSIDE Connecting begin_connect(const Address& address, Descriptor& socket,
+                                   std::error_code& error);
 /// No error when the socket is connected.
-std::error_code connect_result(int socket);
+RR_INSIDE std::error_code connect_result(int socket);
 /// A new socket of TCP that listens, and does not wait in accept_one(). No other socket may listen
 /// there, but one that ended a moment ago does not count. IPv6 is IPv6 alone.
 Descriptor listen_at(const Address& address, std::error_code& error);
@@ -79,7 +80,7 @@ Descriptor listen_at(const Address& address, std::error_code& error);
 /// too_many_files_open or too_many_files_open_in_system for want of descriptors.
 Descriptor accept_one(int listening, std::error_code& error);
 /// Two sockets, connected with each other.
-std::error_code make_pair(Descriptor& first, Descriptor& second);
+RR_INSIDE std::error_code make_pair(Descriptor& first, Descriptor& second);
 /// Nothing is sent or received any more; whoever waits at the socket is woken.
 void shut_down(int socket);
 /// Nothing more is sent; the other side finds the end.
@@ -94,7 +95,7 @@ Address remote_address(int socket);
 std::optional<UserId> peer_user(int socket);
 /// Small segments leave at once (04, section 2). No effect on other sockets than those of TCP, as
 /// below.
-void set_stream_options(int socket);
+RR_INSIDE void set_stream_options(int socket);
 /// A receive that waits returns after this time without bytes.
 void set_receive_timeout(int socket, std::chrono::milliseconds time);
 /// Delays TCP's next acknowledgement until it can travel with data.

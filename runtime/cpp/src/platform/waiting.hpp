@@ -5,6 +5,7 @@
 #include <span>
 #include <system_error>
 
+#include "rr/visibility.hpp"
 #include "runtime/cpp/src/platform/clock.hpp"
 #include "runtime/cpp/src/platform/ready.hpp"
 #include "runtime/cpp/src/platform/sockets.hpp"
@@ -13,7 +14,7 @@
 namespace rr::platform {
 
 /// Waits for bits of `ready` at a socket, or its end; false at the deadline. Time::max() is none.
-bool wait_for(int socket, std::uint32_t events, Time deadline);
+RR_INSIDE bool wait_for(int socket, std::uint32_t events, Time deadline);
 
 /// One of several sockets that are waited for.
 struct Awaited {
@@ -22,7 +23,7 @@ struct Awaited {
   std::uint32_t found = 0;   ///< what was there
 };
 /// The same for several at once: until something is found at one of them.
-bool wait_for_any(std::span<Awaited> sockets, Time deadline);
+RR_INSIDE bool wait_for_any(std::span<Awaited> sockets, Time deadline);
 
 /// Can be waited for as if it were a socket: has input from ring() on, for ever.
 class Bell {

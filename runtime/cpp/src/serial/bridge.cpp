@@ -48,7 +48,7 @@ BoardPlace BoardPlace::parse(const std::string& text) {
     throw Error(ErrorCode::invalid_argument, "`" + text + "`: `" + part + "` is not understood");
   }
   if (place.path.empty()) throw Error(ErrorCode::invalid_argument, "`" + text + "` has no path");
-  (void)serial::Port::to(place.path, place.baud);
+  place.path = serial::Port::to(place.path, place.baud)->path();
   return place;
 }
 

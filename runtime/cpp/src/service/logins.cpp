@@ -228,7 +228,7 @@ bool Logins::State::make_room(std::size_t own, std::shared_ptr<Attempt>& evicted
 
 void Logins::State::make_thread() {
   try {
-    std::thread([self = shared_from_this()] { self->run(); }).detach();
+    platform::run_apart([self = shared_from_this()] { self->run(); });
     ++live;
   } catch (const std::system_error&) {
     // Those that there are go on.

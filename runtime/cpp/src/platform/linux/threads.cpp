@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <cstdint>
+#include <thread>
 #include <utility>
 
 #include "runtime/cpp/src/platform/thread_object.hpp"
@@ -46,6 +47,8 @@ struct Ends {
 constinit thread_local Ends ends;
 
 }  // namespace
+
+void run_apart(std::function<void()> work) { std::thread(std::move(work)).detach(); }
 
 void prefer_throughput() {
   const sched_param none{};

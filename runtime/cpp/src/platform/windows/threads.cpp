@@ -4,6 +4,8 @@
 #include <pthread.h>
 #include <windows.h>
 
+#include <memory>
+#include <system_error>
 #include <utility>
 
 #include "runtime/cpp/src/platform/thread_object.hpp"
@@ -31,7 +33,25 @@ pthread_key_t links_key() {
   return key;
 }
 
+void* run(void* given) {
+  const std::unique_ptr<std::function<void()>> work(static_cast<std::function<void()>*>(given));
+  (*work)();
+  return nullptr;
+}
+
 }  // namespace
+
+void run_apart(std::function<void()> work) {
+  auto given = std::make_unique<std::function<void()>>(std::move(work));
+  pthread_attr_t detached;
+  pthread_attr_init(&detached);
+  pthread_attr_setdetachstate(&detached, PTHREAD_CREATE_DETACHED);
+  pthread_t thread{};
+  const int error = pthread_create(&thread, &detached, &run, given.get());
+  pthread_attr_destroy(&detached);
+  if (error != 0) throw std::system_error(error, std::generic_category(), "no thread is free");
+  (void)given.release();
+}
 
 // Windows has nothing of the kind for a thread of its own.
 void prefer_throughput() {}
